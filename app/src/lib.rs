@@ -1,0 +1,1 @@
+//! The Hysteron app: state, jobs and views, apart from each other.

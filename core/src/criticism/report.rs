@@ -1,0 +1,153 @@
+//! What a diagnosis says: plain values, the same in JSON, on the command line and on screen.
+
+use serde::{Deserialize, Serialize};
+
+use crate::effect::EffectId;
+use crate::measurement::{Kind, Quantity};
+
+/// A fitted parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    /// The effect that it belongs to; `None` for the baseline model.
+    pub effect: Option<EffectId>,
+    /// Symbol, such as `J1`.
+    pub name: String,
+    /// Plain words, such as `motor inertia`.
+    pub label: String,
+    /// Fitted value in `unit`.
+    pub value: f64,
+    /// Standard error in `unit`, widened for autocorrelated residuals.
+    pub std_error: f64,
+    /// SI unit.
+    pub unit: String,
+}
+
+/// A region in which the error concentrates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// `time`, `relay_phase`, `velocity`, `time_since_reversal`, ...
+    pub axis: String,
+    /// Lower end of the region, in the unit of the axis.
+    pub from: f64,
+    /// Upper end of the region, in the unit of the axis.
+    pub to: f64,
+    /// Share of the squared error in the region, 0 to 1.
+    pub share_of_error: f64,
+    /// Share of the samples in the region, 0 to 1.
+    pub share_of_samples: f64,
+    /// The finding as a sentence with numbers.
+    pub text: String,
+    /// Time spans (s) that lie in the region, merged and limited in number, for shading a plot.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spans: Vec<(f64, f64)>,
+}
+
+/// An effect that was tried on top of the present model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// The effect or effects added together.
+    pub effects: Vec<EffectId>,
+    /// Held-back error after the refit, in noise units.
+    pub error: f64,
+    /// Change of the Bayesian information criterion against the present model; negative is better.
+    pub delta_bic: f64,
+    /// Whether held-back data say that it helps, beyond chance over all candidates tried.
+    pub significant: bool,
+    /// The parameters of the added effect after the refit.
+    pub parameters: Vec<Parameter>,
+    /// Other candidates that leave the same error within noise.
+    pub equivalent_to: Vec<EffectId>,
+}
+
+/// One model in the sequence from the baseline to the last one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// Effects in the model, in the order in which they were added.
+    pub effects: Vec<EffectId>,
+    /// Root mean square of the held-back residuals, each channel in units of its own noise.
+    pub error: f64,
+    /// The same on the data used for the fit.
+    pub error_fit: f64,
+    /// Every parameter of the model.
+    pub parameters: Vec<Parameter>,
+    /// Where it fails, strongest first.
+    #[serde(rename = "where")]
+    pub findings: Vec<Finding>,
+    /// What could be added, best first.
+    pub candidates: Vec<Candidate>,
+}
+
+/// What the data say in the end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The missing effects in the order found; each a class that this data cannot tell apart.
+    pub missing: Vec<Vec<EffectId>>,
+    /// The residual that is left is noise.
+    pub complete: bool,
+    /// Structure is left that no effect explains.
+    pub unknown: bool,
+    /// The experiment that would separate the classes, in words.
+    pub next_experiment: Option<String>,
+    /// The verdict in plain words.
+    pub text: String,
+}
+
+/// A whole diagnosis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Diagnosis {
+    /// Version of this layout, 1.
+    pub schema: u32,
+    /// Drive or process.
+    pub kind: Kind,
+    /// Number of samples.
+    pub samples: usize,
+    /// Error of a perfect model, in the unit of [`Step::error`].
+    pub noise_floor: f64,
+    /// From the baseline to the last model.
+    pub steps: Vec<Step>,
+    /// What is missing.
+    pub verdict: Verdict,
+    /// Time taken in s; the caller's clock, since this crate has none.
+    pub seconds: f64,
+}
+
+/// One output, measured and replayed, for drawing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReplayChannel {
+    /// What it is.
+    pub quantity: Quantity,
+    /// Name in the file.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Standard deviation of the measurement noise, in `unit`.
+    pub noise: f64,
+    /// Model output at every sample, in `unit`; as long as the measurement.
+    pub modelled: Vec<f64>,
+}
+
+/// The model driven by the measured input, restarted from estimated states in windows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Replay {
+    /// One entry per measured output, in the same order.
+    pub channels: Vec<ReplayChannel>,
+    /// First sample of each window.
+    pub window_starts: Vec<usize>,
+}
+
+/// Everything about one model on one measurement: what the Compare page shows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepReport {
+    /// Error, parameters, where it fails and what could be added.
+    pub step: Step,
+    /// Error of a perfect model.
+    pub noise_floor: f64,
+    /// Curves for the plots.
+    pub replay: Replay,
+    /// The effect that data say should be added next, if any.
+    pub suggestion: Option<EffectId>,
+    /// Effects in the model that data say are not needed.
+    pub needless: Vec<EffectId>,
+    /// Present when nothing should be added: what is missing from the baseline, and how sure.
+    pub verdict: Option<Verdict>,
+}

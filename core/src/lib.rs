@@ -1,0 +1,16 @@
+//! Everything that Hysteron computes.
+//!
+//! No interface, no files, no clock, no threads: the same values in give the same
+//! values out, natively and in the browser. Modules are named after the question
+//! that a user asks, and each imports only from those above it:
+//!
+//! | module | question |
+//! |---|---|
+//! | [`measurement`] | what was measured? |
+//! | [`effect`] | which physics can be added? |
+//! | [`criticism`] | where does the model fail, what is missing, how sure? |
+#![warn(missing_docs)]
+
+pub mod criticism;
+pub mod effect;
+pub mod measurement;

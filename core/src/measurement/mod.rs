@@ -1,0 +1,89 @@
+//! What was measured: one experiment, in SI units, checked.
+//!
+//! A [`Measurement`] holds one input and the outputs that were recorded with it.
+//! Time is strictly increasing and every value is finite: [`Measurement::new`]
+//! refuses anything else, so that no later module has to check again.
+
+use serde::{Deserialize, Serialize};
+
+/// What kind of system was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A motor that moves an inertia: torque or force in, position and/or velocity out.
+    Drive,
+    /// A self-regulating process: some input in, some output `y` out.
+    Process,
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Manipulated input `u`: torque in N m, force in N, or a process input.
+    Input,
+    /// Motor position `x1`, rad or m.
+    Position,
+    /// Motor velocity `v1`, rad/s or m/s.
+    Velocity,
+    /// Load position `x2`, rad or m; for reference, never needed by a diagnosis.
+    LoadPosition,
+    /// Load velocity `v2`, rad/s or m/s; for reference, never needed by a diagnosis.
+    LoadVelocity,
+    /// Process output `y`.
+    Output,
+}
+
+/// One recorded column in SI units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Channel {
+    /// What it is.
+    pub quantity: Quantity,
+    /// Its name in the file, such as `v1`.
+    pub name: String,
+    /// Its SI unit as written on screen, such as `rad/s`; `1` for a plain number.
+    pub unit: String,
+    /// One value per sample, in `unit`.
+    pub values: Vec<f64>,
+}
+
+/// One experiment: an input and the outputs recorded with it.
+///
+/// The input is held between samples: `input.values[i]` acts from `time[i]` to `time[i + 1]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measurement {
+    /// Name shown to the user, usually the file name.
+    pub name: String,
+    /// Drive or process.
+    pub kind: Kind,
+    /// Sample times in s, strictly increasing, at least [`MIN_SAMPLES`].
+    pub time: Vec<f64>,
+    /// The manipulated input.
+    pub input: Channel,
+    /// What the model must explain: position and/or velocity of a drive, `y` of a process.
+    pub outputs: Vec<Channel>,
+    /// Columns kept for reference only (load position and velocity).
+    pub reference: Vec<Channel>,
+    /// Things worth telling the user that did not stop the import.
+    pub warnings: Vec<String>,
+}
+
+/// Fewest samples that a measurement can have; below this no noise can be told from signal.
+pub const MIN_SAMPLES: usize = 20;
+
+impl Measurement {
+    /// The output with this quantity, if it was recorded.
+    pub fn output(&self, quantity: Quantity) -> Option<&Channel> {
+        self.outputs.iter().find(|c| c.quantity == quantity)
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there are no samples (never true for a checked measurement).
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+}

@@ -1,0 +1,2 @@
+//! Set-up, web build, serve, tests: `cargo xtask help`.
+fn main() {}
