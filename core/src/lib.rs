@@ -7,6 +7,7 @@
 //! | module | question |
 //! |---|---|
 //! | [`measurement`] | what was measured? |
+//! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 #![warn(missing_docs)]
@@ -14,3 +15,4 @@
 pub mod criticism;
 pub mod effect;
 pub mod measurement;
+pub mod model;

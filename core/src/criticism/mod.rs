@@ -1,9 +1,21 @@
 //! Where does the model fail, which effect is missing, how much, how sure?
 
+mod baseline;
+mod data;
+mod fit;
 mod job;
+mod locate;
+mod noise;
 mod report;
+mod search;
+mod select;
+mod session;
+mod structure;
+mod verdict;
 
 pub use job::{CriticismError, DiagnosisJob, Progress, StepJob};
+pub use noise::noise_level;
 pub use report::{
     Candidate, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step, StepReport, Verdict,
 };
+pub use verdict::with_error;

@@ -1,4 +1,4 @@
-//! What a parameter of an effect is: symbol, unit, bounds.
+//! What a parameter of an effect is: symbol, unit, range.
 
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,21 @@ impl Dimension {
     }
 }
 
+/// Values that a parameter may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// Any finite value.
+    Signed,
+    /// 0 or more.
+    NonNegative,
+    /// Above 0: at least [`LEAST_SHARE`] of its [`Scales::of`].
+    Positive,
+    /// -0.9 to 0.9.
+    Fraction,
+    /// 0 to 1.
+    UnitInterval,
+}
+
 /// A parameter of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterSpec {
@@ -58,4 +73,58 @@ pub struct ParameterSpec {
     pub label: &'static str,
     /// Dimension, from which the unit follows.
     pub dimension: Dimension,
+    /// Values that it may take.
+    pub range: Range,
+}
+
+/// Smallest share of its typical size that a positive parameter may take: too small to be seen.
+pub const LEAST_SHARE: f64 = 1e-4;
+
+impl ParameterSpec {
+    /// `value` moved into the range.
+    pub fn clamp(&self, value: f64, scales: &Scales) -> f64 {
+        let scale = scales.of(self.dimension);
+        match self.range {
+            Range::Signed => value,
+            Range::NonNegative => value.max(0.0),
+            Range::Positive => value.max(LEAST_SHARE * scale),
+            Range::Fraction => value.clamp(-0.9, 0.9),
+            Range::UnitInterval => value.clamp(0.0, 1.0),
+        }
+    }
+}
+
+/// Typical sizes of one experiment, from which effects take their starting values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Mean sampling time, s.
+    pub step: f64,
+    /// Length of the record, s.
+    pub duration: f64,
+    /// Root mean square of the input about its mean.
+    pub force: f64,
+    /// Inertia of the baseline fit.
+    pub inertia: f64,
+    /// Viscous friction of the baseline fit.
+    pub viscous: f64,
+    /// Root mean square of the velocity, or of a process output, about its mean.
+    pub speed: f64,
+    /// Range of the position over the whole record.
+    pub travel: f64,
+    /// Time constant of the baseline fit, s.
+    pub time_constant: f64,
+}
+
+impl Scales {
+    /// Typical size of a quantity of this dimension.
+    pub fn of(&self, dimension: Dimension) -> f64 {
+        match dimension {
+            Dimension::Force => self.force,
+            Dimension::Time => self.step,
+            Dimension::Ratio => 1.0,
+            Dimension::Inertia => self.inertia.abs(),
+            Dimension::ViscousFriction => self.viscous.abs(),
+            Dimension::Position => self.travel,
+        }
+    }
 }

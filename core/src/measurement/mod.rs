@@ -77,6 +77,15 @@ impl Measurement {
         self.outputs.iter().find(|c| c.quantity == quantity)
     }
 
+    /// Whether the drive turns or slides, by the unit of its input.
+    pub fn motion(&self) -> crate::effect::Motion {
+        match (self.kind, self.input.unit.as_str()) {
+            (Kind::Process, _) => crate::effect::Motion::None,
+            (Kind::Drive, "N") => crate::effect::Motion::Translational,
+            (Kind::Drive, _) => crate::effect::Motion::Rotational,
+        }
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time.len()

@@ -1,0 +1,194 @@
+//! The models that a user starts from: a drive with viscous friction, a first-order process.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::data::Data;
+use crate::effect::{Dimension, EffectId, Motion, Scales, VISCOUS_FRICTION};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+/// A parameter of a baseline: symbol, words, and the unit by kind of motion.
+pub(super) struct BaselineParameter {
+    pub symbol: &'static str,
+    pub label: &'static str,
+    /// `None`: gain of a process, output unit per input unit.
+    pub dimension: Option<Dimension>,
+    pub effect: Option<EffectId>,
+}
+
+const DRIVE: [BaselineParameter; 2] = [
+    BaselineParameter {
+        symbol: "J1",
+        label: "motor inertia",
+        dimension: Some(Dimension::Inertia),
+        effect: None,
+    },
+    BaselineParameter {
+        symbol: "d1",
+        label: "viscous friction",
+        dimension: Some(Dimension::ViscousFriction),
+        effect: Some(VISCOUS_FRICTION),
+    },
+];
+
+const PROCESS: [BaselineParameter; 2] = [
+    BaselineParameter {
+        symbol: "K",
+        label: "gain",
+        dimension: None,
+        effect: None,
+    },
+    BaselineParameter {
+        symbol: "T",
+        label: "time constant",
+        dimension: Some(Dimension::Time),
+        effect: None,
+    },
+];
+
+pub(super) fn parameters(kind: Kind) -> &'static [BaselineParameter] {
+    match kind {
+        Kind::Drive => &DRIVE,
+        Kind::Process => &PROCESS,
+    }
+}
+
+/// Effects that are in the baseline from the start.
+pub(super) fn effects(kind: Kind) -> &'static [EffectId] {
+    match kind {
+        Kind::Drive => &[VISCOUS_FRICTION],
+        Kind::Process => &[],
+    }
+}
+
+/// Inertia and viscous friction of the body with these baseline values.
+///
+/// A process `T y' + y = K u` is the body `(T/K) y' = u - y/K`.
+pub(super) fn body(kind: Kind, values: &[f64]) -> (f64, f64) {
+    match kind {
+        Kind::Drive => (values[0], values[1]),
+        Kind::Process => (values[1] / values[0], 1.0 / values[0]),
+    }
+}
+
+/// The baseline model with these values.
+pub(super) fn model(kind: Kind, values: &[f64]) -> Model {
+    let (inertia, viscous) = body(kind, values);
+    Model::body(inertia, viscous)
+}
+
+/// Inertia and time constant stay within this factor of the first guess.
+const GUESS_FACTOR: f64 = 1e4;
+
+/// Longest time constant, in record lengths: a longer one cannot be told from an integrator.
+const LONGEST_SHARE: f64 = 10.0;
+
+/// Values moved into what is physically possible.
+pub(super) fn clamp(kind: Kind, values: &mut [f64], scales: &Scales) {
+    match kind {
+        Kind::Drive => {
+            let guess = scales.inertia.abs();
+            values[0] = values[0].clamp(guess / GUESS_FACTOR, guess * GUESS_FACTOR);
+            values[1] = values[1].max(0.0);
+        }
+        Kind::Process => {
+            values[1] =
+                values[1].clamp(scales.step / GUESS_FACTOR, scales.duration * LONGEST_SHARE);
+        }
+    }
+}
+
+/// Unit of a gain from input to output.
+pub(super) fn gain_unit(input: &str, output: &str) -> String {
+    match (output, input) {
+        (o, i) if o == i => "1".to_owned(),
+        (o, "1") => o.to_owned(),
+        (o, i) => format!("{o}/{i}"),
+    }
+}
+
+/// Unit of a parameter of this dimension in a measurement with this motion and input unit.
+pub(super) fn unit(dimension: Dimension, motion: Motion, input_unit: &str) -> String {
+    match (dimension, motion) {
+        (Dimension::Force, Motion::None) => input_unit.to_owned(),
+        _ => dimension.unit(motion).to_owned(),
+    }
+}
+
+/// Chunk lengths, in samples, over which velocity differences are regressed; the first whose
+/// differences stand well above the noise is taken.
+const CHUNKS: [usize; 7] = [1, 2, 5, 10, 20, 50, 100];
+
+/// How far above the noise, root mean square.
+const CLEAR_OF_NOISE: f64 = 10.0;
+
+/// First guess by linear regression of `v(t2) - v(t1) = b int w dt - lambda int v dt + f (t2 - t1)` on chunks,
+/// with `w` the input that reaches the body (one value per interval).
+///
+/// `None` where the regression has no sensible solution.
+pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
+    let v = data.velocity_estimate();
+    let noise = data
+        .outputs
+        .iter()
+        .find(|o| o.is_velocity)
+        .map_or(0.0, |o| o.noise);
+    let n = data.len();
+    let time = &data.time;
+    let chunk = CHUNKS
+        .iter()
+        .copied()
+        .filter(|c| c * 20 < n)
+        .find(|c| {
+            let sum: f64 = (0..n - c).map(|i| (v[i + c] - v[i]).powi(2)).sum();
+            (sum / (n - c) as f64).sqrt() > CLEAR_OF_NOISE * noise
+        })
+        .unwrap_or((n / 40).clamp(1, 100));
+    // The constant term keeps an offset of the input from bending the other two.
+    let mut normal = Matrix3::zeros();
+    let mut right = Vector3::zeros();
+    let mut i = 0;
+    while i + chunk < n {
+        let (mut iw, mut iv) = (0.0, 0.0);
+        for j in i..i + chunk {
+            let dt = time[j + 1] - time[j];
+            iw += w[j] * dt;
+            iv += 0.5 * (v[j] + v[j + 1]) * dt;
+        }
+        let row = Vector3::new(iw, -iv, time[i + chunk] - time[i]);
+        normal += row * row.transpose();
+        right += row * (v[i + chunk] - v[i]);
+        i += chunk;
+    }
+    // Columns differ by orders of magnitude: scaled to unit length before solving.
+    let scale = normal
+        .diagonal()
+        .map(|d| 1.0 / d.max(f64::MIN_POSITIVE).sqrt());
+    let scaled = Matrix3::from_diagonal(&scale) * normal * Matrix3::from_diagonal(&scale);
+    let solution = scaled
+        .try_inverse()
+        .map(|m| (m * right.component_mul(&scale)).component_mul(&scale));
+    let (saa, sab, say) = (normal[(0, 0)], normal[(0, 1)], right[0]);
+    let (mut b, mut lambda) = solution.map_or((say / saa, 0.0), |x| (x[0], x[1]));
+    if !(b.is_finite() && lambda.is_finite()) {
+        (b, lambda) = (say / saa, 0.0);
+    }
+    let duration = time[n - 1] - time[0];
+    if data.kind == Kind::Drive && b <= 0.0 {
+        b = (say / saa).abs();
+    }
+    if lambda <= 0.0 {
+        lambda = match data.kind {
+            Kind::Drive => 0.0,
+            Kind::Process => 10.0 / duration,
+        };
+        b = (say - lambda * sab) / saa;
+    }
+    if !b.is_finite() || b == 0.0 || (data.kind == Kind::Drive && b < 0.0) {
+        return None;
+    }
+    Some(match data.kind {
+        Kind::Drive => vec![1.0 / b, lambda / b],
+        Kind::Process => vec![b / lambda, 1.0 / lambda],
+    })
+}

@@ -1,0 +1,270 @@
+//! A measurement made ready for fitting: noise levels, windows, held-back blocks.
+
+use super::CriticismError;
+use super::noise::noise_level;
+use crate::effect::Scales;
+use crate::measurement::{Kind, Measurement, Quantity};
+use crate::model::{Excitation, Start};
+
+/// Samples per window of a drive: its position integrates, so that long windows would drown the
+/// effect in drift; a few relay periods fit in.
+const DRIVE_WINDOW: usize = 250;
+
+/// Fewest windows or blocks, so that held-back data are more than one piece of luck.
+const MIN_BLOCKS: usize = 20;
+
+/// Fewest samples in a window.
+const MIN_WINDOW: usize = 10;
+
+/// Most samples that a self-regulating process runs without a restart.
+const PROCESS_WINDOW: usize = 20_000;
+
+/// Samples in a block of a process on which a model is fitted or judged.
+const PROCESS_BLOCK: usize = 50;
+
+/// Starting points are tried on one part in this many of the record ...
+const SCOUT_PART: usize = 5;
+
+/// ... and on at least this many samples.
+const SCOUT_SAMPLES: usize = 2500;
+
+/// Samples around a window start from which its state is first guessed.
+const GUESS_SAMPLES: usize = 5;
+
+/// An output with its noise.
+#[derive(Clone, Debug)]
+pub(super) struct Output {
+    pub is_velocity: bool,
+    pub values: Vec<f64>,
+    pub noise: f64,
+}
+
+/// A run of samples that is used as a whole, either for fitting or for judging.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Block {
+    pub from: usize,
+    pub to: usize,
+    /// Index of the window in which it lies.
+    pub window: usize,
+    pub held_back: bool,
+}
+
+/// A measurement made ready for fitting.
+#[derive(Clone, Debug)]
+pub(super) struct Data {
+    pub kind: Kind,
+    pub excitation: Excitation,
+    pub input: Vec<f64>,
+    pub time: Vec<f64>,
+    pub outputs: Vec<Output>,
+    /// First sample of each window.
+    pub windows: Vec<usize>,
+    pub blocks: Vec<Block>,
+    pub has_position: bool,
+}
+
+impl Data {
+    pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
+        let n = measurement.len();
+        let input = &measurement.input.values;
+        if input.iter().all(|u| *u == input[0]) {
+            return Err(CriticismError::ConstantInput);
+        }
+        let outputs: Vec<Output> = measurement
+            .outputs
+            .iter()
+            .map(|c| Output {
+                is_velocity: c.quantity != Quantity::Position,
+                noise: noise_level(&c.values, input),
+                values: c.values.clone(),
+            })
+            .collect();
+        if let Some(c) = measurement
+            .outputs
+            .iter()
+            .find(|c| c.values.iter().all(|v| *v == c.values[0]))
+        {
+            return Err(CriticismError::ConstantOutput {
+                name: c.name.clone(),
+            });
+        }
+        let (window, block) = match measurement.kind {
+            Kind::Drive => {
+                let w = (n / MIN_BLOCKS).clamp(MIN_WINDOW, DRIVE_WINDOW);
+                (w, w)
+            }
+            Kind::Process => (
+                PROCESS_WINDOW,
+                (n / MIN_BLOCKS).clamp(MIN_WINDOW, PROCESS_BLOCK),
+            ),
+        };
+        let windows = split(n, window);
+        let blocks = split(n, block)
+            .iter()
+            .enumerate()
+            .map(|(k, from)| Block {
+                from: *from,
+                to: split_end(n, block, k),
+                window: windows.partition_point(|w| w <= from) - 1,
+                held_back: k % 2 == 1,
+            })
+            .collect();
+        let before = if starts_at_rest(&outputs) {
+            0.0
+        } else {
+            input[0]
+        };
+        Ok(Self {
+            kind: measurement.kind,
+            excitation: Excitation::new(&measurement.time, input, before),
+            input: input.clone(),
+            time: measurement.time.clone(),
+            has_position: outputs.iter().any(|o| !o.is_velocity),
+            outputs,
+            windows,
+            blocks,
+        })
+    }
+
+    /// The first part of the record, for trying starting points quickly; all of it if it is short.
+    pub fn scout(&self) -> Self {
+        let wanted = (self.len() / SCOUT_PART).max(SCOUT_SAMPLES);
+        let blocks: Vec<Block> = self
+            .blocks
+            .iter()
+            .copied()
+            .filter(|b| b.to <= wanted)
+            .collect();
+        let Some(end) = blocks.last().map(|b| b.to).filter(|end| *end < self.len()) else {
+            return self.clone();
+        };
+        let mut part = self.clone();
+        part.time.truncate(end);
+        part.input.truncate(end);
+        part.excitation = self.excitation.head(end);
+        for output in &mut part.outputs {
+            output.values.truncate(end);
+        }
+        part.windows.retain(|w| *w < end);
+        part.blocks = blocks;
+        part
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// States of the windows read off the measured outputs, as a first guess.
+    pub fn guessed_starts(&self) -> Vec<Start> {
+        let position = self.outputs.iter().find(|o| !o.is_velocity);
+        let velocity = self.outputs.iter().find(|o| o.is_velocity);
+        self.windows
+            .iter()
+            .map(|&sample| Start {
+                sample,
+                position: position.map_or(0.0, |p| p.values[sample]),
+                velocity: velocity.map_or_else(
+                    || position.map_or(0.0, |p| self.slope(&p.values, sample)),
+                    |v| v.values[sample],
+                ),
+            })
+            .collect()
+    }
+
+    /// Slope of `values` near a sample, per second.
+    fn slope(&self, values: &[f64], sample: usize) -> f64 {
+        let from = sample.saturating_sub(GUESS_SAMPLES / 2);
+        let to = (from + GUESS_SAMPLES).min(self.len()) - 1;
+        (values[to] - values[from]) / (self.time[to] - self.time[from])
+    }
+
+    /// Typical sizes, given a baseline body.
+    pub fn scales(&self, inertia: f64, viscous: f64) -> Scales {
+        let (step, n) = (self.excitation.mean_step(), self.len());
+        let speed = match self.outputs.iter().find(|o| o.is_velocity) {
+            Some(v) => spread(&v.values),
+            None => spread(&self.velocity_estimate()),
+        };
+        let position = match self.outputs.iter().find(|o| !o.is_velocity) {
+            Some(x) => x.values.clone(),
+            None => self.position_estimate(),
+        };
+        let (low, high) = position
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(*x), h.max(*x)));
+        let constant = (inertia / viscous).abs();
+        Scales {
+            step,
+            duration: step * (n - 1) as f64,
+            force: spread(&self.input),
+            inertia,
+            viscous: viscous.abs().max(inertia.abs() / (step * n as f64)),
+            speed,
+            travel: high - low,
+            time_constant: if constant.is_finite() {
+                constant
+            } else {
+                step * n as f64
+            },
+        }
+    }
+
+    /// Measured velocity, or slopes of the measured position.
+    pub fn velocity_estimate(&self) -> Vec<f64> {
+        if let Some(v) = self.outputs.iter().find(|o| o.is_velocity) {
+            return v.values.clone();
+        }
+        self.outputs.first().map_or_else(Vec::new, |x| {
+            (0..self.len()).map(|i| self.slope(&x.values, i)).collect()
+        })
+    }
+
+    /// Measured position, or the integral of the measured velocity from 0.
+    pub fn position_estimate(&self) -> Vec<f64> {
+        if let Some(x) = self.outputs.iter().find(|o| !o.is_velocity) {
+            return x.values.clone();
+        }
+        let mut sum = 0.0;
+        self.outputs.first().map_or_else(Vec::new, |v| {
+            (0..self.len())
+                .map(|i| {
+                    if i > 0 {
+                        sum += 0.5
+                            * (v.values[i] + v.values[i - 1])
+                            * (self.time[i] - self.time[i - 1]);
+                    }
+                    sum
+                })
+                .collect()
+        })
+    }
+}
+
+/// First samples of runs of `length` samples; a short rest joins the last run.
+fn split(n: usize, length: usize) -> Vec<usize> {
+    (0..(n / length).max(1)).map(|k| k * length).collect()
+}
+
+fn split_end(n: usize, length: usize, k: usize) -> usize {
+    if k + 1 >= (n / length).max(1) {
+        n
+    } else {
+        (k + 1) * length
+    }
+}
+
+/// Whether nothing moves at the first sample, so that the input was off before.
+fn starts_at_rest(outputs: &[Output]) -> bool {
+    outputs
+        .iter()
+        .filter(|o| o.is_velocity)
+        .all(|o| o.values[0].abs() < 5.0 * o.noise)
+}
+
+/// Standard deviation about the mean.
+pub(super) fn spread(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
+}

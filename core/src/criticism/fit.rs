@@ -1,0 +1,571 @@
+//! Levenberg-Marquardt on the parameters, with the states at the window starts estimated alongside.
+//!
+//! The unknowns are the parameters `theta`, shared by all windows, and a state per window. The
+//! normal equations are block-arrow shaped: each window's state is eliminated (Schur complement)
+//! and found again by back-substitution, so that cost grows linearly with the record. Windows that
+//! are held back never inform `theta`; they estimate their own state only.
+
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+
+use super::data::{Data, spread};
+use super::structure::Structure;
+use crate::effect::Scales;
+use crate::model::Start;
+
+/// Iterations after which a fit ends in any case.
+const MAX_ITERATIONS: usize = 30;
+
+/// A relative fall of the cost below this ends a fit.
+const COST_TOLERANCE: f64 = 1e-6;
+
+/// Damping above which no step is tried any more.
+const MAX_DAMPING: f64 = 1e9;
+
+/// Position and velocity of the body at every sample.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    pub position: Vec<f64>,
+    pub velocity: Vec<f64>,
+}
+
+impl Motion {
+    /// The part that an output shows.
+    pub fn of(&self, is_velocity: bool) -> &[f64] {
+        if is_velocity {
+            &self.velocity
+        } else {
+            &self.position
+        }
+    }
+}
+
+/// A fit that goes on iteration by iteration.
+#[derive(Clone)]
+pub(super) struct Fit {
+    pub structure: Structure,
+    pub values: Vec<f64>,
+    pub starts: Vec<Start>,
+    pub motion: Motion,
+    /// Squared residuals in noise units, summed over the samples used for the fit.
+    pub cost: f64,
+    damping: f64,
+    iterations: usize,
+    pub done: bool,
+    /// Inverse covariance of the values for unit noise, from the last iteration.
+    information: DMatrix<f64>,
+}
+
+/// Sums of one window.
+struct WindowSums {
+    state: Matrix2<f64>,
+    gradient: Vector2<f64>,
+    /// One column of mixed second derivatives per value.
+    mixed: Vec<Vector2<f64>>,
+}
+
+impl Fit {
+    pub fn new(
+        data: &Data,
+        structure: Structure,
+        mut values: Vec<f64>,
+        starts: Vec<Start>,
+        scales: &Scales,
+    ) -> Self {
+        structure.clamp(&mut values, scales);
+        let motion = simulate(data, &structure, &values, &starts);
+        let cost = fit_cost(data, &motion);
+        let p = values.len();
+        Self {
+            structure,
+            values,
+            starts,
+            motion,
+            cost,
+            damping: 1e-3,
+            iterations: 0,
+            done: !cost.is_finite(),
+            information: DMatrix::identity(p, p),
+        }
+    }
+
+    /// One iteration: derivatives, then steps with growing damping until one lowers the cost.
+    pub fn iterate(&mut self, data: &Data, scales: &Scales) {
+        if self.done {
+            return;
+        }
+        self.iterations += 1;
+        let p = self.values.len();
+        let steps = self.structure.difference_steps(&self.values, scales);
+        let columns = self.columns(data, &steps, scales);
+        let (matrix, gradient, windows) = self.normal_equations(data, &columns);
+        let mut lowered = false;
+        while self.damping < MAX_DAMPING {
+            let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
+            else {
+                self.damping *= 10.0;
+                continue;
+            };
+            let motion = simulate(data, &self.structure, &values, &starts);
+            let cost = fit_cost(data, &motion);
+            if cost <= self.cost {
+                let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
+                (self.values, self.starts, self.motion, self.cost) = (values, starts, motion, cost);
+                self.damping = (self.damping * 0.2).max(1e-9);
+                lowered = fall > COST_TOLERANCE;
+                break;
+            }
+            self.damping *= 6.0;
+        }
+        let schur = reduced(&matrix, &gradient, &windows, data, p).0;
+        self.information = schur;
+        self.done = !lowered || self.iterations >= MAX_ITERATIONS;
+    }
+
+    /// Derivatives of the motion: one column per value, then position and velocity of the starts.
+    fn columns(&self, data: &Data, steps: &[f64], scales: &Scales) -> Vec<Motion> {
+        let difference = |moved: Motion, step: f64| Motion {
+            position: slope(&moved.position, &self.motion.position, step),
+            velocity: slope(&moved.velocity, &self.motion.velocity, step),
+        };
+        let mut columns: Vec<Motion> = steps
+            .iter()
+            .enumerate()
+            .map(|(j, step)| {
+                let mut values = self.values.clone();
+                values[j] += step;
+                difference(
+                    simulate(data, &self.structure, &values, &self.starts),
+                    *step,
+                )
+            })
+            .collect();
+        let moved = |position: f64, velocity: f64| -> Motion {
+            let starts: Vec<Start> = self
+                .starts
+                .iter()
+                .map(|s| Start {
+                    position: s.position + position,
+                    velocity: s.velocity + velocity,
+                    ..*s
+                })
+                .collect();
+            simulate(data, &self.structure, &self.values, &starts)
+        };
+        let dx = 1e-6 * scales.travel.max(f64::MIN_POSITIVE);
+        let dv = 1e-6 * scales.speed.max(f64::MIN_POSITIVE);
+        if data.has_position {
+            columns.push(difference(moved(dx, 0.0), dx));
+        } else {
+            let n = data.len();
+            columns.push(Motion {
+                position: vec![0.0; n],
+                velocity: vec![0.0; n],
+            });
+        }
+        columns.push(difference(moved(0.0, dv), dv));
+        columns
+    }
+
+    fn normal_equations(
+        &self,
+        data: &Data,
+        columns: &[Motion],
+    ) -> (DMatrix<f64>, DVector<f64>, Vec<WindowSums>) {
+        // The last two columns are those of the starts.
+        let p = columns.len() - 2;
+        let mut matrix = DMatrix::zeros(p, p);
+        let mut gradient = DVector::zeros(p);
+        let mut windows: Vec<WindowSums> = data
+            .windows
+            .iter()
+            .map(|_| WindowSums {
+                state: Matrix2::zeros(),
+                gradient: Vector2::zeros(),
+                mixed: vec![Vector2::zeros(); p],
+            })
+            .collect();
+        let informed = informed_windows(data);
+        let mut row = vec![0.0; p];
+        for block in &data.blocks {
+            // A held-back block in a window that is also fitted informs nothing.
+            if block.held_back && informed[block.window] {
+                continue;
+            }
+            let sums = &mut windows[block.window];
+            for output in &data.outputs {
+                let weight = 1.0 / output.noise;
+                let modelled = self.motion.of(output.is_velocity);
+                let parts: Vec<&[f64]> = columns.iter().map(|c| c.of(output.is_velocity)).collect();
+                for i in block.from..block.to {
+                    let r = (output.values[i] - modelled[i]) * weight;
+                    for (value, part) in row.iter_mut().zip(&parts) {
+                        *value = part[i] * weight;
+                    }
+                    let s = Vector2::new(parts[p][i] * weight, parts[p + 1][i] * weight);
+                    sums.state += s * s.transpose();
+                    sums.gradient += s * r;
+                    for (mixed, value) in sums.mixed.iter_mut().zip(&row) {
+                        *mixed += s * *value;
+                    }
+                    if !block.held_back {
+                        for a in 0..p {
+                            gradient[a] += row[a] * r;
+                            for b in 0..=a {
+                                matrix[(a, b)] += row[a] * row[b];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        for a in 0..p {
+            for b in 0..a {
+                matrix[(b, a)] = matrix[(a, b)];
+            }
+        }
+        (matrix, gradient, windows)
+    }
+
+    /// Values and starts after a damped step; `None` where the equations cannot be solved.
+    fn step(
+        &self,
+        data: &Data,
+        matrix: &DMatrix<f64>,
+        gradient: &DVector<f64>,
+        windows: &[WindowSums],
+        scales: &Scales,
+    ) -> Option<(Vec<f64>, Vec<Start>)> {
+        let p = self.values.len();
+        let (mut schur, reduced_gradient) = reduced(matrix, gradient, windows, data, p);
+        for j in 0..p {
+            let d = schur[(j, j)];
+            schur[(j, j)] = d + self.damping * d.max(1e-12 * matrix[(j, j)]) + f64::MIN_POSITIVE;
+        }
+        let moved = self.bounded_step(&schur, &reduced_gradient, scales)?;
+        let values: Vec<f64> = self.values.iter().zip(&moved).map(|(v, d)| v + d).collect();
+        let starts = self
+            .starts
+            .iter()
+            .zip(windows)
+            .map(|(start, sums)| {
+                let mut g = sums.gradient;
+                for (mixed, d) in sums.mixed.iter().zip(&moved) {
+                    g -= mixed * *d;
+                }
+                let change = inverse(&sums.state) * g;
+                Start {
+                    position: start.position + change[0],
+                    velocity: start.velocity + change[1],
+                    ..*start
+                }
+            })
+            .collect();
+        Some((values, starts))
+    }
+
+    /// Solves for the step; values that would leave their range stop at its end and the others are
+    /// solved again, so that a value at its end does not hold back the rest.
+    fn bounded_step(
+        &self,
+        matrix: &DMatrix<f64>,
+        gradient: &DVector<f64>,
+        scales: &Scales,
+    ) -> Option<Vec<f64>> {
+        let p = self.values.len();
+        let mut fixed: Vec<Option<f64>> = vec![None; p];
+        loop {
+            let free: Vec<usize> = (0..p).filter(|j| fixed[*j].is_none()).collect();
+            let part = DMatrix::from_fn(free.len(), free.len(), |a, b| matrix[(free[a], free[b])]);
+            let right = DVector::from_fn(free.len(), |a, _| {
+                let known: f64 = (0..p)
+                    .map(|j| fixed[j].map_or(0.0, |d| matrix[(free[a], j)] * d))
+                    .sum();
+                gradient[free[a]] - known
+            });
+            let solution = part.cholesky()?.solve(&right);
+            let mut step: Vec<f64> = fixed.iter().map(|d| d.unwrap_or(0.0)).collect();
+            for (a, j) in free.iter().enumerate() {
+                step[*j] = solution[a];
+            }
+            let mut values: Vec<f64> = self.values.iter().zip(&step).map(|(v, d)| v + d).collect();
+            if values.iter().any(|v| !v.is_finite()) {
+                return None;
+            }
+            let wanted = values.clone();
+            self.structure.limit_step(&mut values, &self.values);
+            self.structure.clamp(&mut values, scales);
+            let out: Vec<usize> = free
+                .into_iter()
+                .filter(|j| values[*j] != wanted[*j])
+                .collect();
+            if out.is_empty() {
+                return Some(step);
+            }
+            for j in out {
+                fixed[j] = Some(values[j] - self.values[j]);
+            }
+        }
+    }
+
+    /// Improves the states of all windows with the values kept, window by window where it helps.
+    pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
+        for _ in 0..2 {
+            let columns = self.columns(data, &[], scales);
+            let (_, _, windows) = self.normal_equations(data, &columns);
+            let trial: Vec<Start> = self
+                .starts
+                .iter()
+                .zip(&windows)
+                .map(|(s, sums)| {
+                    let change = inverse(&sums.state) * sums.gradient;
+                    Start {
+                        position: s.position + change[0],
+                        velocity: s.velocity + change[1],
+                        ..*s
+                    }
+                })
+                .collect();
+            let motion = simulate(data, &self.structure, &self.values, &trial);
+            let (before, after) = (
+                window_costs(data, &self.motion),
+                window_costs(data, &motion),
+            );
+            for (k, start) in trial.into_iter().enumerate() {
+                if after[k] < before[k] {
+                    self.starts[k] = start;
+                }
+            }
+            self.motion = simulate(data, &self.structure, &self.values, &self.starts);
+        }
+        self.cost = fit_cost(data, &self.motion);
+    }
+
+    /// Standard errors of the values: noise as found, with `inflation` of the variance.
+    pub fn standard_errors(&self, inflation: f64) -> Vec<f64> {
+        let p = self.values.len();
+        let mut scaled = self.information.clone();
+        let d: Vec<f64> = (0..p)
+            .map(|j| self.information[(j, j)].max(f64::MIN_POSITIVE).sqrt())
+            .collect();
+        for a in 0..p {
+            for b in 0..p {
+                scaled[(a, b)] /= d[a] * d[b];
+            }
+        }
+        for j in 0..p {
+            scaled[(j, j)] += 1e-12;
+        }
+        match scaled.cholesky() {
+            Some(c) => {
+                let inverse = c.inverse();
+                (0..p)
+                    .map(|j| (inverse[(j, j)] * inflation).sqrt() / d[j])
+                    .collect()
+            }
+            None => vec![f64::INFINITY; p],
+        }
+    }
+}
+
+/// Runs the model through the whole record.
+pub(super) fn simulate(
+    data: &Data,
+    structure: &Structure,
+    values: &[f64],
+    starts: &[Start],
+) -> Motion {
+    let n = data.len();
+    let mut motion = Motion {
+        position: vec![0.0; n],
+        velocity: vec![0.0; n],
+    };
+    let model = structure.model(values);
+    data.excitation
+        .replay(&model, starts, &mut motion.position, &mut motion.velocity);
+    motion
+}
+
+/// Residual in noise units.
+pub(super) fn residuals(data: &Data, motion: &Motion) -> Vec<Vec<f64>> {
+    data.outputs
+        .iter()
+        .map(|o| {
+            let modelled = motion.of(o.is_velocity);
+            o.values
+                .iter()
+                .zip(modelled)
+                .map(|(y, m)| (y - m) / o.noise)
+                .collect()
+        })
+        .collect()
+}
+
+fn slope(moved: &[f64], base: &[f64], step: f64) -> Vec<f64> {
+    moved
+        .iter()
+        .zip(base)
+        .map(|(a, b)| (a - b) / step)
+        .collect()
+}
+
+/// Whether a window has a block that is used for fitting.
+fn informed_windows(data: &Data) -> Vec<bool> {
+    let mut informed = vec![false; data.windows.len()];
+    for block in data.blocks.iter().filter(|b| !b.held_back) {
+        informed[block.window] = true;
+    }
+    informed
+}
+
+/// Inverse of a window's matrix, with a little damping where the state leaves no trace.
+fn inverse(m: &Matrix2<f64>) -> Matrix2<f64> {
+    let mut damped = *m;
+    for j in 0..2 {
+        damped[(j, j)] += 1e-10 * m[(j, j)];
+        if damped[(j, j)] <= 0.0 {
+            damped[(j, j)] = 1.0;
+        }
+    }
+    damped.try_inverse().unwrap_or_else(Matrix2::zeros)
+}
+
+/// Normal equations of the values alone, the states eliminated.
+fn reduced(
+    matrix: &DMatrix<f64>,
+    gradient: &DVector<f64>,
+    windows: &[WindowSums],
+    data: &Data,
+    p: usize,
+) -> (DMatrix<f64>, DVector<f64>) {
+    let (mut schur, mut g) = (matrix.clone(), gradient.clone());
+    let informed = informed_windows(data);
+    for (sums, _) in windows
+        .iter()
+        .zip(&informed)
+        .filter(|(_, informed)| **informed)
+    {
+        let inv = inverse(&sums.state);
+        for a in 0..p {
+            let left = inv * sums.mixed[a];
+            g[a] -= left.dot(&sums.gradient);
+            for b in 0..p {
+                schur[(a, b)] -= left.dot(&sums.mixed[b]);
+            }
+        }
+    }
+    (schur, g)
+}
+
+/// Squared residuals in noise units over a run of samples.
+fn cost_between(data: &Data, motion: &Motion, from: usize, to: usize) -> f64 {
+    data.outputs
+        .iter()
+        .map(|o| {
+            let modelled = motion.of(o.is_velocity);
+            (from..to)
+                .map(|i| ((o.values[i] - modelled[i]) / o.noise).powi(2))
+                .sum::<f64>()
+        })
+        .sum()
+}
+
+fn fit_cost(data: &Data, motion: &Motion) -> f64 {
+    data.blocks
+        .iter()
+        .filter(|b| !b.held_back)
+        .map(|b| cost_between(data, motion, b.from, b.to))
+        .sum()
+}
+
+fn window_costs(data: &Data, motion: &Motion) -> Vec<f64> {
+    let informed = informed_windows(data);
+    let mut costs = vec![0.0; data.windows.len()];
+    for block in data
+        .blocks
+        .iter()
+        .filter(|b| !(b.held_back && informed[b.window]))
+    {
+        costs[block.window] += cost_between(data, motion, block.from, block.to);
+    }
+    costs
+}
+
+/// How well a motion fits: on the fitted and on the held-back part.
+#[derive(Clone, Debug)]
+pub(super) struct Score {
+    pub error: f64,
+    pub error_fit: f64,
+    /// Squared residuals of each held-back block.
+    pub held_blocks: Vec<f64>,
+    /// Number of residuals on each part.
+    pub held_count: f64,
+    pub fit_count: f64,
+    /// Squared residuals on the fitted part.
+    pub fit_cost: f64,
+    /// By how much autocorrelation widens variances: at least 1.
+    pub correlation: f64,
+}
+
+/// Scores a fit; each window's states count as fitted on its own data.
+pub(super) fn score(data: &Data, fit: &Fit) -> Score {
+    let states = if data.has_position { 2.0 } else { 1.0 };
+    let informed = informed_windows(data);
+    let outputs = data.outputs.len() as f64;
+    let count = |held: bool| -> f64 {
+        data.blocks
+            .iter()
+            .filter(|b| b.held_back == held)
+            .map(|b| (b.to - b.from) as f64 * outputs)
+            .sum()
+    };
+    let own = |flag: bool| states * informed.iter().filter(|i| **i == flag).count() as f64;
+    let held_blocks: Vec<f64> = data
+        .blocks
+        .iter()
+        .filter(|b| b.held_back)
+        .map(|b| cost_between(data, &fit.motion, b.from, b.to))
+        .collect();
+    let fit_cost = fit_cost(data, &fit.motion);
+    let held_count = (count(true) - own(false)).max(1.0);
+    let fit_count = (count(false) - own(true) - fit.values.len() as f64).max(1.0);
+    Score {
+        error: (held_blocks.iter().sum::<f64>() / held_count).sqrt(),
+        error_fit: (fit_cost / fit_count).sqrt(),
+        held_blocks,
+        held_count,
+        fit_count,
+        fit_cost,
+        correlation: correlation_inflation(data, &fit.motion),
+    }
+}
+
+/// Longest lag, in samples, over which autocorrelation is summed.
+const MAX_LAG: usize = 200;
+
+/// `1 + 2 sum rho_k` of the residuals, summed up to the first lag without correlation; the mean of
+/// the outputs weighted by their squared error.
+fn correlation_inflation(data: &Data, motion: &Motion) -> f64 {
+    let (mut weighted, mut weights) = (0.0, 0.0);
+    for r in residuals(data, motion) {
+        let power = r.iter().map(|r| r * r).sum::<f64>();
+        if spread(&r) == 0.0 || power == 0.0 {
+            continue;
+        }
+        let white = 2.0 / (r.len() as f64).sqrt();
+        let mut sum = 1.0;
+        for lag in 1..MAX_LAG.min(r.len() / 4) {
+            let rho = r.windows(lag + 1).map(|w| w[0] * w[lag]).sum::<f64>() / power;
+            if rho < white {
+                break;
+            }
+            sum += 2.0 * rho;
+        }
+        weighted += sum * power;
+        weights += power;
+    }
+    if weights > 0.0 {
+        weighted / weights
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,169 @@
+//! How large is the measurement noise? Estimated from the data alone, without a model.
+//!
+//! Differences of order p of a smooth signal vanish and leave `sqrt(binomial(2p, p))` times the
+//! noise. A switching input makes kinks, always at the same times after the switch: differences
+//! are therefore grouped by the number of samples since the input changed, and the quiet groups
+//! decide. Within a group a low quantile keeps what kinks remain from counting.
+
+/// Orders of difference that are tried.
+const ORDERS: [usize; 4] = [2, 3, 4, 5];
+
+/// Groups by samples since the last change of the input; later samples share the last group.
+const GROUPS: usize = 24;
+
+/// Fewest differences from which a group may speak.
+const MIN_GROUP: usize = 60;
+
+/// Quantile of the absolute differences that is read off: low, so that kinks do not count.
+const QUANTILE: f64 = 0.3;
+
+/// The same quantile of the absolute value of a standard normal variable.
+const NORMAL_QUANTILE: f64 = 0.385_320_466_407_567_6;
+
+/// Values that are looked at to find the step of a quantised channel.
+const QUANTUM_SAMPLES: usize = 4000;
+
+/// Standard deviation of the noise in `values`, in their unit; above 0 unless all are equal.
+///
+/// `input` is as long and tells when the signal may have kinks.
+pub fn noise_level(values: &[f64], input: &[f64]) -> f64 {
+    let quantum = quantum(values);
+    // A quantised signal is dithered by one step, evenly spread, so that quantiles are smooth.
+    let dithered: Vec<f64> = values
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v + quantum * (dither(i) - 0.5))
+        .collect();
+    let uniform = quantum * quantum / 12.0;
+    let groups = since_change(input);
+    let smallest = ORDERS
+        .iter()
+        .filter_map(|order| level_at_order(&dithered, &groups, *order))
+        .fold(f64::INFINITY, f64::min);
+    let variance = if smallest.is_finite() {
+        smallest * smallest - uniform
+    } else {
+        0.0
+    };
+    let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * 1e-9;
+    variance.max(uniform).max(rounding * rounding).sqrt()
+}
+
+/// Step of a quantised channel; 0 where none is seen.
+fn quantum(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.iter().take(QUANTUM_SAMPLES).copied().collect();
+    sorted.sort_by(f64::total_cmp);
+    let steps: Vec<f64> = sorted
+        .windows(2)
+        .map(|w| w[1] - w[0])
+        .filter(|d| *d > 0.0)
+        .collect();
+    let Some(least) = steps.iter().copied().min_by(f64::total_cmp) else {
+        return 0.0;
+    };
+    // The printed values are rounded, so the median of the single steps is better than the least.
+    let mut single: Vec<f64> = steps.iter().copied().filter(|d| *d < 1.5 * least).collect();
+    single.sort_by(f64::total_cmp);
+    let step = single[single.len() / 2];
+    let whole = steps.iter().filter(|d| {
+        let ratio = *d / step;
+        (ratio - ratio.round()).abs() < 0.02 * ratio.max(1.0).min(5.0)
+    });
+    if whole.count() as f64 > 0.95 * steps.len() as f64 {
+        step
+    } else {
+        0.0
+    }
+}
+
+/// Evenly spread over 0 to 1 and without pattern, the same on every machine (finaliser of `SplitMix64`).
+fn dither(i: usize) -> f64 {
+    let mut z = (i as u64)
+        .wrapping_add(1)
+        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// For each sample the number of samples since the input changed, at most `GROUPS - 1`.
+fn since_change(input: &[f64]) -> Vec<usize> {
+    let mut count = GROUPS - 1;
+    input
+        .iter()
+        .enumerate()
+        .map(|(i, u)| {
+            count = if i > 0 && *u != input[i - 1] {
+                0
+            } else {
+                (count + 1).min(GROUPS - 1)
+            };
+            count
+        })
+        .collect()
+}
+
+fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<f64> {
+    let signs = binomials(order);
+    let gain = signs.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let mut by_group: Vec<Vec<f64>> = vec![Vec::new(); GROUPS];
+    for (i, window) in values.windows(order + 1).enumerate() {
+        let difference: f64 = window.iter().zip(&signs).map(|(v, c)| v * c).sum();
+        by_group[groups[i + order]].push(difference.abs() / gain);
+    }
+    let mut levels: Vec<f64> = by_group
+        .iter_mut()
+        .filter(|g| g.len() >= MIN_GROUP)
+        .map(|g| {
+            let k = (QUANTILE * g.len() as f64) as usize;
+            *g.select_nth_unstable_by(k, f64::total_cmp).1 / NORMAL_QUANTILE
+        })
+        .collect();
+    if levels.is_empty() {
+        let mut all: Vec<f64> = by_group.concat();
+        if all.is_empty() {
+            return None;
+        }
+        let k = (QUANTILE * all.len() as f64) as usize;
+        return Some(*all.select_nth_unstable_by(k, f64::total_cmp).1 / NORMAL_QUANTILE);
+    }
+    levels.sort_by(f64::total_cmp);
+    // The least of many estimates is too small by chance, the upper ones may hold kinks.
+    Some(levels[levels.len() * 2 / 5])
+}
+
+/// Signed binomial coefficients of the difference of this order.
+fn binomials(order: usize) -> Vec<f64> {
+    let mut row = vec![1.0];
+    for _ in 0..order {
+        let mut next = vec![1.0];
+        next.extend(row.windows(2).map(|w| w[1] - w[0]));
+        next.push(-row[row.len() - 1]);
+        row = next;
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_have_binomial_weights() {
+        assert_eq!(binomials(2), [1.0, -2.0, 1.0]);
+        assert_eq!(binomials(3), [1.0, -3.0, 3.0, -1.0]);
+    }
+
+    #[test]
+    fn quantisation_alone_leaves_its_step_over_root_twelve() {
+        let step = 5.99e-6;
+        let values: Vec<f64> = (0..5000)
+            .map(|i| (0.01 * (f64::from(i) * 0.0123).sin() / step).round() * step)
+            .collect();
+        let noise = noise_level(&values, &vec![0.0; 5000]);
+        assert!(
+            (noise / (step / 12.0_f64.sqrt()) - 1.0).abs() < 0.1,
+            "{noise}"
+        );
+    }
+}

@@ -1,0 +1,67 @@
+//! Does an effect help beyond chance, and can two effects be told apart?
+//!
+//! Models are compared on held-back data by `n_eff ln(SSE_before / SSE_after)`, the likelihood-ratio
+//! statistic with the number of residuals divided by their autocorrelation, so that structured
+//! residuals do not pass for evidence.
+
+use super::fit::Score;
+
+/// Least statistic for an effect to be added. For a needless effect it is chi-squared with a few
+/// degrees of freedom; 30 keeps the chance below 1e-5 even for five parameters, and there are some
+/// ten candidates in each of a few steps.
+const LEAST_STATISTIC: f64 = 30.0;
+
+/// Least relative fall of the held-back error: what changes the error by less may be real, but is
+/// not what the model is missing.
+const LEAST_FALL: f64 = 0.03;
+
+/// Least share of the held-back blocks in which the error falls.
+const LEAST_BLOCKS: f64 = 0.6;
+
+/// Statistic below which two models count as the same within noise.
+const SAME_STATISTIC: f64 = 10.0;
+
+/// Relative difference of error above which two models differ whatever the statistic says.
+const SAME_SHARE: f64 = 0.01;
+
+/// Error, in noise units, and autocorrelation up to which a residual is noise: the noise level
+/// itself is known to some per cent only.
+const NOISE_ERROR: f64 = 1.15;
+const NOISE_CORRELATION: f64 = 2.0;
+
+/// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
+fn statistic(before: &Score, after: &Score) -> f64 {
+    let effective = after.held_count / after.correlation.max(1.0);
+    2.0 * effective * (before.error / after.error).ln()
+}
+
+/// Whether held-back data want the step from `before` to `after`.
+pub(super) fn helps(before: &Score, after: &Score) -> bool {
+    let better = before
+        .held_blocks
+        .iter()
+        .zip(&after.held_blocks)
+        .filter(|(b, a)| a < b)
+        .count();
+    statistic(before, after) > LEAST_STATISTIC
+        && after.error < (1.0 - LEAST_FALL) * before.error
+        && better as f64 > LEAST_BLOCKS * before.held_blocks.len() as f64
+}
+
+/// Whether two models with `a_len` and `b_len` parameters leave the same error within noise.
+pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
+    let penalty = (b_len as f64 - a_len as f64) * a.held_count.ln();
+    (statistic(b, a) + penalty).abs() < SAME_STATISTIC
+        && (a.error / b.error - 1.0).abs() < SAME_SHARE
+}
+
+/// Whether what is left is noise.
+pub(super) fn is_noise(score: &Score) -> bool {
+    score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION
+}
+
+/// Change of the Bayesian information criterion on the fitted part; negative is better.
+pub(super) fn delta_bic(before: &Score, before_len: usize, after: &Score, after_len: usize) -> f64 {
+    before.fit_count * (after.fit_cost / before.fit_cost).ln()
+        + (after_len as f64 - before_len as f64) * before.fit_count.ln()
+}

@@ -1,0 +1,129 @@
+//! A model structure: which baseline, which effects, and how a vector of values becomes a model.
+
+use super::baseline;
+use crate::effect::{Effect, Scales};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+/// Share of a parameter, or of its typical size, by which it is moved for a finite difference:
+/// far above the round-off of the exact flow, far below any curvature.
+const RELATIVE_STEP: f64 = 1e-6;
+
+/// Share of the typical size that stands in for a parameter near 0.
+const ZERO_SHARE: f64 = 0.01;
+
+/// Largest change of inertia or time constant in one step of a fit.
+const STEP_FACTOR: f64 = 4.0;
+
+/// Baseline and effects; the order of the values is baseline first, then effect by effect.
+#[derive(Clone)]
+pub(super) struct Structure {
+    pub kind: Kind,
+    pub effects: Vec<&'static dyn Effect>,
+}
+
+impl Structure {
+    pub fn new(kind: Kind, effects: Vec<&'static dyn Effect>) -> Self {
+        Self { kind, effects }
+    }
+
+    /// The same with one more effect.
+    pub fn with(&self, effect: &'static dyn Effect) -> Self {
+        let mut next = self.clone();
+        next.effects.push(effect);
+        next
+    }
+
+    /// The same without the effect at `index`.
+    pub fn without(&self, index: usize) -> Self {
+        let mut next = self.clone();
+        next.effects.remove(index);
+        next
+    }
+
+    /// Number of values of the baseline.
+    pub fn baseline_len(&self) -> usize {
+        baseline::parameters(self.kind).len()
+    }
+
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        self.baseline_len()
+            + self
+                .effects
+                .iter()
+                .map(|e| e.parameters().len())
+                .sum::<usize>()
+    }
+
+    /// Range of the values of the effect at `index`.
+    pub fn range(&self, index: usize) -> std::ops::Range<usize> {
+        let before: usize = self.effects[..index]
+            .iter()
+            .map(|e| e.parameters().len())
+            .sum();
+        let from = self.baseline_len() + before;
+        from..from + self.effects[index].parameters().len()
+    }
+
+    /// The model with these values.
+    pub fn model(&self, values: &[f64]) -> Model {
+        let mut model = baseline::model(self.kind, values);
+        for (index, effect) in self.effects.iter().enumerate() {
+            effect.apply(&values[self.range(index)], &mut model);
+        }
+        model
+    }
+
+    /// Moves the values into their ranges.
+    pub fn clamp(&self, values: &mut [f64], scales: &Scales) {
+        baseline::clamp(self.kind, values, scales);
+        for (index, effect) in self.effects.iter().enumerate() {
+            let range = self.range(index);
+            for (value, spec) in values[range].iter_mut().zip(effect.parameters()) {
+                *value = spec.clamp(*value, scales);
+            }
+        }
+    }
+
+    /// Keeps inertia or time constant within a factor of `present`: the motion goes with its inverse,
+    /// so that a linear step from a value far too large would overshoot below 0.
+    pub fn limit_step(&self, values: &mut [f64], present: &[f64]) {
+        let j = match self.kind {
+            Kind::Drive => 0,
+            Kind::Process => 1,
+        };
+        values[j] = values[j].clamp(present[j] / STEP_FACTOR, present[j] * STEP_FACTOR);
+    }
+
+    /// Steps for finite differences, one per value, pointing into the ranges.
+    pub fn difference_steps(&self, values: &[f64], scales: &Scales) -> Vec<f64> {
+        let mut sizes: Vec<f64> = baseline::parameters(self.kind)
+            .iter()
+            .zip(values)
+            .map(|(p, v)| {
+                let fallback = p.dimension.map_or(v.abs(), |d| match d {
+                    crate::effect::Dimension::Time => scales.time_constant,
+                    d => scales.of(d),
+                });
+                v.abs().max(ZERO_SHARE * fallback)
+            })
+            .collect();
+        for (index, effect) in self.effects.iter().enumerate() {
+            for (value, spec) in values[self.range(index)].iter().zip(effect.parameters()) {
+                sizes.push(value.abs().max(ZERO_SHARE * scales.of(spec.dimension)));
+            }
+        }
+        let mut steps: Vec<f64> = sizes.iter().map(|s| RELATIVE_STEP * s).collect();
+        for (j, step) in steps.iter_mut().enumerate() {
+            let mut moved = values.to_vec();
+            moved[j] += *step;
+            let wanted = moved[j];
+            self.clamp(&mut moved, scales);
+            if moved[j] != wanted {
+                *step = -*step;
+            }
+        }
+        steps
+    }
+}

@@ -1,0 +1,154 @@
+//! What the data say in the end, in plain words.
+
+use super::session::Scored;
+use super::{Parameter, Step, Verdict};
+use crate::effect::{self, Effect, EffectId};
+
+/// Effects that could stand in the place of one in the model.
+pub(super) type Class = Vec<&'static dyn Effect>;
+
+/// The verdict on a final model: `wanted` are its effects, `classes` what could replace each.
+pub(super) fn verdict(
+    wanted: &[&'static dyn Effect],
+    classes: &[Class],
+    parameters: &[Parameter],
+    model: &Scored,
+    complete: bool,
+) -> Verdict {
+    let missing: Vec<Vec<EffectId>> = wanted
+        .iter()
+        .enumerate()
+        .map(|(place, effect)| {
+            let others = classes.get(place).into_iter().flatten().map(|e| e.id());
+            in_registry_order(std::iter::once(effect.id()).chain(others).collect())
+        })
+        .collect();
+    let ambiguous = missing.iter().any(|class| class.len() > 1);
+    let mut text = if missing.is_empty() {
+        String::new()
+    } else {
+        let list: Vec<String> = missing
+            .iter()
+            .map(|class| describe(class, parameters))
+            .collect();
+        format!("Missing: {}. ", list.join("; "))
+    };
+    text.push_str(match (missing.is_empty(), complete) {
+        (true, true) => "Nothing is missing: what the model leaves is measurement noise.",
+        (false, true) => "With that, what is left is measurement noise.",
+        (true, false) => {
+            "The model leaves more than noise, but no effect in the library explains it."
+        }
+        (false, false) => {
+            "What is left is more than noise, but no further effect in the library explains it."
+        }
+    });
+    if !complete {
+        text.push_str(&format!(
+            " The error is {:.2} times the noise.",
+            model.score.error
+        ));
+    }
+    Verdict {
+        missing,
+        complete,
+        unknown: !complete,
+        next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
+        text,
+    }
+}
+
+/// For effects that act alike in one experiment.
+const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than two levels, such as a \
+    staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
+
+/// The verdict where a diagnosis was stopped before it settled.
+pub(super) fn undecided(steps: &[Step]) -> Verdict {
+    let last = steps.iter().min_by(|a, b| a.error.total_cmp(&b.error));
+    let missing = last.map_or_else(Vec::new, |step| {
+        step.effects
+            .iter()
+            .filter(|e| **e != effect::VISCOUS_FRICTION)
+            .map(|e| vec![*e])
+            .collect()
+    });
+    Verdict {
+        missing,
+        complete: false,
+        unknown: true,
+        next_experiment: None,
+        text: "Many effects help a little and none explains the rest: the model structure itself may be wrong.".to_owned(),
+    }
+}
+
+/// `Coulomb friction, friction level 0.0406 ± 0.0002 N m`.
+fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
+    let name = |id: EffectId| effect::find(id).map_or(id.as_str(), |e| e.name());
+    if class.len() > 1 {
+        let names: Vec<&str> = class.iter().map(|id| name(*id)).collect();
+        return format!(
+            "{} (this measurement cannot tell them apart)",
+            names.join(" or ")
+        );
+    }
+    let Some(id) = class.first() else {
+        return String::new();
+    };
+    let main = parameters.iter().find(|p| p.effect == Some(*id));
+    main.map_or_else(
+        || name(*id).to_owned(),
+        |p| {
+            format!(
+                "{}, {} {}",
+                name(*id),
+                p.label,
+                with_error(p.value, p.std_error, &p.unit)
+            )
+        },
+    )
+}
+
+/// Value and uncertainty with two digits of uncertainty, such as `0.0406 ± 0.0012 N m`.
+pub fn with_error(value: f64, error: f64, unit: &str) -> String {
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    if !error.is_finite() || error <= 0.0 {
+        return format!("{value:.4e}{unit}");
+    }
+    let place = error.abs().log10().floor() as i32 - 1;
+    let size = value.abs().max(error).log10().floor() as i32;
+    if size < -4 || size > 5 {
+        let digits = (size - place).clamp(0, 12) as usize;
+        let scale = 10_f64.powi(size);
+        return format!(
+            "({:.digits$} ± {:.digits$})e{size}{unit}",
+            value / scale,
+            error / scale
+        );
+    }
+    let digits = (-place).clamp(0, 12) as usize;
+    format!("{value:.digits$} ± {error:.digits$}{unit}")
+}
+
+fn in_registry_order(mut ids: Vec<EffectId>) -> Vec<EffectId> {
+    ids.sort_by_key(|id| effect::registry().iter().position(|e| e.id() == *id));
+    ids
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_error;
+
+    #[test]
+    fn digits_follow_the_uncertainty() {
+        assert_eq!(
+            with_error(0.040_563, 0.000_21, "N m"),
+            "0.04056 ± 0.00021 N m"
+        );
+        assert_eq!(with_error(29.87, 0.43, "s"), "29.87 ± 0.43 s");
+        assert_eq!(with_error(1.28e-5, 2.1e-7, "rad"), "(1.280 ± 0.021)e-5 rad");
+    }
+}

@@ -1,0 +1,50 @@
+//! A constant force or input that nobody commanded.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct ConstantLoad;
+
+impl Effect for ConstantLoad {
+    fn id(&self) -> EffectId {
+        EffectId::new("constant_load")
+    }
+
+    fn name(&self) -> &'static str {
+        "Constant load"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Something pushes all the time with the same force, such as a hanging weight or an offset of the amplifier."
+    }
+
+    fn equation(&self) -> &'static str {
+        "u_acting = u + F0"
+    }
+
+    fn source(&self) -> &'static str {
+        "constant load disturbance: Åström and Hägglund, Advanced PID Control, 2006"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive, Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[ParameterSpec {
+            symbol: "F0",
+            label: "constant load",
+            dimension: Dimension::Force,
+            range: Range::Signed,
+        }]
+    }
+
+    fn starts(&self, _scales: &Scales) -> Vec<Vec<f64>> {
+        vec![vec![0.0]]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.constant_force += values[0];
+    }
+}

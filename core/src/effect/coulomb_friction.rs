@@ -1,0 +1,72 @@
+//! Coulomb friction: a constant force against the motion, and sticking at rest.
+//!
+//! No contact is infinitely stiff: after a reversal the force needs a small deflection `s` to build
+//! up. On a drive that reverses every few samples, leaving `s` out bends the friction level by tens
+//! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
+//! none it goes to 0 and the contact is rigid.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct CoulombFriction;
+
+impl Effect for CoulombFriction {
+    fn id(&self) -> EffectId {
+        EffectId::new("coulomb_friction")
+    }
+
+    fn name(&self) -> &'static str {
+        "Coulomb friction"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Dry friction pushes against the motion with the same force at every speed, and holds the drive still until the push exceeds it."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = -c sgn(v) while moving; at rest F balances the input as long as |input| <= c"
+    }
+
+    fn source(&self) -> &'static str {
+        "C.-A. de Coulomb, Théorie des machines simples, 1785; stick-slip as in Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "c",
+                label: "friction level",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "s",
+                label: "displacement over which friction builds up",
+                dimension: Dimension::Position,
+                range: Range::NonNegative,
+            },
+        ]
+    }
+
+    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
+        // The deflection is seen if it takes about a sample to cross after a reversal.
+        let crossed = scales.force / scales.inertia * scales.step * scales.step;
+        let mut starts = Vec::new();
+        for share in [0.03, 0.1, 0.3] {
+            for samples in [0.01, 0.5] {
+                starts.push(vec![share * scales.force, samples * crossed]);
+            }
+        }
+        starts
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.dry_friction += values[0];
+        model.presliding = values[1];
+    }
+}

@@ -1,0 +1,53 @@
+//! Different gain for positive and negative input.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct GainAsymmetry;
+
+impl Effect for GainAsymmetry {
+    fn id(&self) -> EffectId {
+        EffectId::new("gain_asymmetry")
+    }
+
+    fn name(&self) -> &'static str {
+        "Gain asymmetry"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The actuator is stronger in one direction than in the other."
+    }
+
+    fn equation(&self) -> &'static str {
+        "u_acting = (1 + a) u for u > 0, (1 - a) u for u < 0"
+    }
+
+    fn source(&self) -> &'static str {
+        "asymmetric relay gain, equation (2) of the paper, here in the actuator"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive, Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[ParameterSpec {
+            symbol: "a",
+            label: "asymmetry",
+            dimension: Dimension::Ratio,
+            range: Range::Fraction,
+        }]
+    }
+
+    fn starts(&self, _scales: &Scales) -> Vec<Vec<f64>> {
+        vec![vec![0.0]]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        let a = values[0];
+        model.input_maps.push(Box::new(move |u| {
+            (1.0 + a * f64::from(i8::from(u > 0.0) - i8::from(u < 0.0))) * u
+        }));
+    }
+}

@@ -1,0 +1,63 @@
+//! Dead time between the commanded and the acting input.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct InputDelay;
+
+/// Dead times are tried from half a sample to this share of the record.
+const LONGEST_SHARE: f64 = 0.1;
+
+/// Starting values that cover that span evenly on a log scale.
+const STARTS: u32 = 12;
+
+impl Effect for InputDelay {
+    fn id(&self) -> EffectId {
+        EffectId::new("input_delay")
+    }
+
+    fn name(&self) -> &'static str {
+        "Input delay"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The command takes effect a fixed time after it was given: nothing happens, then all of it."
+    }
+
+    fn equation(&self) -> &'static str {
+        "u_acting(t) = u(t - tau)"
+    }
+
+    fn source(&self) -> &'static str {
+        "dead time L of the plant: Åström and Hägglund, Advanced PID Control, 2006"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive, Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[ParameterSpec {
+            symbol: "tau",
+            label: "dead time",
+            dimension: Dimension::Time,
+            range: Range::NonNegative,
+        }]
+    }
+
+    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
+        let shortest = 0.5 * scales.step;
+        let longest = LONGEST_SHARE * scales.duration.min(1000.0 * scales.step);
+        let ratio = (longest / shortest)
+            .max(1.0)
+            .powf(1.0 / f64::from(STARTS - 1));
+        (0..STARTS)
+            .map(|i| vec![shortest * ratio.powf(f64::from(i))])
+            .collect()
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.delay += values[0];
+    }
+}

@@ -1,0 +1,53 @@
+//! A second first-order lag in series with the process.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct SecondLag;
+
+impl Effect for SecondLag {
+    fn id(&self) -> EffectId {
+        EffectId::new("second_lag")
+    }
+
+    fn name(&self) -> &'static str {
+        "Second lag"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The process has a second storage in series, so that its output starts to move gently instead of at once."
+    }
+
+    fn equation(&self) -> &'static str {
+        "T_2 du_acting/dt = u - u_acting, in series with the first lag"
+    }
+
+    fn source(&self) -> &'static str {
+        "second-order lag: Åström and Hägglund, Advanced PID Control, 2006"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[ParameterSpec {
+            symbol: "T2",
+            label: "second time constant",
+            dimension: Dimension::Time,
+            range: Range::Positive,
+        }]
+    }
+
+    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
+        [0.02, 0.05, 0.1, 0.2, 0.4, 0.8]
+            .iter()
+            .map(|share| vec![share * scales.time_constant])
+            .collect()
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.lag = Some(values[0]);
+    }
+}

@@ -1,0 +1,337 @@
+//! Exact flow of a damped body behind a first-order lag, under a held input.
+//!
+//! ```text
+//! x' = v      v' = -lambda v + b (z + q)      z' = -mu (z - w)
+//! ```
+//!
+//! with constant `w` (input) and `q` (friction and load). Without a lag `z = w`. The solution is
+//! affine in `(x, v, z, w, q)`; its coefficients depend on the duration only and are cached, since
+//! measurements are sampled at equal distances.
+
+/// Coefficients of the solution after a duration `h`.
+#[derive(Clone, Copy, Debug)]
+struct Coefficients {
+    /// Duration, s.
+    h: f64,
+    /// `exp(-lambda h)`.
+    decay: f64,
+    /// `exp(-mu h)`.
+    lag_decay: f64,
+    /// Velocity per unit of constant acceleration: `int_0^h exp(-lambda s) ds`.
+    phi1: f64,
+    /// Position per unit of constant acceleration.
+    phi2: f64,
+    /// Velocity per unit of decaying acceleration `exp(-mu s)`.
+    psi1: f64,
+    /// Position per unit of decaying acceleration.
+    psi2: f64,
+}
+
+/// Above this `rate * h` closed forms are used, below it power series: each is accurate there to
+/// a few units of round-off, where the other one cancels or converges slowly.
+const SERIES_LIMIT: f64 = 0.5;
+
+/// Terms of the series; `0.5^18 / 18!` is far below round-off.
+const SERIES_TERMS: u32 = 18;
+
+/// Durations closer than this share of each other use the same coefficients; the error is the
+/// same share of one sample's motion, far below round-off of the file.
+const SAME_DURATION: f64 = 1e-12;
+
+impl Coefficients {
+    fn new(lambda: f64, mu: Option<f64>, h: f64) -> Self {
+        let mu_value = mu.unwrap_or(0.0);
+        if h * lambda.abs().max(mu_value.abs()) < SERIES_LIMIT {
+            return Self::series(lambda, mu_value, h);
+        }
+        let phi1_of = |rate: f64| {
+            if rate * h == 0.0 {
+                h
+            } else {
+                -(-rate * h).exp_m1() / rate
+            }
+        };
+        let phi1 = phi1_of(lambda);
+        let phi2 = if lambda.abs() * h < SERIES_LIMIT {
+            Self::series(lambda, 0.0, h).phi2
+        } else {
+            (h - phi1) / lambda
+        };
+        // Equal rates are a removable singularity of the divided differences.
+        let near = (lambda - mu_value).abs() < 1e-6 * lambda.abs().max(mu_value.abs());
+        let mu_apart = if near {
+            mu_value * (1.0 + 1e-6) + f64::MIN_POSITIVE
+        } else {
+            mu_value
+        };
+        let (decay, lag_decay) = ((-lambda * h).exp(), (-mu_value * h).exp());
+        let psi1 = ((-mu_apart * h).exp() - decay) / (lambda - mu_apart);
+        let psi2 = (phi1_of(mu_apart) - phi1) / (lambda - mu_apart);
+        Self {
+            h,
+            decay,
+            lag_decay,
+            phi1,
+            phi2,
+            psi1,
+            psi2,
+        }
+    }
+
+    fn series(lambda: f64, mu: f64, h: f64) -> Self {
+        let (mut phi1, mut phi2, mut psi1, mut psi2) = (0.0, 0.0, 0.0, 0.0);
+        // Taylor terms of exp(-lambda h), exp(-mu h) and of psi1, each of order k.
+        let (mut decay_term, mut lag_term, mut psi_term) = (1.0, 1.0, 0.0);
+        let (mut decay, mut lag_decay) = (1.0, 1.0);
+        for k in 0..SERIES_TERMS {
+            let k = f64::from(k);
+            phi1 += decay_term * h / (k + 1.0);
+            phi2 += decay_term * h * h / ((k + 1.0) * (k + 2.0));
+            psi_term = (lag_term - lambda * psi_term) * h / (k + 1.0);
+            psi1 += psi_term;
+            psi2 += psi_term * h / (k + 2.0);
+            decay_term *= -lambda * h / (k + 1.0);
+            lag_term *= -mu * h / (k + 1.0);
+            decay += decay_term;
+            lag_decay += lag_term;
+        }
+        Self {
+            h,
+            decay,
+            lag_decay,
+            phi1,
+            phi2,
+            psi1,
+            psi2,
+        }
+    }
+}
+
+/// Position, velocity and lagged input.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(super) struct Motion {
+    pub x: f64,
+    pub v: f64,
+    pub z: f64,
+}
+
+/// A body with its rates, and the coefficients of the durations used last.
+#[derive(Clone, Debug)]
+pub(super) struct Flow {
+    lambda: f64,
+    /// Inverse inertia.
+    pub b: f64,
+    mu: Option<f64>,
+    cache: Vec<Coefficients>,
+}
+
+impl Flow {
+    /// `inertia` and `viscous` friction of the body; `lag` in s.
+    pub fn new(inertia: f64, viscous: f64, lag: Option<f64>) -> Self {
+        Self {
+            lambda: viscous / inertia,
+            b: 1.0 / inertia,
+            mu: lag.map(|tau| 1.0 / tau),
+            cache: Vec::new(),
+        }
+    }
+
+    /// Whether the input reaches the body through a lag.
+    pub fn lagged(&self) -> bool {
+        self.mu.is_some()
+    }
+
+    /// Computes the coefficients of a duration that will recur.
+    pub fn prepare(&mut self, h: f64) {
+        self.cache.push(Coefficients::new(self.lambda, self.mu, h));
+    }
+
+    /// Like [`Flow::after`], quick for the durations that were prepared.
+    pub fn after_cached(&self, m: Motion, w: f64, q: f64, h: f64) -> Motion {
+        let found = self
+            .cache
+            .iter()
+            .find(|c| (c.h - h).abs() <= SAME_DURATION * h);
+        match found {
+            Some(c) => self.apply(c, m, w, q),
+            None => self.after(m, w, q, h),
+        }
+    }
+
+    /// State after `h` seconds with input `w` and force `q`.
+    pub fn after(&self, m: Motion, w: f64, q: f64, h: f64) -> Motion {
+        self.apply(&Coefficients::new(self.lambda, self.mu, h), m, w, q)
+    }
+
+    /// Acceleration in state `m`.
+    pub fn acceleration(&self, m: Motion, q: f64) -> f64 {
+        self.b * (m.z + q) - self.lambda * m.v
+    }
+
+    fn apply(&self, c: &Coefficients, m: Motion, w: f64, q: f64) -> Motion {
+        let steady = self.b * (w + q);
+        let (x, v) = (
+            m.x + m.v * c.phi1 + steady * c.phi2,
+            m.v * c.decay + steady * c.phi1,
+        );
+        if self.mu.is_none() {
+            return Motion { x, v, z: w };
+        }
+        let fading = self.b * (m.z - w);
+        Motion {
+            x: x + fading * c.psi2,
+            v: v + fading * c.psi1,
+            z: w + (m.z - w) * c.lag_decay,
+        }
+    }
+
+    /// Time until the lagged input reaches `target` on its way to `w`, if it does.
+    pub fn lag_reaches(&self, z: f64, w: f64, target: f64) -> Option<f64> {
+        let share = (target - w) / (z - w);
+        let mu = self.mu?;
+        (share > 0.0 && share <= 1.0).then(|| -share.ln() / mu)
+    }
+}
+
+/// Exact flow of a body held by a spring: `y' = v`, `v' = -kappa y - lambda v + b (z + q)`, the
+/// input behind the same lag as in [`Flow`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spring {
+    lambda: f64,
+    kappa: f64,
+    b: f64,
+    mu: Option<f64>,
+}
+
+impl Spring {
+    /// A body of `inertia` on a spring of `stiffness` with `damping`; `lag` in s.
+    pub fn new(inertia: f64, stiffness: f64, damping: f64, lag: Option<f64>) -> Self {
+        Self {
+            lambda: damping / inertia,
+            kappa: stiffness / inertia,
+            b: 1.0 / inertia,
+            mu: lag.map(|tau| 1.0 / tau),
+        }
+    }
+
+    /// Natural angular frequency, rad/s.
+    pub fn frequency(&self) -> f64 {
+        self.kappa.sqrt()
+    }
+
+    /// State after `h` seconds, with `m.x` the deflection of the spring.
+    pub fn after(&self, m: Motion, w: f64, q: f64, h: f64) -> Motion {
+        let rest = self.b * (w + q) / self.kappa;
+        // Particular solution of the fading part of the lagged input.
+        let (fading, mu, z) = match self.mu {
+            None => (0.0, 0.0, w),
+            Some(mu) => {
+                let gain = self.b / (mu * mu - self.lambda * mu + self.kappa);
+                ((m.z - w) * gain, mu, w + (m.z - w) * (-mu * h).exp())
+            }
+        };
+        let (y0, v0) = (m.x - rest - fading, m.v + mu * fading);
+        let alpha = 0.5 * self.lambda;
+        let square = self.kappa - alpha * alpha;
+        let (cosine, sine) = if square > 0.0 {
+            let omega = square.sqrt();
+            ((omega * h).cos(), (omega * h).sin() / omega)
+        } else if square < 0.0 {
+            let omega = (-square).sqrt();
+            ((omega * h).cosh(), (omega * h).sinh() / omega)
+        } else {
+            (1.0, h)
+        };
+        let envelope = (-alpha * h).exp();
+        let late = fading * (-mu * h).exp();
+        Motion {
+            x: rest + late + envelope * (y0 * (cosine + alpha * sine) + v0 * sine),
+            v: -mu * late + envelope * (v0 * (cosine - alpha * sine) - self.kappa * y0 * sine),
+            z,
+        }
+    }
+}
+
+/// Root of `f` between 0 and `h`, where `f(0)` and `f(h)` have different signs.
+///
+/// Regula falsi with the Illinois rule, safeguarded by bisection; stops at `1e-13 h`.
+pub(super) fn root(h: f64, f0: f64, fh: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut a, mut fa, mut b, mut fb) = (0.0, f0, h, fh);
+    for i in 0..80 {
+        if fb == 0.0 || (b - a).abs() <= 1e-13 * h {
+            return b;
+        }
+        let falsi = b - fb * (b - a) / (fb - fa);
+        let c = if i % 8 == 7 || !falsi.is_finite() {
+            0.5 * (a + b)
+        } else {
+            falsi
+        };
+        let fc = f(c);
+        if (fc < 0.0) == (fb < 0.0) {
+            fa *= 0.5;
+        } else {
+            (a, fa) = (b, fb);
+        }
+        (b, fb) = (c, fc);
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fourth-order Runge-Kutta with many steps, as an independent reference.
+    fn integrate(lambda: f64, b: f64, mu: f64, m: Motion, w: f64, q: f64, h: f64) -> Motion {
+        let n = 20_000;
+        let dt = h / f64::from(n);
+        let f = |s: [f64; 3]| [s[1], -lambda * s[1] + b * (s[2] + q), -mu * (s[2] - w)];
+        let mut s = [m.x, m.v, m.z];
+        let add =
+            |s: [f64; 3], k: [f64; 3], c: f64| [s[0] + c * k[0], s[1] + c * k[1], s[2] + c * k[2]];
+        for _ in 0..n {
+            let k1 = f(s);
+            let k2 = f(add(s, k1, dt / 2.0));
+            let k3 = f(add(s, k2, dt / 2.0));
+            let k4 = f(add(s, k3, dt));
+            for i in 0..3 {
+                s[i] += dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+            }
+        }
+        Motion {
+            x: s[0],
+            v: s[1],
+            z: s[2],
+        }
+    }
+
+    #[test]
+    fn agrees_with_runge_kutta_for_slow_fast_and_equal_rates() {
+        let start = Motion {
+            x: 0.3,
+            v: -1.2,
+            z: 0.7,
+        };
+        for (lambda, mu, h) in [
+            (2.0, 3.0, 0.01),
+            (2.0, 50.0, 0.1),
+            (40.0, 3.0, 0.1),
+            (20.0, 20.0, 0.1),
+        ] {
+            let flow = Flow::new(0.5, 0.5 * lambda, Some(1.0 / mu));
+            let exact = flow.after(start, -0.4, 0.25, h);
+            let reference = integrate(lambda, 2.0, mu, start, -0.4, 0.25, h);
+            let tolerance = if lambda == mu { 2e-8 } else { 1e-11 };
+            assert!((exact.x - reference.x).abs() < tolerance, "{lambda} {mu}");
+            assert!((exact.v - reference.v).abs() < tolerance, "{lambda} {mu}");
+            assert!((exact.z - reference.z).abs() < tolerance, "{lambda} {mu}");
+        }
+    }
+
+    #[test]
+    fn root_finds_a_crossing_to_round_off() {
+        let f = |t: f64| (t - 0.3).mul_add(1.0, (t - 0.3).powi(3));
+        assert!((root(1.0, f(0.0), f(1.0), f) - 0.3).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,214 @@
+//! Replay: a model driven by a measured input, restarted at the windows' estimated states.
+
+use super::{Engine, Model, State};
+
+/// A time step within this share of the mean one counts as equal: files round their time column.
+const UNIFORM_TOLERANCE: f64 = 0.02;
+
+/// Where a window starts and from which state of the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// Index of the first sample.
+    pub sample: usize,
+    /// Position there, rad or m; 0 where it cannot be known.
+    pub position: f64,
+    /// Velocity there, rad/s or m/s; the output of a process.
+    pub velocity: f64,
+}
+
+/// A measured input, held between samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excitation {
+    time: Vec<f64>,
+    input: Vec<f64>,
+    /// Input before the record starts.
+    before: f64,
+    /// Sampling time in s, if equal throughout.
+    step: Option<f64>,
+}
+
+impl Excitation {
+    /// `time` in s strictly increasing, `input` as long; `before` acted until the record starts.
+    pub fn new(time: &[f64], input: &[f64], before: f64) -> Self {
+        let n = time.len();
+        let mean = (time[n - 1] - time[0]) / (n - 1) as f64;
+        let uniform = time
+            .iter()
+            .enumerate()
+            .all(|(i, t)| (t - time[0] - mean * i as f64).abs() < UNIFORM_TOLERANCE * mean);
+        Self {
+            time: time.to_vec(),
+            input: input.to_vec(),
+            before,
+            step: uniform.then_some(mean),
+        }
+    }
+
+    /// The first `n` samples.
+    #[must_use]
+    pub fn head(&self, n: usize) -> Self {
+        Self {
+            time: self.time[..n].to_vec(),
+            input: self.input[..n].to_vec(),
+            ..*self
+        }
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Mean sampling time, s.
+    pub fn mean_step(&self) -> f64 {
+        (self.time[self.len() - 1] - self.time[0]) / (self.len() - 1) as f64
+    }
+
+    /// Runs `model` through the whole record and writes position and velocity at every sample.
+    ///
+    /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
+    /// given there; hidden states (lagged input, load) go on from the window before.
+    pub fn replay(
+        &self,
+        model: &Model,
+        starts: &[Start],
+        position: &mut [f64],
+        velocity: &mut [f64],
+    ) {
+        let mut engine = Engine::new(model);
+        let mapped: Vec<f64> = self.input.iter().map(|u| model.map_input(*u)).collect();
+        let before = model.map_input(self.before);
+        let mut path = DelayedInput::new(self, &mapped, before, model.delay);
+        path.prepare(&mut engine);
+        let mut state = State::at_rest(before);
+        let mut next = starts.iter().peekable();
+        for i in 0..self.len() {
+            if let Some(start) = next.next_if(|s| s.sample == i) {
+                state = state.restarted(start.position, start.velocity);
+            }
+            position[i] = state.position();
+            velocity[i] = state.velocity();
+            if i + 1 < self.len() {
+                path.pieces(i, |w, h| engine.advance(&mut state, w, h));
+            }
+        }
+    }
+
+    /// The input that reaches the body: mapped, delayed and lagged, as its mean over each interval.
+    pub fn effective_input(&self, model: &Model) -> Vec<f64> {
+        let mapped: Vec<f64> = self.input.iter().map(|u| model.map_input(*u)).collect();
+        let before = model.map_input(self.before);
+        let mut path = DelayedInput::new(self, &mapped, before, model.delay);
+        let mut z = before;
+        (0..self.len().saturating_sub(1))
+            .map(|i| {
+                let (mut sum, mut duration) = (0.0, 0.0);
+                path.pieces(i, |w, h| {
+                    sum += match model.lag {
+                        None => w * h,
+                        Some(tau) => {
+                            let fading = tau * -(-h / tau).exp_m1() * (z - w);
+                            z = w + (z - w) * (-h / tau).exp();
+                            w * h + fading
+                        }
+                    };
+                    duration += h;
+                });
+                sum / duration
+            })
+            .collect()
+    }
+}
+
+/// The held input shifted by a dead time, as pieces of constant value in each sampling interval.
+struct DelayedInput<'a> {
+    excitation: &'a Excitation,
+    mapped: &'a [f64],
+    before: f64,
+    delay: f64,
+    /// For equal steps: whole samples and the rest of the dead time.
+    whole: usize,
+    rest: f64,
+    /// For unequal steps: first sample whose delayed value may still act.
+    pointer: usize,
+}
+
+impl<'a> DelayedInput<'a> {
+    fn new(excitation: &'a Excitation, mapped: &'a [f64], before: f64, delay: f64) -> Self {
+        let delay = delay.max(0.0);
+        let (mut whole, mut rest) = (0, 0.0);
+        if let Some(step) = excitation.step {
+            let samples = (delay / step).min(excitation.len() as f64);
+            whole = samples.floor() as usize;
+            rest = (samples - samples.floor()) * step;
+            // A rest of round-off size is no piece of its own.
+            if rest < 1e-9 * step {
+                rest = 0.0;
+            } else if step - rest < 1e-9 * step {
+                whole += 1;
+                rest = 0.0;
+            }
+        }
+        Self {
+            excitation,
+            mapped,
+            before,
+            delay,
+            whole,
+            rest,
+            pointer: 0,
+        }
+    }
+
+    fn prepare(&self, engine: &mut Engine) {
+        if let Some(step) = self.excitation.step {
+            engine.prepare(step);
+            if self.rest > 0.0 {
+                engine.prepare(self.rest);
+                engine.prepare(step - self.rest);
+            }
+        }
+    }
+
+    fn value(&self, sample: Option<usize>) -> f64 {
+        sample.map_or(self.before, |i| self.mapped[i])
+    }
+
+    /// Calls `go(value, duration)` for each piece between samples `i` and `i + 1`.
+    fn pieces(&mut self, i: usize, mut go: impl FnMut(f64, f64)) {
+        let Some(step) = self.excitation.step else {
+            return self.uneven_pieces(i, go);
+        };
+        let late = self.value(i.checked_sub(self.whole));
+        if self.rest == 0.0 {
+            return go(late, step);
+        }
+        let early = self.value(i.checked_sub(self.whole + 1));
+        if early == late {
+            go(late, step);
+        } else {
+            go(early, self.rest);
+            go(late, step - self.rest);
+        }
+    }
+
+    fn uneven_pieces(&mut self, i: usize, mut go: impl FnMut(f64, f64)) {
+        let time = &self.excitation.time;
+        let (mut now, end) = (time[i], time[i + 1]);
+        while now < end {
+            while self.pointer < time.len() && time[self.pointer] + self.delay <= now {
+                self.pointer += 1;
+            }
+            let until = time
+                .get(self.pointer)
+                .map_or(end, |t| (t + self.delay).min(end));
+            go(self.value(self.pointer.checked_sub(1)), until - now);
+            now = until;
+        }
+    }
+}
