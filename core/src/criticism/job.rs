@@ -274,11 +274,7 @@ impl StepJob {
 
     /// The effect to add next: the best that helps; of equals the one with fewer parameters.
     fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
-        let helping = || {
-            self.tried
-                .iter()
-                .filter(|(_, s)| helps(&model.score, &s.score))
-        };
+        let helping = || self.tried.iter().filter(|(_, s)| helps_clearly(model, s));
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
             .filter(|(_, s)| {
@@ -379,8 +375,8 @@ impl StepJob {
                     .iter()
                     .filter(|(other, o)| {
                         other.id() != effect.id()
-                            && helps(&model.score, &scored.score)
-                            && helps(&model.score, &o.score)
+                            && helps_clearly(model, scored)
+                            && helps_clearly(model, o)
                             && same(
                                 &scored.score,
                                 scored.fit.values.len(),
@@ -403,7 +399,7 @@ impl StepJob {
                     } else {
                         delta_bic(&model.score, length, &scored.score, scored.fit.values.len())
                     },
-                    significant: helps(&model.score, &scored.score),
+                    significant: helps_clearly(model, scored),
                     parameters: self
                         .session
                         .parameters(scored)
@@ -432,6 +428,30 @@ impl StepJob {
         }?;
         Some((self.session, next))
     }
+}
+
+/// Fall of the error below which the leading parameter of an effect must stand out by itself.
+const LARGE_FALL: f64 = 0.1;
+
+/// Standard errors by which it must differ from 0 then.
+const CLEAR_ERRORS: f64 = 3.0;
+
+/// Whether the last effect of `with` helps `model`, and is itself seen if it helps only a little.
+fn helps_clearly(model: &Scored, with: &Scored) -> bool {
+    if !helps(&model.score, &with.score) {
+        return false;
+    }
+    if with.score.error < (1.0 - LARGE_FALL) * model.score.error {
+        return true;
+    }
+    let leading = model.fit.values.len();
+    let inflation = with.score.error_fit.powi(2).max(1.0) * with.score.correlation.max(1.0);
+    let errors = with.fit.standard_errors(inflation);
+    with.fit
+        .values
+        .get(leading)
+        .zip(errors.get(leading))
+        .is_some_and(|(v, e)| v.abs() > CLEAR_ERRORS * e)
 }
 
 /// From the baseline to the verdict: adds what helps, removes what is not needed, until nothing does.

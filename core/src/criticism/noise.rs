@@ -67,7 +67,7 @@ fn quantum(values: &[f64]) -> f64 {
     let step = single[single.len() / 2];
     let whole = steps.iter().filter(|d| {
         let ratio = *d / step;
-        (ratio - ratio.round()).abs() < 0.02 * ratio.max(1.0).min(5.0)
+        (ratio - ratio.round()).abs() < 0.02 * ratio.clamp(1.0, 5.0)
     });
     if whole.count() as f64 > 0.95 * steps.len() as f64 {
         step

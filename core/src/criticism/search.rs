@@ -18,6 +18,9 @@ const HOPELESS: f64 = 10.0;
 /// A regressed baseline that differs by less than this share from the present one is no new start.
 const WORTH_A_START: f64 = 0.2;
 
+/// Effects with at most this many starting values have one valley.
+const FEW_STARTS: usize = 1;
+
 /// Starting points that are followed to the end.
 const FINALISTS: usize = 2;
 
@@ -56,20 +59,61 @@ impl Search {
         for start in effect.starts(scales) {
             let mut values = fit.values.clone();
             values.extend(&start);
-            let mut regressed = values.clone();
-            points.push((values, fit.starts.clone()));
-            let model = structure.model(&regressed);
-            if let Some(guess) = baseline::guess(data, &data.excitation.effective_input(&model))
-                && guess
-                    .iter()
-                    .zip(&fit.values)
-                    .any(|(g, v)| (g - v).abs() > WORTH_A_START * v.abs())
-            {
-                regressed[..guess.len()].copy_from_slice(&guess);
-                points.push((regressed, data.guessed_starts()));
+            points.push((values.clone(), fit.starts.clone()));
+            points.extend(Self::regressed(data, fit, &structure, values));
+        }
+        points.extend(Self::other_valleys(data, fit, &structure, effect, scales));
+        Self::from_points(structure, points, fit.cost)
+    }
+
+    /// The same point with the baseline regressed anew, if that is somewhere else.
+    fn regressed(
+        data: &Data,
+        fit: &Fit,
+        structure: &Structure,
+        mut values: Vec<f64>,
+    ) -> Option<(Vec<f64>, Vec<Start>)> {
+        let guess = baseline::guess(
+            data,
+            &data.excitation.effective_input(&structure.model(&values)),
+        )?;
+        let far = guess
+            .iter()
+            .zip(&fit.values)
+            .any(|(g, v)| (g - v).abs() > WORTH_A_START * v.abs());
+        values[..guess.len()].copy_from_slice(&guess);
+        far.then(|| (values, data.guessed_starts()))
+    }
+
+    /// An effect found while another one was missing may sit in a wrong valley: its own starting
+    /// values are tried again together with the new effect.
+    fn other_valleys(
+        data: &Data,
+        fit: &Fit,
+        structure: &Structure,
+        effect: &'static dyn Effect,
+        scales: &Scales,
+    ) -> Vec<(Vec<f64>, Vec<Start>)> {
+        let mut points = Vec::new();
+        let own = effect.starts(scales);
+        if own.len() > FEW_STARTS {
+            return points;
+        }
+        for (index, present) in fit.structure.effects.iter().enumerate() {
+            let starts = present.starts(scales);
+            if starts.len() <= FEW_STARTS || present.parameters().len() > 1 {
+                continue;
+            }
+            for start in &own {
+                for other in &starts {
+                    let mut values = fit.values.clone();
+                    values[fit.structure.range(index)].copy_from_slice(other);
+                    values.extend(start);
+                    points.extend(Self::regressed(data, fit, structure, values));
+                }
             }
         }
-        Self::from_points(structure, points, fit.cost)
+        points
     }
 
     /// Refits without the effect at `index`.

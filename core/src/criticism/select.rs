@@ -18,8 +18,8 @@ const LEAST_FALL: f64 = 0.03;
 /// Least share of the held-back blocks in which the error falls.
 const LEAST_BLOCKS: f64 = 0.6;
 
-/// Statistic below which two models count as the same within noise.
-const SAME_STATISTIC: f64 = 10.0;
+/// Statistic below which two models count as the same within noise: near what it takes to add one.
+const SAME_STATISTIC: f64 = 25.0;
 
 /// Relative difference of error above which two models differ whatever the statistic says.
 const SAME_SHARE: f64 = 0.01;
@@ -28,6 +28,9 @@ const SAME_SHARE: f64 = 0.01;
 /// itself is known to some per cent only.
 const NOISE_ERROR: f64 = 1.15;
 const NOISE_CORRELATION: f64 = 2.0;
+
+/// Error up to which what is left is noise even if it is correlated.
+const SURE_NOISE_ERROR: f64 = 1.05;
 
 /// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
 fn statistic(before: &Score, after: &Score) -> f64 {
@@ -57,7 +60,8 @@ pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
 
 /// Whether what is left is noise.
 pub(super) fn is_noise(score: &Score) -> bool {
-    score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION
+    score.error < SURE_NOISE_ERROR
+        || (score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
 }
 
 /// Change of the Bayesian information criterion on the fitted part; negative is better.

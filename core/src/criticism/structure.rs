@@ -46,16 +46,6 @@ impl Structure {
         baseline::parameters(self.kind).len()
     }
 
-    /// Number of values.
-    pub fn len(&self) -> usize {
-        self.baseline_len()
-            + self
-                .effects
-                .iter()
-                .map(|e| e.parameters().len())
-                .sum::<usize>()
-    }
-
     /// Range of the values of the effect at `index`.
     pub fn range(&self, index: usize) -> std::ops::Range<usize> {
         let before: usize = self.effects[..index]

@@ -1,5 +1,7 @@
 //! What the data say in the end, in plain words.
 
+use std::fmt::Write as _;
+
 use super::session::Scored;
 use super::{Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId};
@@ -44,10 +46,11 @@ pub(super) fn verdict(
         }
     });
     if !complete {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             " The error is {:.2} times the noise.",
             model.score.error
-        ));
+        );
     }
     Verdict {
         missing,
@@ -120,7 +123,7 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     }
     let place = error.abs().log10().floor() as i32 - 1;
     let size = value.abs().max(error).log10().floor() as i32;
-    if size < -4 || size > 5 {
+    if !(-4..=5).contains(&size) {
         let digits = (size - place).clamp(0, 12) as usize;
         let scale = 10_f64.powi(size);
         return format!(
