@@ -4,7 +4,15 @@
 //! Time is strictly increasing and every value is finite: [`Measurement::new`]
 //! refuses anything else, so that no later module has to check again.
 
+mod csv;
+mod error;
+mod header;
+mod unit;
+
 use serde::{Deserialize, Serialize};
+
+pub use csv::import_csv;
+pub use error::{ImportError, Problem};
 
 /// What kind of system was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

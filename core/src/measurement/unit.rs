@@ -1,0 +1,140 @@
+//! Units of columns, as people spell them, and their factors to SI.
+
+/// What a unit measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Measures {
+    Time,
+    Torque,
+    Force,
+    Angle,
+    Length,
+    AngularVelocity,
+    Speed,
+    Other,
+}
+
+impl Measures {
+    /// SI unit as written on screen.
+    pub fn si(self) -> &'static str {
+        match self {
+            Self::Time => "s",
+            Self::Torque => "N m",
+            Self::Force => "N",
+            Self::Angle => "rad",
+            Self::Length => "m",
+            Self::AngularVelocity => "rad/s",
+            Self::Speed => "m/s",
+            Self::Other => "1",
+        }
+    }
+}
+
+/// What is accepted, for messages.
+pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force N, mN, kN; angle rad, mrad, deg, rev; \
+    length m, mm, um; velocity rad/s, deg/s, rpm, m/s, mm/s; counts with their resolution, such as [counts, 4096/rev] \
+    or [counts, 0.001 mm]";
+
+/// Quantity and factor to SI of a unit, or of counts with a resolution.
+///
+/// Counts are written `counts, 4096/rev` (so many a turn) or `counts, 0.001 mm` (one count is so much).
+pub(super) fn parse(text: &str) -> Option<(Measures, f64)> {
+    if let Some((name, resolution)) = text.split_once(',').or_else(|| text.split_once(';'))
+        && matches!(name.trim().to_lowercase().as_str(), "count" | "counts" | "cnt" | "inc" | "increments")
+    {
+        return counts(resolution.trim());
+    }
+    plain(text)
+}
+
+/// Whether the unit is counts without a resolution.
+pub(super) fn is_bare_counts(text: &str) -> bool {
+    matches!(text.trim().to_lowercase().as_str(), "count" | "counts" | "cnt" | "inc" | "increments")
+}
+
+fn counts(resolution: &str) -> Option<(Measures, f64)> {
+    if let Some((number, per)) = resolution.split_once('/') {
+        let number: f64 = number.replace("counts", "").trim().parse().ok()?;
+        let (what, factor) = plain(per)?;
+        let whole = matches!(what, Measures::Angle | Measures::Length);
+        return (whole && number > 0.0 && number.is_finite()).then_some((what, factor / number));
+    }
+    let split = resolution.find(|c: char| c.is_ascii_whitespace())?;
+    let number: f64 = resolution[..split].parse().ok()?;
+    let (what, factor) = plain(&resolution[split..])?;
+    (number > 0.0 && number.is_finite()).then_some((what, factor * number))
+}
+
+fn plain(text: &str) -> Option<(Measures, f64)> {
+    use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
+    use std::f64::consts::{PI, TAU};
+    let compact: String = text
+        .trim()
+        .chars()
+        .filter(|c| !matches!(c, ' ' | '*' | '·' | '⋅' | '\u{a0}'))
+        .map(|c| if c == 'µ' || c == 'μ' { 'u' } else { c })
+        .collect();
+    let exact = match compact.as_str() {
+        "mNm" => Some((Torque, 1e-3)),
+        "MNm" => Some((Torque, 1e6)),
+        "mN" => Some((Force, 1e-3)),
+        _ => None,
+    };
+    if exact.is_some() {
+        return exact;
+    }
+    Some(match compact.to_lowercase().as_str() {
+        "s" | "sec" | "second" | "seconds" => (Time, 1.0),
+        "ms" | "millisecond" | "milliseconds" => (Time, 1e-3),
+        "us" | "microseconds" => (Time, 1e-6),
+        "min" | "minutes" => (Time, 60.0),
+        "h" => (Time, 3600.0),
+        "nm" | "n.m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
+        "knm" => (Torque, 1e3),
+        "ncm" => (Torque, 1e-2),
+        "n" | "newton" => (Force, 1.0),
+        "kn" => (Force, 1e3),
+        "rad" | "radian" | "radians" => (Angle, 1.0),
+        "mrad" => (Angle, 1e-3),
+        "deg" | "°" | "degree" | "degrees" => (Angle, PI / 180.0),
+        "rev" | "turn" | "turns" | "revolutions" => (Angle, TAU),
+        "m" | "metre" | "meter" => (Length, 1.0),
+        "mm" => (Length, 1e-3),
+        "cm" => (Length, 1e-2),
+        "um" => (Length, 1e-6),
+        "rad/s" | "rads^-1" | "rads-1" => (AngularVelocity, 1.0),
+        "mrad/s" => (AngularVelocity, 1e-3),
+        "deg/s" | "°/s" => (AngularVelocity, PI / 180.0),
+        "rpm" | "rev/min" | "1/min" | "min-1" | "min^-1" => (AngularVelocity, TAU / 60.0),
+        "rev/s" | "rps" => (AngularVelocity, TAU),
+        "m/s" => (Speed, 1.0),
+        "mm/s" => (Speed, 1e-3),
+        "cm/s" => (Speed, 1e-2),
+        "m/min" => (Speed, 1.0 / 60.0),
+        "mm/min" => (Speed, 1e-3 / 60.0),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str, what: Measures, factor: f64) {
+        let (measures, value) = parse(text).unwrap_or((Measures::Other, 0.0));
+        assert_eq!(measures, what, "{text}");
+        assert!((value / factor - 1.0).abs() < 1e-12, "{text}: {value}");
+    }
+
+    #[test]
+    fn common_spellings() {
+        check("ms", Measures::Time, 1e-3);
+        check("N·m", Measures::Torque, 1.0);
+        check("mN m", Measures::Torque, 1e-3);
+        check("mN", Measures::Force, 1e-3);
+        check("deg", Measures::Angle, std::f64::consts::PI / 180.0);
+        check("rpm", Measures::AngularVelocity, std::f64::consts::TAU / 60.0);
+        check("counts, 4096/rev", Measures::Angle, std::f64::consts::TAU / 4096.0);
+        check("counts, 0.001 mm", Measures::Length, 1e-6);
+        assert!(parse("furlong").is_none() && parse("counts, 0/rev").is_none() && parse("counts").is_none());
+    }
+}
