@@ -1,3 +1,17 @@
 //! Hysteron: the app, and on a native machine its command line.
 
-fn main() {}
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> std::process::ExitCode {
+    match hysteron::run_native() {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(line) => {
+            eprintln!("{line}");
+            std::process::ExitCode::from(2)
+        }
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+fn main() {
+    hysteron::run_web();
+}

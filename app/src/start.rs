@@ -1,0 +1,76 @@
+//! How the app starts: a window on a native machine, a canvas on the web.
+
+use crate::HysteronApp;
+
+/// What to say where no window can be opened.
+#[cfg(not(target_arch = "wasm32"))]
+const NO_DISPLAY: &str = "no display to open a window on: use the web page (cargo xtask web && cargo xtask serve) \
+     or the command line (hysteron diagnose FILE.csv)";
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// One line for the terminal where no window can be opened.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn run_native() -> Result<(), String> {
+    if !display_exists() {
+        return Err(format!("hysteron: {NO_DISPLAY}"));
+    }
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Hysteron")
+            .with_app_id("hysteron")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([360.0, 400.0])
+            .with_drag_and_drop(true),
+        ..Default::default()
+    };
+    eframe::run_native("hysteron", options, Box::new(|cc| Ok(Box::new(HysteronApp::new(cc)))))
+        .map_err(|e| format!("hysteron: {NO_DISPLAY} ({})", one_line(&e.to_string())))
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// X11 and Wayland name their display in the environment; other systems always have one.
+#[cfg(not(target_arch = "wasm32"))]
+fn display_exists() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    !cfg!(all(unix, not(target_os = "macos"))) || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set)
+}
+
+/// Starts the app on the canvas `hysteron-canvas`; a failure is written into the element `hysteron-error`.
+#[cfg(target_arch = "wasm32")]
+pub fn run_web() {
+    use wasm_bindgen::JsCast as _;
+    eframe::WebLogger::init(log::LevelFilter::Warn).ok();
+    let Some(document) = web_sys::window().and_then(|w| w.document()) else {
+        return;
+    };
+    let canvas = document
+        .get_element_by_id("hysteron-canvas")
+        .and_then(|e| e.dyn_into::<web_sys::HtmlCanvasElement>().ok());
+    let Some(canvas) = canvas else {
+        log::error!("the page has no canvas with the id hysteron-canvas");
+        return;
+    };
+    wasm_bindgen_futures::spawn_local(async move {
+        let started = eframe::WebRunner::new()
+            .start(
+                canvas,
+                eframe::WebOptions::default(),
+                Box::new(|cc| Ok(Box::new(HysteronApp::new(cc)))),
+            )
+            .await;
+        if let Err(error) = started {
+            log::error!("the app did not start: {error:?}");
+            if let Some(place) = document.get_element_by_id("hysteron-error") {
+                place.set_text_content(Some(
+                    "Hysteron needs a browser with WebGPU or WebGL 2. Neither could be started here.",
+                ));
+            }
+        }
+    });
+}
