@@ -1,21 +1,114 @@
 //! The shell around the pages.
 
-/// The app: what is saved, what runs, and the pages.
+use crate::hook::Targets;
+use crate::pages::{Compare, Explore};
+use crate::theme;
+
+/// The pages, in the order of their tabs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Page {
+    /// A relay loop, live.
+    #[default]
+    Explore,
+    /// A model against a measurement.
+    Compare,
+}
+
+impl Page {
+    const ALL: [Self; 2] = [Self::Explore, Self::Compare];
+
+    fn id(self) -> &'static str {
+        match self {
+            Self::Explore => "explore",
+            Self::Compare => "compare",
+        }
+    }
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::Explore => "Explore a relay loop",
+            Self::Compare => "Compare a measurement",
+        }
+    }
+}
+
+/// The app: the pages and what is shown of them.
 #[derive(Default)]
-pub struct HysteronApp {}
+pub struct HysteronApp {
+    /// The page in front.
+    pub page: Page,
+    explore: Explore,
+    /// The page that criticises a model.
+    pub compare: Compare,
+    targets: Targets,
+    frame: u64,
+}
 
 impl HysteronApp {
     /// A fresh app.
-    pub fn new(_cc: &eframe::CreationContext<'_>) -> Self {
+    pub fn new(cc: &eframe::CreationContext<'_>) -> Self {
+        theme::apply(&cc.egui_ctx);
         Self::default()
+    }
+
+    /// One frame: takes what came in, draws the page, publishes the state.
+    pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
+        self.frame += 1;
+        self.targets.clear();
+        self.take_dropped_files(ui.ctx());
+        self.compare.update(ui.ctx());
+        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui));
+        match self.page {
+            Page::Explore => self.explore.ui(ui),
+            Page::Compare => self.compare.ui(ui, &mut self.targets),
+        }
+        self.drop_hint_ui(ui.ctx());
+        #[cfg(target_arch = "wasm32")]
+        crate::hook::publish(&self.hook_state());
+    }
+
+    /// What is on the screen, for tests.
+    pub fn hook_state(&self) -> serde_json::Value {
+        let mut state = self.compare.hook_state();
+        state["ready"] = true.into();
+        state["page"] = self.page.id().into();
+        state["frame"] = self.frame.into();
+        state["targets"] = self.targets.to_json();
+        state
+    }
+
+    fn bar_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.heading("Hysteron");
+            for page in Page::ALL {
+                let tab = ui.selectable_label(self.page == page, page.title());
+                self.targets.note(format!("page:{}", page.id()), ui, &tab);
+                if tab.clicked() {
+                    self.page = page;
+                }
+            }
+            egui::widgets::global_theme_preference_buttons(ui);
+        });
+    }
+
+    fn take_dropped_files(&mut self, ctx: &egui::Context) {
+        if let Some(file) = ctx.input(|i| i.raw.dropped_files.first().cloned()) {
+            self.page = Page::Compare;
+            self.compare.open_dropped(ctx, &file);
+        }
+    }
+
+    fn drop_hint_ui(&self, ctx: &egui::Context) {
+        if ctx.input(|i| !i.raw.hovered_files.is_empty()) {
+            egui::Area::new(egui::Id::unique("drop")).anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ctx, |ui| {
+                egui::Frame::popup(ui.style()).show(ui, |ui| ui.heading("Drop the measurement to compare it"));
+            });
+        }
     }
 }
 
 impl eframe::App for HysteronApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        egui::CentralPanel::default().show(ui, |ui| {
-            ui.heading("Hysteron");
-            ui.label("ε β τ ω ζ λ µ Σ Δ ∞ ≈ ≤ ² ³ · − ± × √ ° ½ → ∂ ẋ ⁻ ₁ ₂ ↺ ☀ 🌙");
-        });
+        self.frame_ui(ui);
     }
 }

@@ -2,6 +2,9 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> std::process::ExitCode {
+    if let Some(code) = hysteron::cli::run() {
+        return code;
+    }
     match hysteron::run_native() {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(line) => {

@@ -1,2 +1,47 @@
-//! Set-up, web build, serve, tests: `cargo xtask help`.
-fn main() {}
+//! Set-up, web build, serve and tests: `cargo xtask help`.
+
+mod browser;
+mod run;
+mod serve;
+mod setup;
+mod test;
+mod web;
+
+use std::process::ExitCode;
+
+const HELP: &str = "cargo xtask COMMAND
+
+  test            install what is missing, then every check and test
+  setup           install what the tests need (Debian or Ubuntu)
+  web             build the page into dist/
+  serve [PORT]    serve dist/ on http://127.0.0.1:PORT (8080)
+  browser-test    drive dist/ in headless Chromium
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let result = match words.as_slice() {
+        ["test"] => test::test(),
+        ["setup"] => setup::setup(),
+        ["web"] => web::build(),
+        ["serve"] => serve::forever(8080),
+        ["serve", port] => port
+            .parse()
+            .map_err(|_| format!("'{port}' is not a port; expected a number such as 8080"))
+            .and_then(serve::forever),
+        ["browser-test"] => browser::test(),
+        [] | ["help" | "--help" | "-h"] => {
+            print!("{HELP}");
+            Ok(())
+        }
+        other => Err(format!("'{}' is not a command\n\n{HELP}", other.join(" "))),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Measured and modelled curves over each other, the residual beneath.
+
+use egui_plot::{HLine, Legend, Line, LineStyle, Plot, PlotPoints, Span};
+use hysteron_core::criticism::{Finding, ReplayChannel};
+use hysteron_core::measurement::{Channel, Measurement};
+
+use super::Compare;
+use crate::theme;
+
+/// Most points of a curve that are drawn; above, each stretch shows its extremes.
+const MAX_POINTS: usize = 10_000;
+
+/// Seconds that are shown at first, as a share of the record: a few periods, not a solid band.
+const FIRST_VIEW: f64 = 0.03;
+
+/// Height of a plot below which the page scrolls.
+const LEAST_HEIGHT: f32 = 110.0;
+
+pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
+    let Some(measurement) = &page.measurement else {
+        return;
+    };
+    let report = page.report();
+    let finding = report.and_then(|r| r.step.findings.get(page.finding));
+    let count = measurement.outputs.len().max(1) as f32;
+    let each = (height / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
+    for (index, output) in measurement.outputs.iter().enumerate() {
+        let modelled = report.and_then(|r| r.replay.channels.get(index));
+        signal_plot(ui, measurement, output, modelled, finding, each);
+        if let Some(modelled) = modelled {
+            residual_plot(ui, measurement, output, modelled, finding, each);
+        }
+    }
+}
+
+fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32) -> Plot<'a> {
+    let (start, end) = (measurement.time[0], measurement.time[measurement.len() - 1]);
+    let group = egui::Id::unique(("compare", &measurement.name));
+    Plot::new(id)
+        .height(height)
+        .default_x_bounds(start, start + FIRST_VIEW * (end - start).max(f64::MIN_POSITIVE))
+        .auto_bounds([false, true])
+        .link_axis(group, [true, false])
+        .link_cursor(group, [true, false])
+        .x_axis_label("time [s]")
+        .y_axis_label(y_label)
+        .y_axis_min_width(60.0)
+        .allow_scroll(false)
+        .legend(Legend::default())
+}
+
+fn unit_label(name: &str, unit: &str) -> String {
+    if unit == "1" { name.to_owned() } else { format!("{name} [{unit}]") }
+}
+
+fn signal_plot(
+    ui: &mut egui::Ui,
+    measurement: &Measurement,
+    output: &Channel,
+    modelled: Option<&ReplayChannel>,
+    finding: Option<&Finding>,
+    height: f32,
+) {
+    let label = unit_label(&output.name, &output.unit);
+    plot(measurement, format!("signal {}", output.name), label, height).show(ui, |plot| {
+        shade(plot, finding);
+        let measured = points(&measurement.time, &output.values);
+        plot.line(Line::new("measured", measured).color(theme::MEASURED).width(2.5));
+        if let Some(modelled) = modelled {
+            let line = Line::new("model", points(&measurement.time, &modelled.modelled));
+            plot.line(line.color(theme::MODEL).width(1.5).style(LineStyle::dashed_loose()));
+        }
+    });
+}
+
+fn residual_plot(
+    ui: &mut egui::Ui,
+    measurement: &Measurement,
+    output: &Channel,
+    modelled: &ReplayChannel,
+    finding: Option<&Finding>,
+    height: f32,
+) {
+    let label = unit_label(&format!("{} - model", output.name), &output.unit);
+    let residual: Vec<f64> = output.values.iter().zip(&modelled.modelled).map(|(y, m)| y - m).collect();
+    plot(measurement, format!("residual {}", output.name), label, height).show(ui, |plot| {
+        shade(plot, finding);
+        plot.line(Line::new("residual", points(&measurement.time, &residual)).color(theme::RESIDUAL).width(1.2));
+        for side in [2.0, -2.0] {
+            let line = HLine::new("noise, 2 sigma", side * modelled.noise);
+            plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
+        }
+    });
+}
+
+/// Where the selected finding says that the error lies.
+fn shade(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
+    let Some(finding) = finding else {
+        return;
+    };
+    let bounds = plot.plot_bounds();
+    let visible = finding.spans.iter().filter(|s| s.1 >= bounds.min()[0] && s.0 <= bounds.max()[0]);
+    for span in visible.take(60) {
+        let color = theme::SHADE.gamma_multiply(0.16);
+        plot.add(Span::new("", span.0..=span.1).fill(color).border_width(0.0));
+    }
+}
+
+/// Points of a curve; a long one keeps the extremes of each stretch.
+fn points(time: &[f64], values: &[f64]) -> PlotPoints<'static> {
+    if time.len() <= MAX_POINTS {
+        return time.iter().zip(values).map(|(t, v)| [*t, *v]).collect();
+    }
+    let stretch = time.len().div_ceil(MAX_POINTS / 2);
+    time.chunks(stretch)
+        .zip(values.chunks(stretch))
+        .flat_map(|(t, v)| {
+            let (mut low, mut high) = (0, 0);
+            for (i, value) in v.iter().enumerate() {
+                if *value < v[low] {
+                    low = i;
+                }
+                if *value > v[high] {
+                    high = i;
+                }
+            }
+            let (first, second) = (low.min(high), low.max(high));
+            [[t[first], v[first]], [t[second], v[second]]]
+        })
+        .collect()
+}

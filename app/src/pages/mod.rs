@@ -1,0 +1,7 @@
+//! One file (or folder) per page.
+
+mod compare;
+mod explore;
+
+pub use compare::Compare;
+pub use explore::Explore;

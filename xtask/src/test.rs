@@ -1,0 +1,1 @@
+pub fn test() -> Result<(), String> { Ok(()) }
