@@ -6,6 +6,11 @@
 //!
 //! | module | question |
 //! |---|---|
+//! | [`relay`] | what does the relay do? |
+//! | [`plant`] | what does it act on? |
+//! | [`simulate`] | what happens? |
+//! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
+//! | [`explore`] | everything about one loop at once |
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
@@ -14,5 +19,10 @@
 
 pub mod criticism;
 pub mod effect;
+pub mod explore;
+pub mod limit_cycle;
 pub mod measurement;
 pub mod model;
+pub mod plant;
+pub mod relay;
+pub mod simulate;

@@ -255,7 +255,7 @@ impl Spring {
 /// Root of `f` between 0 and `h`, where `f(0)` and `f(h)` have different signs.
 ///
 /// Regula falsi with the Illinois rule, safeguarded by bisection; stops at `1e-13 h`.
-pub(super) fn root(h: f64, f0: f64, fh: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn root(h: f64, f0: f64, fh: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut a, mut fa, mut b, mut fb) = (0.0, f0, h, fh);
     for i in 0..80 {
         if fb == 0.0 || (b - a).abs() <= 1e-13 * h {

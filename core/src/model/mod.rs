@@ -9,6 +9,7 @@ mod engine;
 mod flow;
 mod replay;
 
+pub(crate) use flow::root;
 pub use engine::{Engine, State};
 pub use replay::{Excitation, Start};
 
