@@ -1,5 +1,6 @@
 //! The command line as a person and a script meet it: exit codes, one line per error, the contract.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -59,7 +60,7 @@ fn bad_input_is_one_line_and_code_2() {
     );
     let mut text = String::from("t [s],u [N m],v1 [rad/s]\n");
     for i in 0..30 {
-        text += &format!("{i},1,{}\n", if i == 4 { "abc" } else { "2" });
+        let _ = writeln!(text, "{i},1,{}", if i == 4 { "abc" } else { "2" });
     }
     refused(
         &diagnose(&written("abc.csv", text.as_bytes())),

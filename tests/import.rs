@@ -3,6 +3,7 @@
 use hysteron_core::effect::Motion;
 use hysteron_core::measurement::{Kind, MIN_SAMPLES, Measurement, Quantity, import_csv};
 use proptest::prelude::*;
+use std::fmt::Write as _;
 
 const HEADER: &str = "t [s],u [N m],x1 [rad],v1 [rad/s]";
 
@@ -11,7 +12,7 @@ fn file(header: &str, rows: usize) -> String {
     let columns = header.matches(" [").count();
     let mut text = format!("{header}\n");
     for i in 0..rows {
-        text += &format!("{i}{}\n", ",2".repeat(columns - 1));
+        let _ = writeln!(text, "{i}{}", ",2".repeat(columns - 1));
     }
     text
 }
@@ -197,7 +198,7 @@ fn the_ways_in_which_programs_write_csv_are_all_one() {
     let header = "t [s],u [N m],x1 [rad]";
     let mut plain = format!("{header}\n");
     for i in 0..30 {
-        plain += &format!("{i}.5,{}e-3,-0.25\n", i * 2);
+        let _ = writeln!(plain, "{i}.5,{}e-3,-0.25", i * 2);
     }
     let wanted = import(&plain);
     let tabs = plain.replace(',', "\t");
@@ -421,7 +422,6 @@ fn what_is_written_is_read_back() {
 
 #[test]
 fn two_million_rows_are_read_rightly() {
-    use std::fmt::Write as _;
     const ROWS: usize = 2_000_000;
     let mut text = String::from("t [ms],u [mN m],v1 [rad/s]\n");
     for i in 0..ROWS {

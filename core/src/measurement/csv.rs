@@ -36,7 +36,7 @@ pub fn import_csv(
     };
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let before = bytes.get(..e.valid_up_to()).unwrap_or_default();
-        let line = 1 + before.iter().filter(|b| **b == b'\n').count();
+        let line = before.split(|b| *b == b'\n').count();
         fail(Some(line), None, Problem::NotText)
     })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

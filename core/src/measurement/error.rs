@@ -17,14 +17,9 @@ pub struct ImportError {
 }
 
 fn place(line: Option<usize>, column: Option<&str>) -> String {
-    let mut text = String::new();
-    if let Some(line) = line {
-        text.push_str(&format!(", line {line}"));
-    }
-    if let Some(column) = column {
-        text.push_str(&format!(", column {column}"));
-    }
-    text
+    let line = line.map_or_else(String::new, |line| format!(", line {line}"));
+    let column = column.map_or_else(String::new, |column| format!(", column {column}"));
+    line + &column
 }
 
 fn plural(count: usize) -> &'static str {
