@@ -3,6 +3,9 @@
 mod app;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
+mod hook;
+mod jobs;
+mod pages;
 mod start;
 mod theme;
 #[cfg(target_arch = "wasm32")]
