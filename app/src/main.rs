@@ -2,7 +2,7 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> std::process::ExitCode {
-    if let Some(code) = hysteron::cli::run() {
+    if let Some(code) = hysteron::cli::run(std::env::args_os()) {
         return code;
     }
     match hysteron::run_native() {

@@ -1,95 +1,125 @@
-//! `hysteron diagnose`: a measurement goes in, the missing effect comes out.
+//! `hysteron diagnose FILE.csv`
 
-use std::io::{self, IsTerminal, Write};
-use std::path::PathBuf;
+use std::io::{self, IsTerminal as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
-use hysteron_core::measurement::{Kind, import_csv};
-use web_time::Instant;
+use hysteron_core::measurement::{self, Measurement, import_csv};
 
-use super::text;
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// Measurement with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s]
+    #[arg(value_name = "FILE.csv")]
+    file: PathBuf,
+    /// Kind of system; guessed from the columns if not given
+    #[arg(long, value_enum)]
+    kind: Option<Kind>,
+    /// For a person or for a program
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
 
-/// How the result is written.
-#[derive(Clone, Copy, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Kind {
+    /// Torque or force in, position or velocity out
+    Drive,
+    /// Any input u, any output y
+    Process,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum Format {
-    /// For reading
+    /// A report in words and tables
     Text,
     /// One JSON object
     Json,
 }
 
-/// What was measured.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum KindArgument {
-    /// A motor that moves an inertia
-    Drive,
-    /// A process with output y
-    Process,
-}
-
-/// Arguments of `hysteron diagnose`.
-#[derive(clap::Args)]
-pub(super) struct Arguments {
-    /// The measurement, with units in the header: t [s],u [N m],x1 [rad],v1 [rad/s]
-    file: PathBuf,
-    /// What was measured; guessed from the columns if left out
-    #[arg(long)]
-    kind: Option<KindArgument>,
-    /// How to write the result
-    #[arg(long, default_value = "text")]
-    format: Format,
-}
-
-pub(super) fn run(arguments: &Arguments) -> Result<(), String> {
+/// The report, or one line that says what is wrong with the input.
+pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
     let started = Instant::now();
-    let name = arguments
-        .file
-        .file_name()
-        .map_or_else(|| arguments.file.to_string_lossy(), |n| n.to_string_lossy())
-        .into_owned();
-    let bytes = std::fs::read(&arguments.file)
-        .map_err(|e| format!("{}: cannot be read ({e})", arguments.file.to_string_lossy()))?;
-    let kind = arguments.kind.map(|k| match k {
-        KindArgument::Drive => Kind::Drive,
-        KindArgument::Process => Kind::Process,
-    });
-    let measurement = import_csv(&name, &bytes, kind).map_err(|e| e.to_string())?;
-    for warning in &measurement.warnings {
-        eprintln!("{name}: {warning}");
-    }
-    let job = DiagnosisJob::new(&measurement).map_err(|e| format!("{name}: {e}"))?;
-    let mut diagnosis = finish(job);
+    let measurement = read(&arguments.file, arguments.kind)?;
+    let mut diagnosis = diagnose(&measurement).map_err(|e| format!("{}: {e}", measurement.name))?;
     diagnosis.seconds = started.elapsed().as_secs_f64();
-    let output = match arguments.format {
-        Format::Json => serde_json::to_string(&diagnosis).map_err(|e| e.to_string())? + "\n",
-        Format::Text => text::render(&diagnosis, &name),
-    };
-    match io::stdout().write_all(output.as_bytes()) {
-        // The reader (head, less) has seen enough.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        other => other.map_err(|e| format!("the result cannot be written ({e})")),
+    match arguments.format {
+        Format::Text => Ok(super::text::render(&diagnosis, &measurement.name)),
+        Format::Json => serde_json::to_string_pretty(&diagnosis)
+            .map(|json| json + "\n")
+            .map_err(|e| {
+                format!(
+                    "{}: the diagnosis cannot be written as JSON: {e}",
+                    measurement.name
+                )
+            }),
     }
 }
 
-/// Runs the job to its end, with progress where somebody watches.
-fn finish(mut job: DiagnosisJob) -> Diagnosis {
-    let watched = io::stderr().is_terminal();
-    let mut shown = String::new();
+fn read(path: &Path, kind: Option<Kind>) -> Result<Measurement, String> {
+    let name = path
+        .file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy();
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(format!("{shown} is a directory; expected a CSV file"));
+    }
+    let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let kind = kind.map(|k| match k {
+        Kind::Drive => measurement::Kind::Drive,
+        Kind::Process => measurement::Kind::Process,
+    });
+    import_csv(&name, &bytes, kind).map_err(|e| e.to_string())
+}
+
+fn diagnose(
+    measurement: &Measurement,
+) -> Result<Diagnosis, hysteron_core::criticism::CriticismError> {
+    let mut job = DiagnosisJob::new(measurement)?;
+    let mut line = ProgressLine::new();
     loop {
         match job.advance() {
+            Progress::Running { fraction, text } => line.show(fraction, &text),
             Progress::Done(diagnosis) => {
-                if watched {
-                    eprint!("\r{:78}\r", "");
-                }
-                return diagnosis;
+                line.clear();
+                return Ok(diagnosis);
             }
-            Progress::Running { fraction, text } => {
-                let line = format!("{:3.0} %  {text}", 100.0 * fraction);
-                if watched && line != shown {
-                    eprint!("\r{line:78.78}");
-                    shown = line;
-                }
-            }
+        }
+    }
+}
+
+/// One line on stderr that is written over again and again; nothing where stderr is no terminal.
+struct ProgressLine {
+    terminal: bool,
+    shown: String,
+}
+
+impl ProgressLine {
+    fn new() -> Self {
+        Self {
+            terminal: io::stderr().is_terminal(),
+            shown: String::new(),
+        }
+    }
+
+    fn show(&mut self, fraction: f64, text: &str) {
+        if !self.terminal {
+            return;
+        }
+        let line: String = format!("{:3.0} % {text}", fraction * 100.0)
+            .chars()
+            .take(79)
+            .collect();
+        if line != self.shown {
+            // Progress that cannot be shown is no reason to stop.
+            let _ = write!(io::stderr(), "\r\x1b[K{line}");
+            self.shown = line;
+        }
+    }
+
+    fn clear(&self) {
+        if !self.shown.is_empty() {
+            let _ = write!(io::stderr(), "\r\x1b[K");
         }
     }
 }

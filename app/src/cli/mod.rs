@@ -1,56 +1,84 @@
-//! The command line: `hysteron diagnose FILE.csv`.
+//! The command line: one file per subcommand, one line in [`Command`] and one in [`dispatch`].
+//!
+//! Exit code 0 on success, 2 for bad input with exactly one line on stderr, 1 where the output
+//! cannot be written. A reader that closes the pipe early, such as `head`, is a success.
 
 mod diagnose;
-pub mod text;
+mod text;
 
+use std::ffi::OsString;
+use std::io::{self, Write as _};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::Parser;
 
-/// A laboratory for relay feedback systems. Without a command the app opens.
-#[derive(Parser)]
-#[command(name = "hysteron", version, about)]
+pub use text::render;
+
+/// A laboratory for relay feedback systems. Without a command, the app opens.
+#[derive(Debug, Parser)]
+#[command(name = "hysteron", version)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
 }
 
-/// One variant per command; each is a file.
-#[derive(Subcommand)]
+#[derive(Debug, clap::Subcommand)]
 enum Command {
-    /// Find out which physical effect a model of this measurement is missing
+    /// Say where a model of a measured system fails and which physical effect is missing.
     Diagnose(diagnose::Arguments),
 }
 
-/// Exit code for bad input.
-const BAD_INPUT: u8 = 2;
+fn dispatch(command: &Command) -> Result<String, String> {
+    match command {
+        Command::Diagnose(arguments) => diagnose::run(arguments),
+    }
+}
 
-/// Runs the command that the arguments name; `None` if they name none and the app should open.
-pub fn run() -> Option<ExitCode> {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version are no errors; they print themselves.
-            if error.exit_code() == 0 {
-                let _ = error.print();
-                return Some(ExitCode::SUCCESS);
-            }
-            let text = error.to_string();
-            let first: Vec<&str> = text.lines().take_while(|l| !l.trim().is_empty()).map(str::trim).collect();
-            let line = first.join(" ");
-            return Some(bad_input(&format!("{}; see hysteron --help", line.trim_start_matches("error: "))));
-        }
-    };
-    let result = match arguments.command? {
-        Command::Diagnose(arguments) => diagnose::run(&arguments),
+/// Runs the subcommand in `arguments` (the first of which is the program); `None` if there is
+/// none, so that the app should start.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Option<ExitCode> {
+    let result = match Arguments::try_parse_from(arguments) {
+        Ok(Arguments { command: None }) => return None,
+        Ok(Arguments {
+            command: Some(command),
+        }) => dispatch(&command),
+        // Help and version are asked for, not errors.
+        Err(error) if !error.use_stderr() => Ok(error.to_string()),
+        Err(error) => Err(usage_error(&error)),
     };
     Some(match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(line) => bad_input(&line),
+        Ok(output) => print(&output),
+        Err(line) => fail(&line, 2),
     })
 }
 
-fn bad_input(line: &str) -> ExitCode {
-    eprintln!("hysteron: {line}");
-    ExitCode::from(BAD_INPUT)
+/// What was wrong with the arguments, without the usage text beneath it.
+fn usage_error(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let first = text.split("\n\n").next().unwrap_or_default();
+    let first = first.strip_prefix("error: ").unwrap_or(first);
+    format!("{first}; see hysteron --help")
+}
+
+fn print(output: &str) -> ExitCode {
+    let mut stdout = io::stdout().lock();
+    match stdout
+        .write_all(output.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => fail(&format!("the output cannot be written: {error}"), 1),
+    }
+}
+
+/// Exactly one line, whatever a file name or an argument has in it.
+fn fail(message: &str, code: u8) -> ExitCode {
+    let words: Vec<&str> = message
+        .split(|c: char| c.is_control() || c == ' ')
+        .filter(|w| !w.is_empty())
+        .collect();
+    // Where stderr is closed there is nobody left to tell.
+    let _ = writeln!(io::stderr(), "hysteron: {}", words.join(" "));
+    ExitCode::from(code)
 }

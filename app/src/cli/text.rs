@@ -1,153 +1,357 @@
-//! A diagnosis as text that a person wants to read, 80 columns wide.
+//! A diagnosis as a person wants to read it: 80 columns, no colours.
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Candidate, Diagnosis, Step, with_error};
+use hysteron_core::criticism::{Candidate, Diagnosis, Parameter, Step};
 use hysteron_core::effect::{self, EffectId};
 use hysteron_core::measurement::Kind;
 
-/// Widest bar of the chart, in characters.
-const BAR: usize = 40;
-
-/// Line length.
 const WIDTH: usize = 80;
 
-/// The whole diagnosis; `name` is that of the file.
+/// Longest bar of the chart, in characters.
+const BAR: usize = 40;
+
+/// Above this ratio of largest to smallest a linear bar of the smallest would not be seen.
+const LOGARITHMIC_FROM: f64 = 40.0;
+
+/// The report on the measurement called `name`; ends with a newline.
 pub fn render(diagnosis: &Diagnosis, name: &str) -> String {
     let mut out = String::new();
     let kind = match diagnosis.kind {
         Kind::Drive => "drive",
         Kind::Process => "process",
     };
-    let _ = writeln!(out, "{name}: {kind}, {} samples\n", diagnosis.samples);
-    let mut previous: Option<&Step> = None;
-    for step in &diagnosis.steps {
-        heading(&mut out, previous, step);
-        parameters(&mut out, step);
-        for finding in &step.findings {
-            wrapped(&mut out, &format!("  Where: {}", finding.text), 9);
-        }
-        candidates(&mut out, step);
-        out.push('\n');
-        previous = Some(step);
+    let title: String = name
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    paragraph(
+        &mut out,
+        "",
+        &format!("{title}: {} samples of a {kind}", diagnosis.samples),
+    );
+    for (i, step) in diagnosis.steps.iter().enumerate() {
+        let before = i.checked_sub(1).and_then(|k| diagnosis.steps.get(k));
+        describe_step(&mut out, step, before, diagnosis.noise_floor);
     }
-    waterfall(&mut out, diagnosis);
-    out.push('\n');
-    wrapped(&mut out, &diagnosis.verdict.text, 0);
-    if let Some(next) = &diagnosis.verdict.next_experiment {
-        wrapped(&mut out, &format!("Next experiment: {next}"), 0);
+    if !diagnosis.steps.is_empty() {
+        chart(&mut out, diagnosis);
     }
-    let _ = writeln!(out, "({:.1} s)", diagnosis.seconds);
+    heading(&mut out, "Verdict");
+    paragraph(&mut out, "  ", &diagnosis.verdict.text);
+    if let Some(experiment) = &diagnosis.verdict.next_experiment
+        && !diagnosis.verdict.text.contains(experiment.as_str())
+    {
+        paragraph(&mut out, "  ", &format!("Next experiment: {experiment}"));
+    }
+    let _ = writeln!(out, "\nTook {:.2} s.", diagnosis.seconds);
     out
 }
 
-fn effect_name(id: EffectId) -> &'static str {
+fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, floor: f64) {
+    let title = before.map_or_else(|| "Baseline".to_owned(), |before| change(step, before));
+    heading(out, &title);
+    paragraph(
+        out,
+        "  ",
+        &format!(
+            "Error {} times the noise on held-back data; a perfect model would leave {}.",
+            short(step.error),
+            short(floor)
+        ),
+    );
+    let fresh = |p: &&Parameter| match before {
+        None => true,
+        Some(before) => p.effect.is_some_and(|e| !before.effects.contains(&e)),
+    };
+    parameters(
+        out,
+        &step.parameters.iter().filter(fresh).collect::<Vec<_>>(),
+    );
+    if !step.findings.is_empty() {
+        let _ = writeln!(out, "\n  Where it fails");
+        for finding in &step.findings {
+            bullet(out, &finding.text);
+        }
+    }
+    candidates(out, &step.candidates);
+}
+
+/// What was added to and taken from the model before, such as `+ Coulomb friction`.
+fn change(step: &Step, before: &Step) -> String {
+    let only_in = |a: &Step, b: &Step, sign: &str| -> Vec<String> {
+        a.effects
+            .iter()
+            .filter(|e| !b.effects.contains(e))
+            .map(|e| format!("{sign} {}", title_of(*e)))
+            .collect()
+    };
+    let mut parts = only_in(step, before, "+");
+    parts.extend(only_in(before, step, "-"));
+    if parts.is_empty() {
+        "Refitted".to_owned()
+    } else {
+        parts.join(" ")
+    }
+}
+
+fn title_of(id: EffectId) -> &'static str {
     effect::find(id).map_or(id.as_str(), effect::Effect::name)
 }
 
-/// What changed from the step before.
-fn change(previous: Option<&Step>, step: &Step) -> String {
-    let Some(previous) = previous else {
-        return "Baseline".to_owned();
-    };
-    let names = |a: &Step, b: &Step| -> Vec<&str> {
-        a.effects.iter().filter(|e| !b.effects.contains(e)).map(|e| effect_name(*e)).collect()
-    };
-    let (added, removed) = (names(step, previous), names(previous, step));
-    let mut parts: Vec<String> = added.iter().map(|n| format!("+ {n}")).collect();
-    parts.extend(removed.iter().map(|n| format!("- {n}")));
-    parts.join(", ")
+fn names(ids: &[EffectId]) -> String {
+    ids.iter()
+        .map(|id| id.as_str())
+        .collect::<Vec<_>>()
+        .join(" + ")
 }
 
-fn heading(out: &mut String, previous: Option<&Step>, step: &Step) {
-    let _ = writeln!(
-        out,
-        "{}: the model misses by {} times the noise",
-        change(previous, step),
-        significant(step.error)
+fn parameters(out: &mut String, list: &[&Parameter]) {
+    let rows: Vec<(&str, &str, String, &str)> = list
+        .iter()
+        .map(|p| {
+            let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
+            (
+                p.name.as_str(),
+                p.label.as_str(),
+                with_uncertainty(p.value, p.std_error),
+                unit,
+            )
+        })
+        .collect();
+    let width = |f: fn(&(&str, &str, String, &str)) -> usize| rows.iter().map(f).max().unwrap_or(0);
+    let (name, label, value) = (
+        width(|r| r.0.chars().count()),
+        width(|r| r.1.chars().count()),
+        width(|r| r.2.chars().count()),
     );
-}
-
-fn parameters(out: &mut String, step: &Step) {
-    for p in &step.parameters {
-        let _ = writeln!(out, "  {:4} {:<36} {}", p.name, p.label, with_error(p.value, p.std_error, &p.unit));
-    }
-}
-
-fn candidates(out: &mut String, step: &Step) {
-    if step.candidates.is_empty() {
-        return;
-    }
-    let _ = writeln!(out, "  {:<22} {:>16} {:>12}", "If added:", "error it leaves", "evidence");
-    for c in &step.candidates {
-        let name = c.effects.iter().map(|e| effect_name(*e)).collect::<Vec<_>>().join(" + ");
-        let _ = writeln!(
+    for (n, l, v, unit) in &rows {
+        line(
             out,
-            "  {} {:<20} {:>16} {:>12}{}",
-            if c.significant { '*' } else { ' ' },
-            name,
-            significant(c.error),
-            evidence(c),
-            same_as(c)
+            &format!("  {n:<name$}  {l:<label$}  {v:>value$} {unit}"),
         );
     }
 }
 
-fn evidence(c: &Candidate) -> String {
-    if c.delta_bic < -10.0 { format!("{:.0}", -c.delta_bic) } else { "none".to_owned() }
+fn candidates(out: &mut String, list: &[Candidate]) {
+    if list.is_empty() {
+        return;
+    }
+    let rows: Vec<(String, &Candidate)> = list.iter().map(|c| (names(&c.effects), c)).collect();
+    let width = rows
+        .iter()
+        .map(|r| r.0.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max("What could be added".len());
+    let _ = writeln!(out);
+    line(
+        out,
+        &format!(
+            "  {:<width$}  {:>9}  {:>10}",
+            "What could be added", "error", "evidence"
+        ),
+    );
+    for (name, candidate) in rows {
+        let head = format!(
+            "  {name:<width$}  {:>9}  {:>10.1}  ",
+            short(candidate.error),
+            candidate.delta_bic
+        );
+        let note = if !candidate.equivalent_to.is_empty() {
+            let ids: Vec<&str> = candidate.equivalent_to.iter().map(|e| e.as_str()).collect();
+            format!("same as {}", ids.join(", "))
+        } else if candidate.significant {
+            "helps".to_owned()
+        } else {
+            "no better than chance".to_owned()
+        };
+        let indent = head.chars().count();
+        let notes = wrap(&note, WIDTH.saturating_sub(indent).max(20));
+        for (i, piece) in notes.iter().enumerate() {
+            let lead = if i == 0 {
+                head.clone()
+            } else {
+                " ".repeat(indent)
+            };
+            line(out, &format!("{lead}{piece}"));
+        }
+    }
+    paragraph(
+        out,
+        "  ",
+        "(error: in noise units after a refit; evidence: change of BIC, negative is better)",
+    );
 }
 
-fn same_as(c: &Candidate) -> String {
-    let names: Vec<&str> = c.equivalent_to.iter().map(|e| effect_name(*e)).collect();
-    if names.is_empty() { String::new() } else { format!("  same as {}", names.join(", ")) }
-}
-
-/// The error falling step by step, on a logarithmic scale from the noise floor.
-fn waterfall(out: &mut String, diagnosis: &Diagnosis) {
-    let _ = writeln!(out, "Error in units of the noise (bars on a logarithmic scale)");
-    let largest = diagnosis.steps.iter().map(|s| s.error).fold(2.0, f64::max);
-    let bar = |error: f64| {
-        let share = (error / diagnosis.noise_floor).max(1.0).ln() / (largest / diagnosis.noise_floor).ln();
-        "#".repeat(1 + (share * (BAR - 1) as f64).round() as usize)
-    };
-    let mut previous: Option<&Step> = None;
+/// The error of every model and the noise floor as bars.
+fn chart(out: &mut String, diagnosis: &Diagnosis) {
+    let mut rows: Vec<(String, f64)> = Vec::new();
+    let mut before: Option<&Step> = None;
     for step in &diagnosis.steps {
-        let label: String = change(previous, step).chars().take(24).collect();
-        let _ = writeln!(out, "  {label:<24} {:>8} {}", significant(step.error), bar(step.error));
-        previous = Some(step);
+        rows.push((
+            before.map_or_else(|| "baseline".to_owned(), |b| change(step, b)),
+            step.error,
+        ));
+        before = Some(step);
     }
-    let _ = writeln!(out, "  {:<24} {:>8} {}", "noise floor", significant(diagnosis.noise_floor), bar(diagnosis.noise_floor));
-}
-
-/// Three significant digits.
-fn significant(value: f64) -> String {
-    if value >= 100.0 {
-        format!("{value:.0}")
-    } else if value >= 10.0 {
-        format!("{value:.1}")
+    rows.push(("noise floor".to_owned(), diagnosis.noise_floor));
+    let finite = || {
+        rows.iter()
+            .map(|r| r.1)
+            .filter(|e| e.is_finite() && *e > 0.0)
+    };
+    let (most, least) = (
+        finite().fold(0.0, f64::max),
+        finite().fold(f64::INFINITY, f64::min),
+    );
+    let logarithmic = most > LOGARITHMIC_FROM * least;
+    let scale = if logarithmic {
+        ", bars logarithmic"
     } else {
-        format!("{value:.2}")
+        ""
+    };
+    heading(out, &format!("Error step by step (times the noise{scale})"));
+    let width = rows
+        .iter()
+        .map(|r| r.0.chars().count())
+        .max()
+        .unwrap_or(0)
+        .min(WIDTH - BAR - 14);
+    for (label, error) in &rows {
+        let label: String = label.chars().take(width).collect();
+        let share = if logarithmic {
+            // Bars begin at half the least, so that the least is seen as well.
+            (error / (0.5 * least)).ln() / (most / (0.5 * least)).ln()
+        } else {
+            error / most
+        };
+        let value = short(*error);
+        line(
+            out,
+            &format!("  {label:<width$}  {value:>8}  {}", bar(share)),
+        );
     }
 }
 
-/// Breaks a line at spaces; later lines are indented.
-fn wrapped(out: &mut String, text: &str, indent: usize) {
-    let start = text.len() - text.trim_start().len();
-    let mut line = " ".repeat(start);
-    let mut empty = true;
-    for word in text.split_whitespace() {
-        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            let _ = writeln!(out, "{line}");
-            line = " ".repeat(indent);
-            empty = true;
-        }
-        if !empty {
-            line.push(' ');
-        }
-        line.push_str(word);
-        empty = false;
+/// A bar with a resolution of an eighth of a character.
+fn bar(share: f64) -> String {
+    const PARTS: [&str; 8] = ["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"];
+    let share = if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let eighths = (share * (BAR * 8) as f64).round() as usize;
+    "█".repeat(eighths / 8) + PARTS[eighths % 8]
+}
+
+/// Three significant digits, no exponent within the usual range.
+fn short(value: f64) -> String {
+    match value.abs() {
+        a if !a.is_finite() => "unknown".to_owned(),
+        a if a >= 1e5 || (a < 1e-3 && a > 0.0) => format!("{value:.2e}"),
+        a if a >= 99.95 => format!("{value:.0}"),
+        a if a >= 9.995 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
     }
-    let _ = writeln!(out, "{line}");
+}
+
+/// `value ± error` with two significant digits of the error and the value to match; a power of ten
+/// is taken out where the digits would be lost in zeros.
+fn with_uncertainty(value: f64, error: f64) -> String {
+    if !value.is_finite() {
+        return "unknown".to_owned();
+    }
+    if !(error.is_finite() && error > 0.0) {
+        return format!("{value} (uncertainty unknown)");
+    }
+    let size = value.abs().max(error);
+    let power = if (1e-2..1e5).contains(&size) {
+        0
+    } else {
+        size.log10().floor() as i32
+    };
+    let unit = 10f64.powi(power);
+    if unit == 0.0 || !unit.is_finite() {
+        return format!("{value:e} ± {error:e}");
+    }
+    let (scaled, spread) = (value / unit, error / unit);
+    // Rounded first: 0.0996 is 0.10, with one decimal less than its own exponent says.
+    let exponent = format!("{spread:.1e}")
+        .rsplit('e')
+        .next()
+        .and_then(|e| e.parse::<i32>().ok())
+        .unwrap_or(0);
+    let decimals = 1 - exponent;
+    let (scaled, spread) = if decimals < 0 {
+        let step = 10f64.powi(-decimals);
+        (
+            (scaled / step).round() * step,
+            (spread / step).round() * step,
+        )
+    } else {
+        (scaled, spread)
+    };
+    // Beyond 12 decimals a double has no more to say next to a value of order one.
+    let digits = usize::try_from(decimals).unwrap_or(0).min(12);
+    if power == 0 {
+        format!("{scaled:.digits$} ± {spread:.digits$}")
+    } else {
+        format!("({scaled:.digits$} ± {spread:.digits$})e{power}")
+    }
+}
+
+fn heading(out: &mut String, text: &str) {
+    let _ = writeln!(out);
+    let lines = wrap(text, WIDTH);
+    let rule = lines.iter().map(|l| l.chars().count()).max().unwrap_or(0);
+    for text in lines {
+        line(out, &text);
+    }
+    line(out, &"-".repeat(rule));
+}
+
+fn paragraph(out: &mut String, indent: &str, text: &str) {
+    for piece in wrap(text, WIDTH - indent.len()) {
+        line(out, &format!("{indent}{piece}"));
+    }
+}
+
+fn bullet(out: &mut String, text: &str) {
+    for (i, piece) in wrap(text, WIDTH - 4).iter().enumerate() {
+        line(
+            out,
+            &format!("{}{piece}", if i == 0 { "  - " } else { "    " }),
+        );
+    }
+}
+
+fn line(out: &mut String, text: &str) {
+    out.push_str(text.trim_end());
+    out.push('\n');
+}
+
+/// Lines of at most `width` characters; only a single longer word goes beyond.
+fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut used = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if used > 0 && used + 1 + length > width {
+            lines.push(String::new());
+            used = 0;
+        }
+        if let Some(last) = lines.last_mut() {
+            if used > 0 {
+                last.push(' ');
+                used += 1;
+            }
+            last.push_str(word);
+            used += length;
+        }
+    }
+    lines
 }
 
 #[cfg(test)]
@@ -155,9 +359,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_sentences_are_broken_at_eighty_columns() {
-        let mut out = String::new();
-        wrapped(&mut out, &"word ".repeat(40), 2);
-        assert!(out.lines().count() > 2 && out.lines().all(|l| l.chars().count() <= WIDTH));
+    fn the_uncertainty_has_two_digits_and_the_value_matches() {
+        for (value, error, text) in [
+            (0.040_123, 0.001_23, "0.0401 ± 0.0012"),
+            (8.79e-4, 1.04e-7, "(8.7900 ± 0.0010)e-4"),
+            (12.345, 0.0996, "12.35 ± 0.10"),
+            (1234.0, 56.7, "1234 ± 57"),
+            (1234.0, 567.0, "1230 ± 570"),
+            (-0.5, 0.25, "-0.50 ± 0.25"),
+            (0.0, 3.3e-5, "(0.0 ± 3.3)e-5"),
+            (1.5e7, 2e5, "(1.500 ± 0.020)e7"),
+            (0.3, f64::NAN, "0.3 (uncertainty unknown)"),
+        ] {
+            assert_eq!(with_uncertainty(value, error), text);
+        }
+    }
+
+    #[test]
+    fn bars_are_as_long_as_their_share() {
+        assert_eq!(bar(1.0).chars().count(), BAR);
+        assert_eq!(bar(0.5).chars().count(), BAR / 2);
+        assert_eq!(bar(0.0), "");
+        assert_eq!(bar(1.0 / 320.0), "▏");
+        assert_eq!(bar(f64::NAN), "");
     }
 }

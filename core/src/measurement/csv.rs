@@ -1,14 +1,15 @@
 //! Comma-separated files, as people have them.
 
 use super::error::{ImportError, Problem};
-use super::header::{Header, Role, understand};
+use super::header::{Header, Role, shorten, understand};
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
-/// How the numbers of a file are written.
-#[derive(Clone, Copy)]
+/// How the rows of a file are written.
 struct Dialect {
-    separator: u8,
-    decimal_comma: bool,
+    separator: char,
+    /// The decimal mark, once one was seen: a file that mixes both has thousands separators in it,
+    /// and those must not be read as decimals.
+    mark: Option<char>,
 }
 
 /// Reads a CSV file.
@@ -16,18 +17,28 @@ struct Dialect {
 /// The header names the columns with units in brackets: `t [s],u [N m],x1 [rad],v1 [rad/s]` for a
 /// drive, `t [s],u [1],y [1]` for a process. Separated by comma, semicolon or tab; with the latter
 /// two a decimal comma is understood. Lines that start with `#` are comments. Everything but the
-/// signals of a process is converted to SI units. `kind` is guessed from the columns if not given.
+/// signals of a process is converted to SI units; encoder counts state their resolution in the
+/// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). `kind` is guessed from the columns
+/// if not given. Columns with other names are ignored with a warning.
 ///
 /// # Errors
 /// One line that names file, line and column and says what was expected.
-pub fn import_csv(name: &str, bytes: &[u8], kind: Option<Kind>) -> Result<Measurement, ImportError> {
+pub fn import_csv(
+    name: &str,
+    bytes: &[u8],
+    kind: Option<Kind>,
+) -> Result<Measurement, ImportError> {
     let fail = |line: Option<usize>, column: Option<String>, problem| ImportError {
         file: name.to_owned(),
         line,
         column,
         problem,
     };
-    let text = std::str::from_utf8(bytes).map_err(|_| fail(None, None, Problem::NotText))?;
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        let before = bytes.get(..e.valid_up_to()).unwrap_or_default();
+        let line = before.split(|b| *b == b'\n').count();
+        fail(Some(line), None, Problem::NotText)
+    })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = text
         .lines()
@@ -40,11 +51,15 @@ pub fn import_csv(name: &str, bytes: &[u8], kind: Option<Kind>) -> Result<Measur
     let separator = separator_of(first);
     let fields: Vec<String> = split_header(first, separator);
     let header = understand(&fields, kind).map_err(|(column, problem)| {
-        fail(Some(header_line), column.map(|(i, n)| format!("{i} ({n})")), problem)
+        fail(
+            Some(header_line),
+            column.map(|(i, n)| format!("{i} ({n})")),
+            problem,
+        )
     })?;
     let dialect = Dialect {
         separator,
-        decimal_comma: separator != b',' && text.as_bytes().contains(&b',') && decimal_comma(lines.clone()),
+        mark: (separator == ',').then_some('.'),
     };
     let values = read_rows(&header, dialect, lines)
         .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
@@ -52,15 +67,15 @@ pub fn import_csv(name: &str, bytes: &[u8], kind: Option<Kind>) -> Result<Measur
 }
 
 /// The separator: tab or semicolon where the header has one outside brackets, else a comma.
-fn separator_of(header: &str) -> u8 {
+fn separator_of(header: &str) -> char {
     let mut depth = 0;
-    let mut found = b',';
+    let mut found = ',';
     for byte in header.bytes() {
         match byte {
             b'[' | b'(' => depth += 1,
             b']' | b')' => depth -= 1,
-            b'\t' if depth == 0 => return b'\t',
-            b';' if depth == 0 => found = b';',
+            b'\t' if depth == 0 => return '\t',
+            b';' if depth == 0 => found = ';',
             _ => {}
         }
     }
@@ -68,7 +83,7 @@ fn separator_of(header: &str) -> u8 {
 }
 
 /// Splits a header; a separator inside brackets belongs to the unit (`[counts, 4096/rev]`).
-fn split_header(header: &str, separator: u8) -> Vec<String> {
+fn split_header(header: &str, separator: char) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut depth = 0;
     for c in header.chars() {
@@ -77,20 +92,35 @@ fn split_header(header: &str, separator: u8) -> Vec<String> {
             ']' | ')' => depth -= 1,
             _ => {}
         }
-        if depth <= 0 && c == char::from(separator) {
+        if depth <= 0 && c == separator {
             fields.push(String::new());
         } else if c != '"'
+            && !c.is_control()
             && let Some(last) = fields.last_mut()
         {
             last.push(c);
         }
     }
+    // A separator at the end of the line is a habit of some loggers.
+    if fields.len() > 1 && fields.last().is_some_and(|f| f.trim().is_empty()) {
+        fields.pop();
+    }
     fields.iter().map(|f| f.trim().to_owned()).collect()
 }
 
-/// Whether the first row of numbers is written with a decimal comma.
-fn decimal_comma<'a>(mut lines: impl Iterator<Item = (usize, &'a str)>) -> bool {
-    lines.next().is_some_and(|(_, line)| line.contains(','))
+/// Splits a row of numbers; a separator inside quotes belongs to the field.
+fn split_row<'a>(row: &'a str, separator: char, fields: &mut Vec<&'a str>) {
+    fields.clear();
+    if !row.contains('"') {
+        fields.extend(row.split(separator).map(str::trim));
+        return;
+    }
+    let mut quoted = false;
+    let pieces = row.split(|c| {
+        quoted ^= c == '"';
+        c == separator && !quoted
+    });
+    fields.extend(pieces.map(|f| f.trim().trim_matches('"').trim()));
 }
 
 type Failure = (usize, Option<String>, Problem);
@@ -98,53 +128,86 @@ type Failure = (usize, Option<String>, Problem);
 /// Values by column, in SI.
 fn read_rows<'a>(
     header: &Header,
-    dialect: Dialect,
+    mut dialect: Dialect,
     lines: impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); header.columns.len()];
     let time = header.columns.iter().position(|c| c.role == Role::Time);
     let mut fields: Vec<&str> = Vec::with_capacity(header.width);
     for (line, row) in lines {
-        fields.clear();
-        fields.extend(row.split(char::from(dialect.separator)).map(|f| f.trim().trim_matches('"')));
+        split_row(row, dialect.separator, &mut fields);
         // A separator at the end of every row is a habit of some loggers.
         if fields.len() == header.width + 1 && fields.last().is_some_and(|f| f.is_empty()) {
             fields.pop();
         }
         if fields.len() != header.width {
-            return Err((line, None, Problem::Ragged { found: fields.len(), expected: header.width }));
+            return Err((
+                line,
+                None,
+                Problem::Ragged {
+                    found: fields.len(),
+                    expected: header.width,
+                    hint: if dialect.separator == ',' && fields.len() > header.width {
+                        "; decimal commas need ; or tab between the columns"
+                    } else {
+                        ""
+                    },
+                },
+            ));
         }
         for (column, values) in header.columns.iter().zip(&mut values) {
             let here = || Some(format!("{} ({})", column.index + 1, column.name));
             let text = fields[column.index];
-            let value = number(text, dialect)
-                .ok_or_else(|| (line, here(), Problem::NotANumber { text: shorten(text) }))?;
+            let value = number(text, &mut dialect).ok_or_else(|| {
+                (
+                    line,
+                    here(),
+                    Problem::NotANumber {
+                        text: shorten(text),
+                    },
+                )
+            })? * column.factor;
             if !value.is_finite() {
-                return Err((line, here(), Problem::NotFinite { text: shorten(text) }));
+                return Err((
+                    line,
+                    here(),
+                    Problem::NotFinite {
+                        text: shorten(text),
+                    },
+                ));
             }
-            values.push(value * column.factor);
+            values.push(value);
         }
-        if let Some(time) = time.map(|i| &values[i])
+        if let Some((column, time)) = time.map(|i| (&header.columns[i], &values[i]))
             && let [.., before, now] = time.as_slice()
             && now <= before
         {
-            let problem = Problem::TimeOrder { before: format!("{before}"), now: format!("{now}") };
-            return Err((line, None, problem));
+            let here = Some(format!("{} ({})", column.index + 1, column.name));
+            let problem = Problem::TimeOrder {
+                before: format!("{before}"),
+                now: format!("{now}"),
+            };
+            return Err((line, here, problem));
         }
     }
     Ok(values)
 }
 
-fn number(text: &str, dialect: Dialect) -> Option<f64> {
-    if dialect.decimal_comma && text.contains(',') {
+fn number(text: &str, dialect: &mut Dialect) -> Option<f64> {
+    let mark = text
+        .bytes()
+        .find(|b| matches!(b, b'.' | b','))
+        .map(char::from);
+    match (mark, dialect.mark) {
+        (Some(here), Some(before)) if here != before => return None,
+        (Some(here), None) => dialect.mark = Some(here),
+        _ => {}
+    }
+    if mark == Some(',') {
         text.replacen(',', ".", 1).parse().ok()
     } else {
         text.parse().ok()
     }
-}
-
-fn shorten(text: &str) -> String {
-    text.chars().take(30).collect()
 }
 
 fn assemble(name: &str, header: &Header, values: Vec<Vec<f64>>) -> Result<Measurement, Problem> {
@@ -156,7 +219,12 @@ fn assemble(name: &str, header: &Header, values: Vec<Vec<f64>>) -> Result<Measur
             time = values;
             continue;
         };
-        let channel = Channel { quantity, name: column.name.clone(), unit: column.unit.clone(), values };
+        let channel = Channel {
+            quantity,
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+            values,
+        };
         match quantity {
             Quantity::Input => input = Some(channel),
             Quantity::LoadPosition | Quantity::LoadVelocity => reference.push(channel),
@@ -164,14 +232,36 @@ fn assemble(name: &str, header: &Header, values: Vec<Vec<f64>>) -> Result<Measur
         }
     }
     if time.len() < MIN_SAMPLES {
-        return Err(Problem::TooShort { found: time.len(), expected: MIN_SAMPLES });
+        return Err(Problem::TooShort {
+            found: time.len(),
+            expected: MIN_SAMPLES,
+        });
     }
-    let input = input.ok_or(Problem::NoColumn { wanted: "u", hint: "add the input, such as u [N m]" })?;
+    let input = input.ok_or(Problem::NoColumn {
+        wanted: "u",
+        hint: "add the input, such as u [N m]",
+    })?;
     outputs.sort_by_key(|c| c.quantity != Quantity::Position);
     let warnings = header
         .ignored
         .iter()
-        .map(|n| format!("The column '{n}' is not used: its name is not one of t, u, x1, v1, x2, v2, y."))
+        .map(|n| ignored(n, header.kind))
         .collect();
-    Ok(Measurement { name: name.to_owned(), kind: header.kind, time, input, outputs, reference, warnings })
+    Ok(Measurement {
+        name: name.to_owned(),
+        kind: header.kind,
+        time,
+        input,
+        outputs,
+        reference,
+        warnings,
+    })
+}
+
+fn ignored(name: &str, kind: Kind) -> String {
+    let used = match kind {
+        Kind::Drive => "a drive has t, u, x1, v1, x2, v2",
+        Kind::Process => "a process has t, u, y",
+    };
+    format!("The column '{name}' is not used: {used}.")
 }

@@ -17,46 +17,64 @@ pub struct ImportError {
 }
 
 fn place(line: Option<usize>, column: Option<&str>) -> String {
-    let mut text = String::new();
-    if let Some(line) = line {
-        text.push_str(&format!(", line {line}"));
-    }
-    if let Some(column) = column {
-        text.push_str(&format!(", column {column}"));
-    }
-    text
+    let line = line.map_or_else(String::new, |line| format!(", line {line}"));
+    let column = column.map_or_else(String::new, |column| format!(", column {column}"));
+    line + &column
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
 }
 
 /// What is wrong with a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of each says it")]
 pub enum Problem {
-    #[error("the file is empty; expected a header such as t [s],u [N m],x1 [rad],v1 [rad/s] and rows of numbers")]
+    #[error(
+        "the file is empty; expected a header such as t [s],u [N m],x1 [rad],v1 [rad/s] and rows of numbers"
+    )]
     Empty,
-    #[error("the file is not text in UTF-8; save it as CSV in UTF-8")]
+    #[error("the file is not text in UTF-8 here; save it as CSV in UTF-8")]
     NotText,
-    #[error("'{found}' is not a header; the first line must name the columns with units, such as t [s],u [N m],x1 [rad],v1 [rad/s] or t [s],u [1],y [1]")]
+    #[error(
+        "'{found}' is not a header; the first line must name the columns with units, such as t [s],u [N m],x1 [rad],v1 [rad/s] or t [s],u [1],y [1]"
+    )]
     NoHeader { found: String },
-    #[error("no unit; write it in brackets after the name, such as {name} [s]; accepted: {ACCEPTED}")]
+    #[error(
+        "no unit; write it in brackets after the name, such as {name} [s]; accepted: {ACCEPTED}"
+    )]
     NoUnit { name: String },
     #[error("the unit '{unit}' does not fit; expected {expected}")]
     WrongUnit { unit: String, expected: String },
-    #[error("counts need their resolution, such as {name} [counts, 4096/rev] or {name} [counts, 0.001 mm]")]
+    #[error(
+        "counts need their resolution, such as {name} [counts, 4096/rev] or {name} [counts, 0.001 mm]"
+    )]
     BareCounts { name: String },
     #[error("no column '{wanted}'; {hint}")]
-    NoColumn { wanted: &'static str, hint: &'static str },
+    NoColumn {
+        wanted: &'static str,
+        hint: &'static str,
+    },
     #[error("the column '{name}' stands there twice; each may come once")]
     Twice { name: String },
-    #[error("rotational and translational units are mixed ({one} and {other}); use N m with rad, or N with m")]
+    #[error(
+        "rotational and translational units are mixed ({one} and {other}); use N m with rad, or N with m"
+    )]
     Mixed { one: String, other: String },
-    #[error("{found} fields, but the header has {expected}")]
-    Ragged { found: usize, expected: usize },
-    #[error("'{text}' is not a number; expected for example 0.25 or 1e-3")]
+    #[error("{found} field{}, but the header has {expected}{hint}", plural(*found))]
+    Ragged {
+        found: usize,
+        expected: usize,
+        hint: &'static str,
+    },
+    #[error("'{text}' is not a number; expected e.g. 0.25 or 1e-3")]
     NotANumber { text: String },
     #[error("'{text}' is not finite; remove the row or measure again")]
     NotFinite { text: String },
-    #[error("time does not increase ({now} s after {before} s); rows must be in order of time, each time once")]
+    #[error(
+        "time does not increase ({now} s after {before} s); rows must be in order of time, each time once"
+    )]
     TimeOrder { before: String, now: String },
-    #[error("only {found} rows of numbers; at least {expected} are needed to tell noise from signal")]
+    #[error("only {found} row{} of numbers; at least {expected} are needed to tell noise from signal", plural(*found))]
     TooShort { found: usize, expected: usize },
 }

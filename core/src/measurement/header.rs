@@ -36,18 +36,25 @@ pub(super) struct Header {
 pub(super) type Located = (Option<(usize, String)>, Problem);
 
 /// Role that a column name stands for.
-fn role(name: &str) -> Option<Role> {
+pub(super) fn role(name: &str) -> Option<Role> {
     use Quantity::{Input, LoadPosition, LoadVelocity, Output, Position, Velocity};
     Some(match name.to_lowercase().as_str() {
         "t" | "time" | "zeit" => Role::Time,
         "u" | "torque" | "tau" | "force" | "f" | "input" | "motor_torque" => Role::Measured(Input),
-        "x1" | "x" | "position" | "pos" | "theta" | "angle" | "q" | "phi" => Role::Measured(Position),
+        "x1" | "x" | "position" | "pos" | "theta" | "angle" | "q" | "phi" => {
+            Role::Measured(Position)
+        }
         "v1" | "v" | "velocity" | "vel" | "omega" | "speed" | "w" => Role::Measured(Velocity),
         "x2" | "load_position" => Role::Measured(LoadPosition),
         "v2" | "load_velocity" => Role::Measured(LoadVelocity),
         "y" | "output" => Role::Measured(Output),
         _ => return None,
     })
+}
+
+/// At most 30 characters of a text from the file, none of which can break a line of the terminal.
+pub(super) fn shorten(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(30).collect()
 }
 
 /// Splits `x1 [rad]` into name and unit; parentheses serve as well.
@@ -69,21 +76,23 @@ pub(super) fn understand(fields: &[String], kind: Option<Kind>) -> Result<Header
     let parsed: Vec<(String, Option<String>)> = fields.iter().map(|f| name_and_unit(f)).collect();
     let roles: Vec<Option<Role>> = parsed.iter().map(|(name, _)| role(name)).collect();
     if roles.iter().all(Option::is_none) {
-        let found: String = fields.join(",").chars().take(60).collect();
+        let found = shorten(&fields.join(","));
         return Err((None, Problem::NoHeader { found }));
     }
     let has = |q: Quantity| roles.contains(&Some(Role::Measured(q)));
-    let kind = kind.unwrap_or(if has(Quantity::Output) && !has(Quantity::Position) && !has(Quantity::Velocity) {
-        Kind::Process
-    } else {
-        Kind::Drive
-    });
+    let kind = kind.unwrap_or(
+        if has(Quantity::Output) && !has(Quantity::Position) && !has(Quantity::Velocity) {
+            Kind::Process
+        } else {
+            Kind::Drive
+        },
+    );
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
     for (index, ((name, unit), role)) in parsed.into_iter().zip(roles).enumerate() {
         let here = || Some((index + 1, name.clone()));
         let Some(role) = role.filter(|r| belongs(*r, kind)) else {
-            ignored.push(name);
+            ignored.push(shorten(&name));
             continue;
         };
         if columns.iter().any(|c| c.role == role) {
@@ -92,10 +101,23 @@ pub(super) fn understand(fields: &[String], kind: Option<Kind>) -> Result<Header
         let Some(unit) = unit.filter(|u| !u.is_empty()) else {
             return Err((here(), Problem::NoUnit { name }));
         };
-        let (measures, factor, unit) = convert(role, kind, &name, &unit).map_err(|p| (here(), p))?;
-        columns.push(Column { index, role, name, factor, measures, unit });
+        let (measures, factor, unit) =
+            convert(role, kind, &name, &unit).map_err(|p| (here(), p))?;
+        columns.push(Column {
+            index,
+            role,
+            name,
+            factor,
+            measures,
+            unit,
+        });
     }
-    let header = Header { kind, columns, ignored, width: fields.len() };
+    let header = Header {
+        kind,
+        columns,
+        ignored,
+        width: fields.len(),
+    };
     complete(&header)?;
     Ok(header)
 }
@@ -108,24 +130,49 @@ fn belongs(role: Role, kind: Kind) -> bool {
     }
 }
 
-fn convert(role: Role, kind: Kind, name: &str, unit: &str) -> Result<(Measures, f64, String), Problem> {
+fn convert(
+    role: Role,
+    kind: Kind,
+    name: &str,
+    unit: &str,
+) -> Result<(Measures, f64, String), Problem> {
     use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
     let expected: (&[Measures], &str) = match (role, kind) {
         (Role::Time, _) => (&[Time], "a time: s, ms, us, min"),
         (_, Kind::Process) => return Ok((Measures::Other, 1.0, unit.to_owned())),
-        (Role::Measured(Quantity::Input), _) => (&[Torque, Force], "a torque or force: N m, mN m, N, kN"),
-        (Role::Measured(Quantity::Position | Quantity::LoadPosition), _) => {
-            (&[Angle, Length], "an angle or length: rad, deg, rev, m, mm, or counts with a resolution")
+        (Role::Measured(Quantity::Input), _) => {
+            (&[Torque, Force], "a torque or force: N m, mN m, N, kN")
         }
-        (Role::Measured(_), _) => (&[AngularVelocity, Speed], "a velocity: rad/s, deg/s, rpm, m/s, mm/s"),
+        (Role::Measured(Quantity::Position | Quantity::LoadPosition), _) => (
+            &[Angle, Length],
+            "an angle or length: rad, deg, rev, m, mm, or counts with a resolution",
+        ),
+        (Role::Measured(_), _) => (
+            &[AngularVelocity, Speed],
+            "a velocity: rad/s, deg/s, rpm, m/s, mm/s",
+        ),
     };
-    if unit::is_bare_counts(unit) {
-        return Err(Problem::BareCounts { name: name.to_owned() });
+    let position = matches!(
+        role,
+        Role::Measured(Quantity::Position | Quantity::LoadPosition)
+    );
+    if position && unit::is_bare_counts(unit) {
+        return Err(Problem::BareCounts {
+            name: name.to_owned(),
+        });
     }
     match unit::parse(unit) {
-        Some((measures, factor)) if expected.0.contains(&measures) => Ok((measures, factor, measures.si().to_owned())),
-        Some(_) => Err(Problem::WrongUnit { unit: unit.to_owned(), expected: expected.1.to_owned() }),
-        None => Err(Problem::WrongUnit { unit: unit.to_owned(), expected: format!("{} ({ACCEPTED})", expected.1) }),
+        Some((measures, factor)) if expected.0.contains(&measures) => {
+            Ok((measures, factor, measures.si().to_owned()))
+        }
+        Some(_) => Err(Problem::WrongUnit {
+            unit: shorten(unit),
+            expected: expected.1.to_owned(),
+        }),
+        None => Err(Problem::WrongUnit {
+            unit: shorten(unit),
+            expected: format!("{} ({ACCEPTED})", expected.1),
+        }),
     }
 }
 
@@ -138,11 +185,17 @@ fn complete(header: &Header) -> Result<(), Located> {
         return missing("t", "add the time, such as t [s]");
     }
     if !measured(Quantity::Input) {
-        return missing("u", "add the input, such as u [N m], u [N] or for a process u [1]");
+        return missing(
+            "u",
+            "add the input, such as u [N m], u [N] or for a process u [1]",
+        );
     }
     match header.kind {
         Kind::Drive if !measured(Quantity::Position) && !measured(Quantity::Velocity) => {
-            return missing("x1", "a drive needs its position x1 [rad] or its velocity v1 [rad/s], or both; a process needs y [1]");
+            return missing(
+                "x1",
+                "a drive needs its position x1 [rad] or its velocity v1 [rad/s], or both; a process needs y [1]",
+            );
         }
         Kind::Process if !measured(Quantity::Output) => {
             return missing("y", "a process needs its output, such as y [1]");
@@ -155,10 +208,17 @@ fn complete(header: &Header) -> Result<(), Located> {
         _ => None,
     };
     let mut first: Option<&Column> = None;
-    for column in header.columns.iter().filter(|c| rotational(c.measures).is_some()) {
+    for column in header
+        .columns
+        .iter()
+        .filter(|c| rotational(c.measures).is_some())
+    {
         match first {
             Some(one) if rotational(one.measures) != rotational(column.measures) => {
-                let problem = Problem::Mixed { one: one.unit.clone(), other: column.unit.clone() };
+                let problem = Problem::Mixed {
+                    one: one.unit.clone(),
+                    other: column.unit.clone(),
+                };
                 return Err((Some((column.index + 1, column.name.clone())), problem));
             }
             Some(_) => {}

@@ -1,7 +1,7 @@
 //! What was measured: one experiment, in SI units, checked.
 //!
 //! A [`Measurement`] holds one input and the outputs that were recorded with it.
-//! Time is strictly increasing and every value is finite: [`Measurement::new`]
+//! Time is strictly increasing and every value is finite: [`import_csv`]
 //! refuses anything else, so that no later module has to check again.
 
 mod csv;
@@ -94,6 +94,29 @@ impl Measurement {
         }
     }
 
+    /// The measurement as CSV in SI units, which [`import_csv`] reads back to the same values.
+    pub fn to_csv(&self) -> String {
+        use std::fmt::Write as _;
+        let channels: Vec<&Channel> = std::iter::once(&self.input)
+            .chain(&self.outputs)
+            .chain(&self.reference)
+            .collect();
+        let mut text = String::from("t [s]");
+        // Writing into a string cannot fail.
+        for channel in &channels {
+            let _ = write!(text, ",{} [{}]", channel.importable_name(), channel.unit);
+        }
+        text.push('\n');
+        for (i, time) in self.time.iter().enumerate() {
+            let _ = write!(text, "{time:?}");
+            for value in channels.iter().filter_map(|c| c.values.get(i)) {
+                let _ = write!(text, ",{value:?}");
+            }
+            text.push('\n');
+        }
+        text
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time.len()
@@ -102,5 +125,22 @@ impl Measurement {
     /// Whether there are no samples (never true for a checked measurement).
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
+    }
+}
+
+impl Channel {
+    /// Its own name where the importer would understand it, else the usual one.
+    fn importable_name(&self) -> &str {
+        if header::role(&self.name) == Some(header::Role::Measured(self.quantity)) {
+            return &self.name;
+        }
+        match self.quantity {
+            Quantity::Input => "u",
+            Quantity::Position => "x1",
+            Quantity::Velocity => "v1",
+            Quantity::LoadPosition => "x2",
+            Quantity::LoadVelocity => "v2",
+            Quantity::Output => "y",
+        }
     }
 }

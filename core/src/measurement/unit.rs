@@ -39,7 +39,10 @@ pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force 
 /// Counts are written `counts, 4096/rev` (so many a turn) or `counts, 0.001 mm` (one count is so much).
 pub(super) fn parse(text: &str) -> Option<(Measures, f64)> {
     if let Some((name, resolution)) = text.split_once(',').or_else(|| text.split_once(';'))
-        && matches!(name.trim().to_lowercase().as_str(), "count" | "counts" | "cnt" | "inc" | "increments")
+        && matches!(
+            name.trim().to_lowercase().as_str(),
+            "count" | "counts" | "cnt" | "inc" | "increments"
+        )
     {
         return counts(resolution.trim());
     }
@@ -48,7 +51,10 @@ pub(super) fn parse(text: &str) -> Option<(Measures, f64)> {
 
 /// Whether the unit is counts without a resolution.
 pub(super) fn is_bare_counts(text: &str) -> bool {
-    matches!(text.trim().to_lowercase().as_str(), "count" | "counts" | "cnt" | "inc" | "increments")
+    matches!(
+        text.trim().to_lowercase().as_str(),
+        "count" | "counts" | "cnt" | "inc" | "increments"
+    )
 }
 
 fn counts(resolution: &str) -> Option<(Measures, f64)> {
@@ -88,7 +94,7 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "us" | "microseconds" => (Time, 1e-6),
         "min" | "minutes" => (Time, 60.0),
         "h" => (Time, 3600.0),
-        "nm" | "n.m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
+        "nm" | "n.m" | "n-m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
         "knm" => (Torque, 1e3),
         "ncm" => (Torque, 1e-2),
         "n" | "newton" => (Force, 1.0),
@@ -101,9 +107,9 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "mm" => (Length, 1e-3),
         "cm" => (Length, 1e-2),
         "um" => (Length, 1e-6),
-        "rad/s" | "rads^-1" | "rads-1" => (AngularVelocity, 1.0),
+        "rad/s" | "rad/sec" | "rads^-1" | "rads-1" => (AngularVelocity, 1.0),
         "mrad/s" => (AngularVelocity, 1e-3),
-        "deg/s" | "°/s" => (AngularVelocity, PI / 180.0),
+        "deg/s" | "deg/sec" | "°/s" => (AngularVelocity, PI / 180.0),
         "rpm" | "rev/min" | "1/min" | "min-1" | "min^-1" => (AngularVelocity, TAU / 60.0),
         "rev/s" | "rps" => (AngularVelocity, TAU),
         "m/s" => (Speed, 1.0),
@@ -132,9 +138,21 @@ mod tests {
         check("mN m", Measures::Torque, 1e-3);
         check("mN", Measures::Force, 1e-3);
         check("deg", Measures::Angle, std::f64::consts::PI / 180.0);
-        check("rpm", Measures::AngularVelocity, std::f64::consts::TAU / 60.0);
-        check("counts, 4096/rev", Measures::Angle, std::f64::consts::TAU / 4096.0);
+        check(
+            "rpm",
+            Measures::AngularVelocity,
+            std::f64::consts::TAU / 60.0,
+        );
+        check(
+            "counts, 4096/rev",
+            Measures::Angle,
+            std::f64::consts::TAU / 4096.0,
+        );
         check("counts, 0.001 mm", Measures::Length, 1e-6);
-        assert!(parse("furlong").is_none() && parse("counts, 0/rev").is_none() && parse("counts").is_none());
+        assert!(
+            parse("furlong").is_none()
+                && parse("counts, 0/rev").is_none()
+                && parse("counts").is_none()
+        );
     }
 }
