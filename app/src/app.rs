@@ -87,7 +87,11 @@ impl HysteronApp {
                     self.page = page;
                 }
             }
-            egui::widgets::global_theme_preference_buttons(ui);
+            let dark = ui.visuals().dark_mode;
+            let (label, other) = if dark { ("Light", egui::Theme::Light) } else { ("Dark", egui::Theme::Dark) };
+            if ui.button(label).clicked() {
+                ui.ctx().set_theme(other);
+            }
         });
     }
 

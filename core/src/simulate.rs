@@ -66,8 +66,8 @@ impl Flow {
 
 /// Runs `plant` (without its dead time) under `relay`, whose output acts `lag` seconds after a switch.
 ///
-/// Starts at rest with the relay low, so that the plant is pushed upwards at once; `steps` samples
-/// `step` seconds apart.
+/// Starts from rest after one `step` of upward push, since an ideal relay would never leave the
+/// origin; `steps` samples `step` seconds apart.
 pub fn simulate(plant: &StateSpace, relay: &Relay, lag: f64, step: f64, steps: usize) -> Trajectory {
     let mut run = Run {
         plant,
@@ -81,6 +81,9 @@ pub fn simulate(plant: &StateSpace, relay: &Relay, lag: f64, step: f64, steps: u
         out: Trajectory::default(),
         swing: None,
     };
+    run.x = run.full.apply(&run.x, run.u);
+    run.high = run.output() > relay.hysteresis;
+    run.u = relay.output(run.high);
     run.out.input.push([0.0, run.u]);
     for i in 0..steps {
         let t = step * i as f64;
