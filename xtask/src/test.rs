@@ -1,1 +1,37 @@
-pub fn test() -> Result<(), String> { Ok(()) }
+//! Every check and test, stage by stage.
+
+use std::time::Instant;
+
+use crate::run::run;
+use crate::{browser, setup, web};
+
+type Stage = (&'static str, fn() -> Result<(), String>);
+
+const STAGES: [Stage; 6] = [
+    ("set-up", setup::setup),
+    ("formatting", || run("cargo", &["fmt", "--all", "--check"])),
+    ("lints", || run("cargo", &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
+    ("tests: core, command line, app", || run("cargo", &["test", "--workspace"])),
+    ("web build", web::build),
+    ("page in headless Chromium", browser::test),
+];
+
+/// Runs all stages; a failure does not keep the later ones from running.
+pub fn test() -> Result<(), String> {
+    let mut lines = Vec::new();
+    let mut failed = 0;
+    for (name, stage) in STAGES {
+        println!("\n=== {name}");
+        let started = Instant::now();
+        let result = stage();
+        let seconds = started.elapsed().as_secs();
+        lines.push(match &result {
+            Ok(()) => format!("ok      {name} ({seconds} s)"),
+            Err(error) => format!("FAILED  {name} ({seconds} s): {error}"),
+        });
+        failed += usize::from(result.is_err());
+    }
+    println!("\n=== summary\n{}", lines.join("\n"));
+    println!("{} passed, {failed} failed", STAGES.len() - failed);
+    if failed == 0 { Ok(()) } else { Err("not everything passed".to_owned()) }
+}

@@ -247,7 +247,7 @@ fn time_plot(ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData, height
         .allow_scroll(false)
         .legend(Legend::default())
         .show(ui, |plot| {
-            plot.line(Line::new("input u", curve(&data.input)).color(theme::INPUT).width(1.2));
+            plot.line(Line::new("input u", curve(&data.input)).color(theme::INPUT).width(1.2).allow_band(false));
             let output: PlotPoints<'_> = data.time.iter().zip(&data.output).map(|(t, y)| [*t, *y]).collect();
             plot.line(Line::new("output y", output).color(theme::SIMULATED).width(2.5));
             for eps in [input.relay.hysteresis, -input.relay.hysteresis] {
