@@ -47,12 +47,14 @@ pub struct HysteronApp {
 impl HysteronApp {
     /// A fresh app.
     pub fn new(cc: &eframe::CreationContext<'_>) -> Self {
-        theme::apply(&cc.egui_ctx);
         Self::default()
     }
 
     /// One frame: takes what came in, draws the page, publishes the state.
     pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
+        if self.frame == 0 {
+            theme::apply(ui.ctx());
+        }
         self.frame += 1;
         self.targets.clear();
         self.take_dropped_files(ui.ctx());
@@ -88,7 +90,11 @@ impl HysteronApp {
                 }
             }
             let dark = ui.visuals().dark_mode;
-            let (label, other) = if dark { ("Light", egui::Theme::Light) } else { ("Dark", egui::Theme::Dark) };
+            let (label, other) = if dark {
+                ("Light", egui::Theme::Light)
+            } else {
+                ("Dark", egui::Theme::Dark)
+            };
             if ui.button(label).clicked() {
                 ui.ctx().set_theme(other);
             }
@@ -104,9 +110,12 @@ impl HysteronApp {
 
     fn drop_hint_ui(&self, ctx: &egui::Context) {
         if ctx.input(|i| !i.raw.hovered_files.is_empty()) {
-            egui::Area::new(egui::Id::unique("drop")).anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ctx, |ui| {
-                egui::Frame::popup(ui.style()).show(ui, |ui| ui.heading("Drop the measurement to compare it"));
-            });
+            egui::Area::new(egui::Id::unique("drop"))
+                .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+                .show(ctx, |ui| {
+                    egui::Frame::popup(ui.style())
+                        .show(ui, |ui| ui.heading("Drop the measurement to compare it"));
+                });
         }
     }
 }

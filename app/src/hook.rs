@@ -23,7 +23,10 @@ impl Targets {
 
     /// As a JSON object of `[x, y]`.
     pub fn to_json(&self) -> serde_json::Value {
-        self.0.iter().map(|(name, p)| (name.clone(), serde_json::json!([p.x, p.y]))).collect()
+        self.0
+            .iter()
+            .map(|(name, p)| (name.clone(), serde_json::json!([p.x, p.y])))
+            .collect()
     }
 }
 

@@ -22,8 +22,16 @@ pub struct Job(platform::Job);
 
 impl Job {
     /// Criticises the baseline with `effects` on `measurement`.
-    pub fn start(ctx: &egui::Context, measurement: &Arc<Measurement>, effects: &[EffectId]) -> Self {
-        Self(platform::Job::start(ctx.clone(), Arc::clone(measurement), effects.to_vec()))
+    pub fn start(
+        ctx: &egui::Context,
+        measurement: &Arc<Measurement>,
+        effects: &[EffectId],
+    ) -> Self {
+        Self(platform::Job::start(
+            ctx.clone(),
+            Arc::clone(measurement),
+            effects.to_vec(),
+        ))
     }
 
     /// What has happened since the last call.
@@ -50,7 +58,11 @@ mod platform {
     }
 
     impl Job {
-        pub fn start(ctx: egui::Context, measurement: Arc<Measurement>, effects: Vec<EffectId>) -> Self {
+        pub fn start(
+            ctx: egui::Context,
+            measurement: Arc<Measurement>,
+            effects: Vec<EffectId>,
+        ) -> Self {
             let (sender, news) = channel();
             let cancelled = Arc::new(AtomicBool::new(false));
             let stop = Arc::clone(&cancelled);
@@ -64,7 +76,9 @@ mod platform {
                 };
                 while !stop.load(Ordering::Relaxed) {
                     let (news, done) = match job.advance() {
-                        Progress::Running { fraction, text } => (News::Progress(fraction, text), false),
+                        Progress::Running { fraction, text } => {
+                            (News::Progress(fraction, text), false)
+                        }
                         Progress::Done(report) => (News::Report(Box::new(report)), true),
                     };
                     if sender.send(news).is_err() {
@@ -108,19 +122,35 @@ mod platform {
     pub struct Job {
         worker: Option<Worker>,
         news: Rc<RefCell<Vec<News>>>,
-        _handlers: Option<(Closure<dyn FnMut(MessageEvent)>, Closure<dyn FnMut(ErrorEvent)>)>,
+        _handlers: Option<(
+            Closure<dyn FnMut(MessageEvent)>,
+            Closure<dyn FnMut(ErrorEvent)>,
+        )>,
     }
 
     impl Job {
-        pub fn start(ctx: egui::Context, measurement: Arc<Measurement>, effects: Vec<EffectId>) -> Self {
+        pub fn start(
+            ctx: egui::Context,
+            measurement: Arc<Measurement>,
+            effects: Vec<EffectId>,
+        ) -> Self {
             let news = Rc::new(RefCell::new(Vec::new()));
             let options = WorkerOptions::new();
             options.set_type(WorkerType::Module);
             let Ok(worker) = Worker::new_with_options("./worker.js", &options) else {
-                news.borrow_mut().push(News::Failed("the browser refuses to start a worker".to_owned()));
-                return Self { worker: None, news, _handlers: None };
+                news.borrow_mut().push(News::Failed(
+                    "the browser refuses to start a worker".to_owned(),
+                ));
+                return Self {
+                    worker: None,
+                    news,
+                    _handlers: None,
+                };
             };
-            let request = Request::Step { measurement: Box::new((*measurement).clone()), effects };
+            let request = Request::Step {
+                measurement: Box::new((*measurement).clone()),
+                effects,
+            };
             let (inbox, outbox, repaint) = (Rc::clone(&news), worker.clone(), ctx.clone());
             let on_message = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
                 let Some(text) = event.data().as_string() else {
@@ -133,7 +163,9 @@ mod platform {
                             let _ = outbox.post_message(&JsValue::from_str(&text));
                         }
                     }
-                    Ok(Reply::Progress { fraction, text }) => inbox.borrow_mut().push(News::Progress(fraction, text)),
+                    Ok(Reply::Progress { fraction, text }) => {
+                        inbox.borrow_mut().push(News::Progress(fraction, text))
+                    }
                     Ok(Reply::Report { report }) => inbox.borrow_mut().push(News::Report(report)),
                     Ok(Reply::Error { text }) => inbox.borrow_mut().push(News::Failed(text)),
                     Err(error) => inbox.borrow_mut().push(News::Failed(error.to_string())),
@@ -142,12 +174,19 @@ mod platform {
             });
             let (inbox, repaint) = (Rc::clone(&news), ctx);
             let on_error = Closure::<dyn FnMut(ErrorEvent)>::new(move |event: ErrorEvent| {
-                inbox.borrow_mut().push(News::Failed(format!("the worker stopped: {}", event.message())));
+                inbox.borrow_mut().push(News::Failed(format!(
+                    "the worker stopped: {}",
+                    event.message()
+                )));
                 repaint.request_repaint();
             });
             worker.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
             worker.set_onerror(Some(on_error.as_ref().unchecked_ref()));
-            Self { worker: Some(worker), news, _handlers: Some((on_message, on_error)) }
+            Self {
+                worker: Some(worker),
+                news,
+                _handlers: Some((on_message, on_error)),
+            }
         }
 
         pub fn news(&mut self) -> Vec<News> {

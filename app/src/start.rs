@@ -25,8 +25,12 @@ pub fn run_native() -> Result<(), String> {
             .with_drag_and_drop(true),
         ..Default::default()
     };
-    eframe::run_native("hysteron", options, Box::new(|cc| Ok(Box::new(HysteronApp::new(cc)))))
-        .map_err(|e| format!("hysteron: {NO_DISPLAY} ({})", one_line(&e.to_string())))
+    eframe::run_native(
+        "hysteron",
+        options,
+        Box::new(|cc| Ok(Box::new(HysteronApp::new(cc)))),
+    )
+    .map_err(|e| format!("hysteron: {NO_DISPLAY} ({})", one_line(&e.to_string())))
 }
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -38,7 +42,10 @@ fn one_line(text: &str) -> String {
 #[cfg(not(target_arch = "wasm32"))]
 fn display_exists() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
-    !cfg!(all(unix, not(target_os = "macos"))) || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set)
+    !cfg!(all(unix, not(target_os = "macos")))
+        || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
+            .into_iter()
+            .any(set)
 }
 
 /// Starts the app on the canvas `hysteron-canvas`; a failure is written into the element `hysteron-error`.

@@ -24,14 +24,26 @@ pub const SHADE: Color32 = Color32::from_rgb(0xF0, 0xE4, 0x42);
 /// Type sizes and spacing, large enough for the back row of a lecture hall.
 pub fn apply(ctx: &egui::Context) {
     // The default greys are too faint for a projector.
-    ctx.style_mut_of(egui::Theme::Dark, |style| style.visuals.override_text_color = Some(Color32::from_gray(225)));
-    ctx.style_mut_of(egui::Theme::Light, |style| style.visuals.override_text_color = Some(Color32::from_gray(20)));
+    ctx.style_mut_of(egui::Theme::Dark, |style| {
+        style.visuals.override_text_color = Some(Color32::from_gray(225))
+    });
+    ctx.style_mut_of(egui::Theme::Light, |style| {
+        style.visuals.override_text_color = Some(Color32::from_gray(20))
+    });
     ctx.all_styles_mut(|style| {
         use egui::{FontId, TextStyle};
-        style.text_styles.insert(TextStyle::Body, FontId::proportional(14.5));
-        style.text_styles.insert(TextStyle::Button, FontId::proportional(14.5));
-        style.text_styles.insert(TextStyle::Small, FontId::proportional(12.0));
-        style.text_styles.insert(TextStyle::Heading, FontId::proportional(20.0));
+        style
+            .text_styles
+            .insert(TextStyle::Body, FontId::proportional(14.5));
+        style
+            .text_styles
+            .insert(TextStyle::Button, FontId::proportional(14.5));
+        style
+            .text_styles
+            .insert(TextStyle::Small, FontId::proportional(12.0));
+        style
+            .text_styles
+            .insert(TextStyle::Heading, FontId::proportional(20.0));
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(10.0, 4.0);
         style.spacing.slider_width = 150.0;

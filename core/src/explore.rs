@@ -3,7 +3,9 @@
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-use crate::limit_cycle::{Cycle, Intersection, describing_function, exact_symmetric, typical_frequency};
+use crate::limit_cycle::{
+    Cycle, Intersection, describing_function, exact_symmetric, typical_frequency,
+};
 use crate::plant::{PlantError, TransferFunction, presets};
 use crate::relay::{Relay, RelayError};
 use crate::simulate::simulate;
@@ -82,21 +84,45 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     let (plant, relay) = (&input.plant, &input.relay);
     let lag = plant.dead_time + relay.delay;
     let intersections = describing_function(plant, relay);
-    let dominant = intersections.iter().find(|i| i.cycle.stable == Some(true)).or(intersections.first());
+    let dominant = intersections
+        .iter()
+        .find(|i| i.cycle.stable == Some(true))
+        .or(intersections.first());
     let space = plant.state_space();
-    let guess = dominant.map_or(10.0 / typical_frequency(plant) + 2.0 * lag, |i| i.cycle.period);
-    let exact = if relay.asymmetry == 0.0 { exact_symmetric(&space, relay, lag, 0.5 * guess) } else { None };
+    let guess = dominant.map_or(10.0 / typical_frequency(plant) + 2.0 * lag, |i| {
+        i.cycle.period
+    });
+    let exact = if relay.asymmetry == 0.0 {
+        exact_symmetric(&space, relay, lag, 0.5 * guess)
+    } else {
+        None
+    };
     let period = exact.map_or(guess, |c| c.period);
     let step = period / SAMPLES_PER_PERIOD;
-    let run = simulate(&space, relay, lag, step, (PERIODS * SAMPLES_PER_PERIOD) as usize);
+    let run = simulate(
+        &space,
+        relay,
+        lag,
+        step,
+        (PERIODS * SAMPLES_PER_PERIOD) as usize,
+    );
     let simulated = settled(&run);
-    let phase: Vec<[f64; 2]> = run.output.iter().zip(&run.slope).map(|(y, v)| [*y, *v]).collect();
+    let phase: Vec<[f64; 2]> = run
+        .output
+        .iter()
+        .zip(&run.slope)
+        .map(|(y, v)| [*y, *v])
+        .collect();
     let last = (simulated.map_or(period, |c| c.period) / step).ceil() as usize + 1;
     let cycle = phase[phase.len().saturating_sub(last)..].to_vec();
     let end = run.time.last().copied().unwrap_or(0.0);
     let text = sentence(simulated, exact, run.chattering);
     Ok(ExploreData {
-        nyquist: nyquist(plant, relay.delay, dominant.map_or(typical_frequency(plant), |i| i.omega)),
+        nyquist: nyquist(
+            plant,
+            relay.delay,
+            dominant.map_or(typical_frequency(plant), |i| i.omega),
+        ),
         inverse_df: inverse_df(relay, dominant),
         intersections,
         exact,
@@ -121,15 +147,31 @@ fn settled(run: &crate::simulate::Trajectory) -> Option<Cycle> {
     let (period, amplitude) = (c - b, 0.5 * (last[1] - last[0]));
     let calm = ((b - a) / period - 1.0).abs() < SETTLED
         && ((before[1] - before[0]) / (2.0 * amplitude) - 1.0).abs() < SETTLED;
-    calm.then_some(Cycle { period, amplitude, stable: Some(true) })
+    calm.then_some(Cycle {
+        period,
+        amplitude,
+        stable: Some(true),
+    })
 }
 
 fn sentence(simulated: Option<Cycle>, exact: Option<Cycle>, chattering: bool) -> String {
     match (simulated, exact) {
-        _ if chattering => "The relay chatters: it switches without end, the output slides along the threshold.".to_owned(),
-        (Some(c), _) => format!("It oscillates: period {:.3} s, amplitude {:.4}.", c.period, c.amplitude),
-        (None, Some(c)) => format!("It approaches an oscillation: period {:.3} s, amplitude {:.4}.", c.period, c.amplitude),
-        (None, None) => "It does not settle into an oscillation: the relay never comes back, or not regularly.".to_owned(),
+        _ if chattering => {
+            "The relay chatters: it switches without end, the output slides along the threshold."
+                .to_owned()
+        }
+        (Some(c), _) => format!(
+            "It oscillates: period {:.3} s, amplitude {:.4}.",
+            c.period, c.amplitude
+        ),
+        (None, Some(c)) => format!(
+            "It approaches an oscillation: period {:.3} s, amplitude {:.4}.",
+            c.period, c.amplitude
+        ),
+        (None, None) => {
+            "It does not settle into an oscillation: the relay never comes back, or not regularly."
+                .to_owned()
+        }
     }
 }
 
@@ -146,9 +188,13 @@ fn nyquist(plant: &TransferFunction, delay: f64, centre: f64) -> Vec<[f64; 2]> {
 
 /// `-1/N(a)` from the smallest amplitude to twice the predicted one.
 fn inverse_df(relay: &Relay, dominant: Option<&Intersection>) -> Vec<[f64; 2]> {
-    let reach = dominant.map_or(4.0 * relay.hysteresis.max(relay.gain), |i| 2.5 * i.cycle.amplitude);
+    let reach = dominant.map_or(4.0 * relay.hysteresis.max(relay.gain), |i| {
+        2.5 * i.cycle.amplitude
+    });
     let largest = reach.max(1.5 * relay.hysteresis);
-    [relay.hysteresis, largest].map(|a| relay.inverse_describing_function(a)).to_vec()
+    [relay.hysteresis, largest]
+        .map(|a| relay.inverse_describing_function(a))
+        .to_vec()
 }
 
 /// Corners of a step curve.

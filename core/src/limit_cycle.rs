@@ -47,20 +47,36 @@ const CYCLE_POINTS: usize = 256;
 /// coefficients show where some are at 0.
 pub fn typical_frequency(plant: &TransferFunction) -> f64 {
     let lead = plant.denominator[0];
-    let poles = plant.denominator.iter().rposition(|c| *c != 0.0).unwrap_or(0);
-    let size = if poles > 0 { (plant.denominator[poles] / lead).abs().powf(1.0 / poles as f64) } else { 1.0 };
-    if plant.dead_time > 0.0 { size.min(PI / plant.dead_time) } else { size }
+    let poles = plant
+        .denominator
+        .iter()
+        .rposition(|c| *c != 0.0)
+        .unwrap_or(0);
+    let size = if poles > 0 {
+        (plant.denominator[poles] / lead)
+            .abs()
+            .powf(1.0 / poles as f64)
+    } else {
+        1.0
+    };
+    if plant.dead_time > 0.0 {
+        size.min(PI / plant.dead_time)
+    } else {
+        size
+    }
 }
 
 /// All intersections of the Nyquist curve with `-1/N(a)`, equations (5) and (6): where
 /// `Im P(jw) = -pi eps/(4k)` and `Re P(jw) <= 0`; `lag` is the relay's delay in s.
 pub fn describing_function(plant: &TransferFunction, relay: &Relay) -> Vec<Intersection> {
-    let response = |w: f64| plant.response(w) * nalgebra::Complex::from_polar(1.0, -w * relay.delay);
+    let response =
+        |w: f64| plant.response(w) * nalgebra::Complex::from_polar(1.0, -w * relay.delay);
     let level = -PI * relay.hysteresis / (4.0 * relay.gain);
     let balance = |w: f64| response(w).im - level;
     let centre = typical_frequency(plant);
     let count = (2.0 * SCAN_DECADES * SCAN_PER_DECADE as f64) as usize;
-    let frequency = |i: usize| centre * 10_f64.powf(-SCAN_DECADES + i as f64 / SCAN_PER_DECADE as f64);
+    let frequency =
+        |i: usize| centre * 10_f64.powf(-SCAN_DECADES + i as f64 / SCAN_PER_DECADE as f64);
     let mut found = Vec::new();
     for i in 0..count {
         let (low, high) = (frequency(i), frequency(i + 1));
@@ -79,7 +95,11 @@ pub fn describing_function(plant: &TransferFunction, relay: &Relay) -> Vec<Inter
         found.push(Intersection {
             point: [p.re, p.im],
             omega,
-            cycle: Cycle { period: 2.0 * PI / omega, amplitude: reach, stable: Some(f_high > f_low) },
+            cycle: Cycle {
+                period: 2.0 * PI / omega,
+                amplitude: reach,
+                stable: Some(f_high > f_low),
+            },
         });
     }
     found
@@ -125,8 +145,12 @@ pub fn exact_symmetric(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) 
         }
         let h = bisect(low, high, f_low, |h| half.balance(h).unwrap_or(f64::NAN));
         // A jump of the balance (where the delay passes a multiple of h) is no root.
-        let Some(rest) = half.balance(h) else { continue };
-        if rest.abs() > 1e-7 * (f_low.abs() + f_high.abs() + relay.hysteresis) || !half.crosses_first(h) {
+        let Some(rest) = half.balance(h) else {
+            continue;
+        };
+        if rest.abs() > 1e-7 * (f_low.abs() + f_high.abs() + relay.hysteresis)
+            || !half.crosses_first(h)
+        {
             continue;
         }
         let distance = (h / guess).ln().abs();
@@ -135,7 +159,11 @@ pub fn exact_symmetric(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) 
         }
     }
     let (_, h) = best?;
-    Some(Cycle { period: 2.0 * h, amplitude: half.amplitude(h)?, stable: half.stable(h) })
+    Some(Cycle {
+        period: 2.0 * h,
+        amplitude: half.amplitude(h)?,
+        stable: half.stable(h),
+    })
 }
 
 struct HalfPeriod<'a> {
@@ -149,7 +177,11 @@ impl HalfPeriod<'_> {
     fn input(&self, h: f64) -> (f64, f64, f64) {
         let whole = (self.lag / h).floor();
         let sign = if whole % 2.0 == 0.0 { 1.0 } else { -1.0 };
-        (sign * self.relay.gain, -sign * self.relay.gain, self.lag - whole * h)
+        (
+            sign * self.relay.gain,
+            -sign * self.relay.gain,
+            self.lag - whole * h,
+        )
     }
 
     /// State at the upward switch.
@@ -214,8 +246,12 @@ impl HalfPeriod<'_> {
     fn amplitude(&self, h: f64) -> Option<f64> {
         let points = self.outputs(h)?;
         let x0 = self.start(h)?;
-        let top = (0..points.len()).max_by(|a, b| points[*a].1.abs().total_cmp(&points[*b].1.abs()))?;
-        let (mut low, mut high) = (points[top.saturating_sub(1)].0, points[(top + 1).min(points.len() - 1)].0);
+        let top =
+            (0..points.len()).max_by(|a, b| points[*a].1.abs().total_cmp(&points[*b].1.abs()))?;
+        let (mut low, mut high) = (
+            points[top.saturating_sub(1)].0,
+            points[(top + 1).min(points.len() - 1)].0,
+        );
         // Golden section: the output has one extremum between neighbouring points.
         let ratio = 0.5 * (5_f64.sqrt() - 1.0);
         let size = |t: f64| self.plant.c.dot(&self.state(&x0, h, t)).abs();
@@ -240,7 +276,8 @@ impl HalfPeriod<'_> {
         let x0 = self.start(h)?;
         let (_, u, _) = self.input(h);
         let n = self.plant.b.len();
-        let w = &self.plant.a * -x0 + &self.plant.b * if self.lag > 0.0 { u } else { -self.relay.gain };
+        let w =
+            &self.plant.a * -x0 + &self.plant.b * if self.lag > 0.0 { u } else { -self.relay.gain };
         let rate = self.plant.c.dot(&w);
         if rate == 0.0 || !rate.is_finite() {
             return None;

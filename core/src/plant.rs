@@ -26,10 +26,14 @@ pub enum PlantError {
     #[error("a coefficient is not finite: every coefficient must be a number")]
     NotFinite,
     /// Order out of range.
-    #[error("the denominator has order {0}: it must be 1 to {MAX_ORDER}, its first coefficient not 0")]
+    #[error(
+        "the denominator has order {0}: it must be 1 to {MAX_ORDER}, its first coefficient not 0"
+    )]
     Order(usize),
     /// Numerator of too high an order.
-    #[error("the numerator has order {numerator}, the denominator {denominator}: the numerator's must be lower")]
+    #[error(
+        "the numerator has order {numerator}, the denominator {denominator}: the numerator's must be lower"
+    )]
     NotProper {
         /// Order of the numerator.
         numerator: usize,
@@ -55,7 +59,11 @@ pub struct StateSpace {
 impl TransferFunction {
     /// Numerator and denominator, highest power first, and dead time in s.
     pub fn new(numerator: &[f64], denominator: &[f64], dead_time: f64) -> Self {
-        Self { numerator: numerator.to_vec(), denominator: denominator.to_vec(), dead_time }
+        Self {
+            numerator: numerator.to_vec(),
+            denominator: denominator.to_vec(),
+            dead_time,
+        }
     }
 
     /// Numerator without leading zeros.
@@ -66,7 +74,12 @@ impl TransferFunction {
 
     /// Checks coefficients, orders and dead time.
     pub fn validate(&self) -> Result<(), PlantError> {
-        if self.numerator.iter().chain(&self.denominator).any(|c| !c.is_finite()) {
+        if self
+            .numerator
+            .iter()
+            .chain(&self.denominator)
+            .any(|c| !c.is_finite())
+        {
             return Err(PlantError::NotFinite);
         }
         let order = self.denominator.len().saturating_sub(1);
@@ -75,7 +88,10 @@ impl TransferFunction {
         }
         let numerator = self.trimmed().len().saturating_sub(1);
         if numerator >= order {
-            return Err(PlantError::NotProper { numerator, denominator: order });
+            return Err(PlantError::NotProper {
+                numerator,
+                denominator: order,
+            });
         }
         if !(self.dead_time.is_finite() && self.dead_time >= 0.0) {
             return Err(PlantError::DeadTime(self.dead_time));
@@ -87,7 +103,8 @@ impl TransferFunction {
     pub fn response(&self, omega: f64) -> Complex<f64> {
         let s = Complex::new(0.0, omega);
         let horner = |p: &[f64]| p.iter().fold(Complex::new(0.0, 0.0), |acc, c| acc * s + *c);
-        horner(&self.numerator) / horner(&self.denominator) * Complex::from_polar(1.0, -omega * self.dead_time)
+        horner(&self.numerator) / horner(&self.denominator)
+            * Complex::from_polar(1.0, -omega * self.dead_time)
     }
 
     /// Controllable canonical form of a valid transfer function, without the dead time.
@@ -130,11 +147,47 @@ pub fn presets() -> Vec<Preset> {
         plant: TransferFunction::new(numerator, denominator, dead_time),
     };
     vec![
-        preset("Third-order lag", "Three equal storages in a row.", &[1.0], &[1.0, 3.0, 3.0, 1.0], 0.0),
-        preset("Fourth-order lag", "Four equal storages in a row.", &[1.0], &[1.0, 4.0, 6.0, 4.0, 1.0], 0.0),
-        preset("Lag with dead time", "One storage behind a transport belt.", &[1.0], &[1.0, 1.0], 0.5),
-        preset("Integrator with lags", "A positioning drive.", &[1.0], &[1.0, 3.0, 2.0, 0.0], 0.0),
-        preset("Resonant", "A storage and a weakly damped oscillation.", &[4.0], &[1.0, 1.8, 4.8, 4.0], 0.0),
-        preset("Non-minimum phase", "It first moves the wrong way.", &[-1.0, 1.0], &[1.0, 2.0, 1.0], 0.0),
+        preset(
+            "Third-order lag",
+            "Three equal storages in a row.",
+            &[1.0],
+            &[1.0, 3.0, 3.0, 1.0],
+            0.0,
+        ),
+        preset(
+            "Fourth-order lag",
+            "Four equal storages in a row.",
+            &[1.0],
+            &[1.0, 4.0, 6.0, 4.0, 1.0],
+            0.0,
+        ),
+        preset(
+            "Lag with dead time",
+            "One storage behind a transport belt.",
+            &[1.0],
+            &[1.0, 1.0],
+            0.5,
+        ),
+        preset(
+            "Integrator with lags",
+            "A positioning drive.",
+            &[1.0],
+            &[1.0, 3.0, 2.0, 0.0],
+            0.0,
+        ),
+        preset(
+            "Resonant",
+            "A storage and a weakly damped oscillation.",
+            &[4.0],
+            &[1.0, 1.8, 4.8, 4.0],
+            0.0,
+        ),
+        preset(
+            "Non-minimum phase",
+            "It first moves the wrong way.",
+            &[-1.0, 1.0],
+            &[1.0, 2.0, 1.0],
+            0.0,
+        ),
     ]
 }

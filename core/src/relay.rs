@@ -22,7 +22,12 @@ pub struct Relay {
 
 impl Default for Relay {
     fn default() -> Self {
-        Self { gain: 1.0, hysteresis: 0.1, asymmetry: 0.0, delay: 0.0 }
+        Self {
+            gain: 1.0,
+            hysteresis: 0.1,
+            asymmetry: 0.0,
+            delay: 0.0,
+        }
     }
 }
 
@@ -39,17 +44,35 @@ impl Relay {
     /// Checks every field.
     pub fn validate(&self) -> Result<(), RelayError> {
         let check = |name, value: f64, fits: bool, range| {
-            if value.is_finite() && fits { Ok(()) } else { Err(RelayError { name, value, range }) }
+            if value.is_finite() && fits {
+                Ok(())
+            } else {
+                Err(RelayError { name, value, range })
+            }
         };
         check("gain", self.gain, self.gain > 0.0, "above 0")?;
-        check("hysteresis", self.hysteresis, self.hysteresis >= 0.0, "0 or more")?;
-        check("asymmetry", self.asymmetry, self.asymmetry.abs() <= 0.99, "between -0.99 and 0.99")?;
+        check(
+            "hysteresis",
+            self.hysteresis,
+            self.hysteresis >= 0.0,
+            "0 or more",
+        )?;
+        check(
+            "asymmetry",
+            self.asymmetry,
+            self.asymmetry.abs() <= 0.99,
+            "between -0.99 and 0.99",
+        )?;
         check("delay", self.delay, self.delay >= 0.0, "0 s or more")
     }
 
     /// Output for `h = +1` (`high`) or `h = -1`.
     pub fn output(&self, high: bool) -> f64 {
-        if high { -self.gain * (1.0 - self.asymmetry) } else { self.gain * (1.0 + self.asymmetry) }
+        if high {
+            -self.gain * (1.0 - self.asymmetry)
+        } else {
+            self.gain * (1.0 + self.asymmetry)
+        }
     }
 
     /// Real and imaginary part of `-1/N(a)`, equation (6), for the amplitude `a >= eps` of the output:
@@ -57,6 +80,9 @@ impl Relay {
     pub fn inverse_describing_function(&self, amplitude: f64) -> [f64; 2] {
         let scale = -std::f64::consts::PI / (4.0 * self.gain);
         let eps = self.hysteresis;
-        [scale * (amplitude * amplitude - eps * eps).max(0.0).sqrt(), scale * eps]
+        [
+            scale * (amplitude * amplitude - eps * eps).max(0.0).sqrt(),
+            scale * eps,
+        ]
     }
 }

@@ -45,7 +45,10 @@ impl Flow {
         m.view_mut((0, 0), (n, n)).copy_from(&(&plant.a * h));
         m.view_mut((0, n), (n, 1)).copy_from(&(&plant.b * h));
         let e = m.exp();
-        Self { phi: e.view((0, 0), (n, n)).into_owned(), gamma: e.view((0, n), (n, 1)).column(0).into_owned() }
+        Self {
+            phi: e.view((0, 0), (n, n)).into_owned(),
+            gamma: e.view((0, n), (n, 1)).column(0).into_owned(),
+        }
     }
 
     /// Transition matrix.
@@ -68,7 +71,13 @@ impl Flow {
 ///
 /// Starts from rest after one `step` of upward push, since an ideal relay would never leave the
 /// origin; `steps` samples `step` seconds apart.
-pub fn simulate(plant: &StateSpace, relay: &Relay, lag: f64, step: f64, steps: usize) -> Trajectory {
+pub fn simulate(
+    plant: &StateSpace,
+    relay: &Relay,
+    lag: f64,
+    step: f64,
+    steps: usize,
+) -> Trajectory {
     let mut run = Run {
         plant,
         relay,
@@ -125,7 +134,10 @@ impl Run<'_> {
 
     fn sample(&mut self, t: f64) {
         self.note_swing();
-        let slope = self.plant.c.dot(&(&self.plant.a * &self.x + &self.plant.b * self.u));
+        let slope = self
+            .plant
+            .c
+            .dot(&(&self.plant.a * &self.x + &self.plant.b * self.u));
         self.out.time.push(t);
         self.out.output.push(self.output());
         self.out.slope.push(slope);
@@ -134,7 +146,11 @@ impl Run<'_> {
     /// Positive beyond the threshold at which the relay switches next.
     fn beyond(&self, x: &DVector<f64>) -> f64 {
         let y = self.plant.c.dot(x);
-        if self.high { -self.relay.hysteresis - y } else { y - self.relay.hysteresis }
+        if self.high {
+            -self.relay.hysteresis - y
+        } else {
+            y - self.relay.hysteresis
+        }
     }
 
     /// Moves on by `step` from `t`; false if the relay chatters.
@@ -144,7 +160,12 @@ impl Run<'_> {
         for _ in 0..MAX_SWITCHES_PER_STEP {
             let change = self.pending.front().map(|p| p.0).filter(|c| *c < end);
             let span = change.unwrap_or(end) - now;
-            let next = if span == step { self.full.apply(&self.x, self.u) } else { self.after(span) };
+            let whole = change.is_none() && now == t;
+            let next = if whole {
+                self.full.apply(&self.x, self.u)
+            } else {
+                self.after(span)
+            };
             if self.beyond(&next) > 0.0 && self.beyond(&self.x) <= 0.0 {
                 let t_switch = self.locate(span);
                 self.x = self.after(t_switch);
@@ -174,7 +195,11 @@ impl Run<'_> {
     /// Duration until the threshold within `span`, at whose end it is passed.
     fn locate(&self, span: f64) -> f64 {
         let (start, end) = (self.beyond(&self.x), self.beyond(&self.after(span)));
-        if start == 0.0 { 0.0 } else { root(span, start, end, |t| self.beyond(&self.after(t))) }
+        if start == 0.0 {
+            0.0
+        } else {
+            root(span, start, end, |t| self.beyond(&self.after(t)))
+        }
     }
 
     fn switch(&mut self, now: f64) {

@@ -26,10 +26,14 @@ pub fn test() -> Result<(), String> {
     wait(&session, "the page to start", |s| s["ready"] == true)?;
     look(&session, &folder.join("explore.png"))?;
     click(&session, "page:compare")?;
-    wait(&session, "the compare page", |s| s["page"] == "compare" && !s["targets"]["builtin:drive-02"].is_null())?;
+    wait(&session, "the compare page", |s| {
+        s["page"] == "compare" && !s["targets"]["builtin:drive-02"].is_null()
+    })?;
     click(&session, "builtin:drive-02")?;
     let frames = Frames::default();
-    let before = frames.wait(&session, "the candidates", |s| s["busy"] == false && has_candidate(s))?;
+    let before = frames.wait(&session, "the candidates", |s| {
+        s["busy"] == false && has_candidate(s)
+    })?;
     let error = before["error"].as_f64().ok_or("no error is shown")?;
     look(&session, &folder.join("compare.png"))?;
     click(&session, "add:coulomb_friction")?;
@@ -47,7 +51,10 @@ pub fn test() -> Result<(), String> {
 }
 
 fn has_candidate(state: &Value) -> bool {
-    state["candidates"].as_array().is_some_and(|c| !c.is_empty()) && !state["targets"]["add:coulomb_friction"].is_null()
+    state["candidates"]
+        .as_array()
+        .is_some_and(|c| !c.is_empty())
+        && !state["targets"]["add:coulomb_friction"].is_null()
 }
 
 fn wait(session: &Session, what: &str, done: impl Fn(&Value) -> bool) -> Result<Value, String> {
@@ -58,7 +65,10 @@ fn wait(session: &Session, what: &str, done: impl Fn(&Value) -> bool) -> Result<
             return Ok(state);
         }
         if started.elapsed() > PATIENCE {
-            return Err(format!("waited in vain for {what}; the page says {state}; {:?}", session.quiet()));
+            return Err(format!(
+                "waited in vain for {what}; the page says {state}; {:?}",
+                session.quiet()
+            ));
         }
         std::thread::sleep(Duration::from_millis(200));
     }
@@ -69,7 +79,12 @@ fn wait(session: &Session, what: &str, done: impl Fn(&Value) -> bool) -> Result<
 struct Frames;
 
 impl Frames {
-    fn wait(&self, session: &Session, what: &str, done: impl Fn(&Value) -> bool) -> Result<Value, String> {
+    fn wait(
+        &self,
+        session: &Session,
+        what: &str,
+        done: impl Fn(&Value) -> bool,
+    ) -> Result<Value, String> {
         let (mut busy, mut drawn) = (0, 0);
         let last = std::cell::Cell::new(0);
         let counts = std::cell::RefCell::new((&mut busy, &mut drawn));
@@ -85,14 +100,18 @@ impl Frames {
         })?;
         println!("{what}: seen busy {busy} times, with new frames {drawn} times");
         if busy > 4 && drawn * 2 < busy {
-            return Err(format!("the page stood still while it waited for {what}: {drawn} of {busy} looks saw a new frame"));
+            return Err(format!(
+                "the page stood still while it waited for {what}: {drawn} of {busy} looks saw a new frame"
+            ));
         }
         Ok(state)
     }
 }
 
 fn click(session: &Session, target: &str) -> Result<(), String> {
-    let state = wait(session, &format!("the button {target}"), |s| s["targets"][target].is_array())?;
+    let state = wait(session, &format!("the button {target}"), |s| {
+        s["targets"][target].is_array()
+    })?;
     let coordinate = |i: usize| state["targets"][target][i].as_f64().unwrap_or(0.0);
     session.click(coordinate(0), coordinate(1))
 }
@@ -102,15 +121,28 @@ fn look(session: &Session, path: &std::path::Path) -> Result<(), String> {
     std::thread::sleep(Duration::from_millis(800));
     let bytes = session.screenshot()?;
     std::fs::write(path, &bytes).map_err(|e| e.to_string())?;
-    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().map_err(|e| e.to_string())?;
-    let mut pixels = vec![0; reader.output_buffer_size().ok_or("the screenshot is too large")?];
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
+        .read_info()
+        .map_err(|e| e.to_string())?;
+    let mut pixels = vec![
+        0;
+        reader
+            .output_buffer_size()
+            .ok_or("the screenshot is too large")?
+    ];
     let info = reader.next_frame(&mut pixels).map_err(|e| e.to_string())?;
-    let mut colours: Vec<&[u8]> = pixels[..info.buffer_size()].chunks(info.color_type.samples()).collect();
+    let mut colours: Vec<&[u8]> = pixels[..info.buffer_size()]
+        .chunks(info.color_type.samples())
+        .collect();
     colours.sort_unstable();
     colours.dedup();
     println!("{}: {} colours", path.display(), colours.len());
     if colours.len() < LEAST_COLOURS {
-        return Err(format!("{} is blank: only {} colours", path.display(), colours.len()));
+        return Err(format!(
+            "{} is blank: only {} colours",
+            path.display(),
+            colours.len()
+        ));
     }
     Ok(())
 }

@@ -12,7 +12,8 @@ pub fn forever(port: u16) -> Result<(), String> {
     if !dist.join("index.html").is_file() {
         return Err("there is no page yet: build it with cargo xtask web".to_owned());
     }
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|e| format!("port {port}: {e}"))?;
+    let listener =
+        TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|e| format!("port {port}: {e}"))?;
     println!("Hysteron is at http://127.0.0.1:{port}/ (stop with Ctrl-C)");
     accept(&listener, &dist);
     Ok(())
@@ -40,7 +41,8 @@ fn answer(mut stream: TcpStream, dist: &Path) -> std::io::Result<()> {
     let mut line = String::new();
     BufReader::new(&stream).read_line(&mut line)?;
     let wanted = line.split_whitespace().nth(1).unwrap_or("/");
-    let found = file_for(dist, wanted).and_then(|path| Some((content_type(&path), std::fs::read(path).ok()?)));
+    let found = file_for(dist, wanted)
+        .and_then(|path| Some((content_type(&path), std::fs::read(path).ok()?)));
     let (status, kind, body) = match found {
         Some((kind, body)) => ("200 OK", kind, body),
         None => ("404 Not Found", "text/plain", b"not found".to_vec()),
@@ -55,9 +57,15 @@ fn answer(mut stream: TcpStream, dist: &Path) -> std::io::Result<()> {
 
 /// The file inside `dist` that a request names; nothing outside it.
 fn file_for(dist: &Path, wanted: &str) -> Option<PathBuf> {
-    let path = wanted.split(['?', '#']).next().unwrap_or("/").trim_start_matches('/');
+    let path = wanted
+        .split(['?', '#'])
+        .next()
+        .unwrap_or("/")
+        .trim_start_matches('/');
     let path = Path::new(if path.is_empty() { "index.html" } else { path });
-    path.components().all(|c| matches!(c, Component::Normal(_))).then(|| dist.join(path))
+    path.components()
+        .all(|c| matches!(c, Component::Normal(_)))
+        .then(|| dist.join(path))
 }
 
 fn content_type(path: &Path) -> &'static str {

@@ -16,7 +16,11 @@ const PACKAGES: [(&str, &str); 6] = [
 
 /// Installs what is missing.
 pub fn setup() -> Result<(), String> {
-    let missing: Vec<&str> = PACKAGES.iter().filter(|p| !installed(p.0, p.1)).map(|p| p.0).collect();
+    let missing: Vec<&str> = PACKAGES
+        .iter()
+        .filter(|p| !installed(p.0, p.1))
+        .map(|p| p.0)
+        .collect();
     if missing.is_empty() {
         println!("Everything that the tests need is installed.");
         return Ok(());
@@ -24,7 +28,9 @@ pub fn setup() -> Result<(), String> {
     let list = missing.join(" ");
     let by_hand = format!("install these first: apt-get update && apt-get install --yes {list}");
     if !exists("apt-get") {
-        return Err(format!("this system has no apt-get; install what corresponds to: {list}"));
+        return Err(format!(
+            "this system has no apt-get; install what corresponds to: {list}"
+        ));
     }
     let root = output("id", &["-u"]).is_some_and(|id| id == "0");
     let sudo = !root && output("sudo", &["-n", "true"]).is_some();
@@ -32,19 +38,28 @@ pub fn setup() -> Result<(), String> {
         return Err(by_hand);
     }
     let apt = |arguments: &[&str]| {
-        let mut command = if root { Command::new("apt-get") } else { Command::new("sudo") };
+        let mut command = if root {
+            Command::new("apt-get")
+        } else {
+            Command::new("sudo")
+        };
         if !root {
             command.args(["-n", "apt-get"]);
         }
-        command.env("DEBIAN_FRONTEND", "noninteractive").args(arguments);
+        command
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .args(arguments);
         check(&mut command, "apt-get", arguments)
     };
     let mut install = vec!["install", "--yes", "--no-install-recommends"];
     install.extend(&missing);
-    apt(&["update"]).and_then(|()| apt(&install)).map_err(|e| format!("{e}; {by_hand}"))
+    apt(&["update"])
+        .and_then(|()| apt(&install))
+        .map_err(|e| format!("{e}; {by_hand}"))
 }
 
 fn installed(package: &str, file: &str) -> bool {
     (!file.is_empty() && std::path::Path::new(file).exists())
-        || output("dpkg-query", &["-W", "-f=${Status}", package]).is_some_and(|s| s.contains("install ok installed"))
+        || output("dpkg-query", &["-W", "-f=${Status}", package])
+            .is_some_and(|s| s.contains("install ok installed"))
 }

@@ -10,8 +10,22 @@ type Stage = (&'static str, fn() -> Result<(), String>);
 const STAGES: [Stage; 6] = [
     ("set-up", setup::setup),
     ("formatting", || run("cargo", &["fmt", "--all", "--check"])),
-    ("lints", || run("cargo", &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
-    ("tests: core, command line, app", || run("cargo", &["test", "--workspace"])),
+    ("lints", || {
+        run(
+            "cargo",
+            &[
+                "clippy",
+                "--workspace",
+                "--all-targets",
+                "--",
+                "-D",
+                "warnings",
+            ],
+        )
+    }),
+    ("tests: core, command line, app", || {
+        run("cargo", &["test", "--workspace"])
+    }),
     ("web build", web::build),
     ("page in headless Chromium", browser::test),
 ];
@@ -33,5 +47,9 @@ pub fn test() -> Result<(), String> {
     }
     println!("\n=== summary\n{}", lines.join("\n"));
     println!("{} passed, {failed} failed", STAGES.len() - failed);
-    if failed == 0 { Ok(()) } else { Err("not everything passed".to_owned()) }
+    if failed == 0 {
+        Ok(())
+    } else {
+        Err("not everything passed".to_owned())
+    }
 }

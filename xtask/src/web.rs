@@ -12,7 +12,10 @@ use crate::run::{check, output, root, run};
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// The binaries and the names that they have in `dist/`.
-const BINARIES: [(&str, &str); 2] = [("hysteron", "hysteron"), ("hysteron-worker", "worker_bindings")];
+const BINARIES: [(&str, &str); 2] = [
+    ("hysteron", "hysteron"),
+    ("hysteron-worker", "worker_bindings"),
+];
 
 /// Builds the wasm modules, their bindings and the page around them.
 pub fn build() -> Result<(), String> {
@@ -34,7 +37,10 @@ pub fn build() -> Result<(), String> {
         let size = fs::metadata(&path).map_or(0, |m| m.len());
         println!("{}: {:.1} MB", path.display(), size as f64 / 1e6);
     }
-    println!("The page is in {}; see it with cargo xtask serve.", dist.display());
+    println!(
+        "The page is in {}; see it with cargo xtask serve.",
+        dist.display()
+    );
     Ok(())
 }
 
@@ -44,6 +50,7 @@ fn bind(wasm: &Path, name: &str, dist: &Path) -> Result<(), String> {
     bindgen
         .input_path(wasm)
         .out_name(name)
+        .omit_default_module_path(false)
         .web(true)
         .and_then(|b| b.typescript(false).generate(dist))
         .map_err(|e| format!("{}: {e:#}", wasm.display()))
@@ -54,18 +61,31 @@ fn compile() -> Result<PathBuf, String> {
     let folder = root().join("target/wasm");
     let mut command = Command::new("cargo");
     let arguments = [
-        "build", "--package", "hysteron", "--bins", "--profile", "web", "--target", TARGET, "--target-dir",
+        "build",
+        "--package",
+        "hysteron",
+        "--bins",
+        "--profile",
+        "web",
+        "--target",
+        TARGET,
+        "--target-dir",
         "target/wasm",
     ];
     command.args(arguments).current_dir(root());
     if !target_installed() {
-        println!("rustup cannot add {TARGET} here: building its standard library with Debian's compiler.");
+        println!(
+            "rustup cannot add {TARGET} here: building its standard library with Debian's compiler."
+        );
         let toolchain = debian_toolchain()?;
         command
             .env("RUSTC", &toolchain.rustc)
             .env("RUSTC_BOOTSTRAP", "1")
             .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
-            .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", &toolchain.linker);
+            .env(
+                "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER",
+                &toolchain.linker,
+            );
     }
     check(&mut command, "cargo", &arguments)?;
     Ok(folder.join(TARGET).join("web"))
@@ -73,8 +93,13 @@ fn compile() -> Result<PathBuf, String> {
 
 fn target_installed() -> bool {
     let listed = || {
-        output("rustc", &["--print", "sysroot"])
-            .is_some_and(|s| Path::new(&s).join("lib/rustlib").join(TARGET).join("lib").is_dir())
+        output("rustc", &["--print", "sysroot"]).is_some_and(|s| {
+            Path::new(&s)
+                .join("lib/rustlib")
+                .join(TARGET)
+                .join("lib")
+                .is_dir()
+        })
     };
     listed() || (output("rustup", &["target", "add", TARGET]).is_some() && listed())
 }
@@ -88,7 +113,8 @@ struct Toolchain {
 /// conflict with rustup's) into `target/wasm-toolchain`.
 fn debian_toolchain() -> Result<Toolchain, String> {
     let folder = root().join("target/wasm-toolchain");
-    let sysroot = output("rustc", &["--print", "sysroot"]).ok_or("rustc is not there: install Rust with rustup")?;
+    let sysroot = output("rustc", &["--print", "sysroot"])
+        .ok_or("rustc is not there: install Rust with rustup")?;
     let linker = PathBuf::from(sysroot).join("lib/rustlib/x86_64-unknown-linux-gnu/bin/rust-lld");
     let rustc = folder.join("rustc");
     if rustc.is_file() {
@@ -97,10 +123,21 @@ fn debian_toolchain() -> Result<Toolchain, String> {
     let packages = packages()?;
     fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut download = Command::new("apt-get");
-    download.arg("download").args(&packages).current_dir(&folder);
-    check(&mut download, "apt-get download", &packages.iter().map(String::as_str).collect::<Vec<_>>())?;
+    download
+        .arg("download")
+        .args(&packages)
+        .current_dir(&folder);
+    check(
+        &mut download,
+        "apt-get download",
+        &packages.iter().map(String::as_str).collect::<Vec<_>>(),
+    )?;
     let entries = fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    for entry in entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "deb")) {
+    for entry in entries
+        .flatten()
+        .map(|e| e.path())
+        .filter(|p| p.extension().is_some_and(|e| e == "deb"))
+    {
         let file = entry.to_string_lossy().into_owned();
         let deb = folder.join("deb").to_string_lossy().into_owned();
         run("dpkg", &["-x", &file, &deb])?;
@@ -110,7 +147,8 @@ fn debian_toolchain() -> Result<Toolchain, String> {
     let script = "#!/bin/sh\nhere=$(CDPATH= cd -- \"$(dirname -- \"$0\")\" && pwd)/deb/usr\n\
         LD_LIBRARY_PATH=\"$here/lib/x86_64-linux-gnu\" exec \"$here/bin/rustc\" \"$@\"\n";
     fs::write(&rustc, script).map_err(|e| format!("{}: {e}", rustc.display()))?;
-    fs::set_permissions(&rustc, fs::Permissions::from_mode(0o755)).map_err(|e| format!("{}: {e}", rustc.display()))?;
+    fs::set_permissions(&rustc, fs::Permissions::from_mode(0o755))
+        .map_err(|e| format!("{}: {e}", rustc.display()))?;
     Ok(Toolchain { rustc, linker })
 }
 
@@ -120,13 +158,17 @@ fn packages() -> Result<Vec<String>, String> {
         or on Debian 12 `apt-get update` with the security archive enabled";
     let depends = |package: &str| output("apt-cache", &["depends", package]).unwrap_or_default();
     let name_in = |text: &str, prefix: &str| {
-        text.split_whitespace().find(|w| w.starts_with(prefix) && !w.ends_with("dev")).map(str::to_owned)
+        text.split_whitespace()
+            .find(|w| w.starts_with(prefix) && !w.ends_with("dev"))
+            .map(str::to_owned)
     };
     let all = depends("rustc-web") + "\n" + &depends("libstd-rust-web-dev");
     let std = name_in(&all, "libstd-rust-web-").ok_or(NEEDED)?;
     let llvm = name_in(&(all + "\n" + &depends(&std)), "libllvm").ok_or(NEEDED)?;
-    let mut packages: Vec<String> =
-        ["rustc-web", "libstd-rust-web-dev", "rust-web-src"].iter().map(|s| (*s).to_owned()).collect();
+    let mut packages: Vec<String> = ["rustc-web", "libstd-rust-web-dev", "rust-web-src"]
+        .iter()
+        .map(|s| (*s).to_owned())
+        .collect();
     packages.extend([std, llvm]);
     Ok(packages)
 }
@@ -138,7 +180,10 @@ fn link_source(deb: &Path) -> Result<(), String> {
         .map_err(|e| format!("{}: {e}", sources.display()))?
         .flatten()
         .map(|e| e.path())
-        .find(|p| p.file_name().is_some_and(|n| n.to_string_lossy().starts_with("rustc-")))
+        .find(|p| {
+            p.file_name()
+                .is_some_and(|n| n.to_string_lossy().starts_with("rustc-"))
+        })
         .ok_or("rust-web-src holds no source")?;
     let place = deb.join("usr/lib/rustlib/src");
     fs::create_dir_all(&place).map_err(|e| format!("{}: {e}", place.display()))?;

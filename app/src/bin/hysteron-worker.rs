@@ -35,7 +35,9 @@ mod web {
             };
             let reply = match serde_json::from_str(&text) {
                 Ok(request) => work(&answer, request),
-                Err(error) => Reply::Error { text: error.to_string() },
+                Err(error) => Reply::Error {
+                    text: error.to_string(),
+                },
             };
             send(&answer, &reply);
         });
@@ -52,15 +54,26 @@ mod web {
     }
 
     fn work(scope: &DedicatedWorkerGlobalScope, request: Request) -> Reply {
-        let Request::Step { measurement, effects } = request;
+        let Request::Step {
+            measurement,
+            effects,
+        } = request;
         let mut job = match StepJob::new(&measurement, &effects) {
             Ok(job) => job,
-            Err(error) => return Reply::Error { text: error.to_string() },
+            Err(error) => {
+                return Reply::Error {
+                    text: error.to_string(),
+                };
+            }
         };
         let mut said = -1.0;
         loop {
             match job.advance() {
-                Progress::Done(report) => return Reply::Report { report: Box::new(report) },
+                Progress::Done(report) => {
+                    return Reply::Report {
+                        report: Box::new(report),
+                    };
+                }
                 Progress::Running { fraction, text } => {
                     if (fraction - said).abs() > PROGRESS_STEP {
                         said = fraction;

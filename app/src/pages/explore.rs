@@ -18,14 +18,22 @@ pub struct Explore {
 
 impl Default for Explore {
     fn default() -> Self {
-        Self { preset: 0, input: ExploreInput::default(), computed: None }
+        Self {
+            preset: 0,
+            input: ExploreInput::default(),
+            computed: None,
+        }
     }
 }
 
 impl Explore {
     /// Computes anew if something was changed.
     fn update(&mut self) {
-        if self.computed.as_ref().is_none_or(|(input, _)| *input != self.input) {
+        if self
+            .computed
+            .as_ref()
+            .is_none_or(|(input, _)| *input != self.input)
+        {
             let result = compute(&self.input).map_err(|e| e.to_string());
             self.computed = Some((self.input.clone(), result));
         }
@@ -44,17 +52,20 @@ impl Explore {
             });
             return;
         }
-        egui::Panel::left("loop").default_size(350.0).resizable(false).show(ui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| {
-                self.controls_ui(ui);
-                self.update();
-                if let Some((_, Ok(data))) = &self.computed {
-                    ui.separator();
-                    table_ui(ui, data);
-                }
-                equations_ui(ui);
+        egui::Panel::left("loop")
+            .default_size(350.0)
+            .resizable(false)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.controls_ui(ui);
+                    self.update();
+                    if let Some((_, Ok(data))) = &self.computed {
+                        ui.separator();
+                        table_ui(ui, data);
+                    }
+                    equations_ui(ui);
+                });
             });
-        });
         egui::CentralPanel::default().show(ui, |ui| {
             self.update();
             let height = ((ui.available_height() - 60.0) / 2.0).max(160.0);
@@ -71,7 +82,10 @@ impl Explore {
             .width(220.0)
             .show_ui(ui, |ui| {
                 for (index, preset) in all.iter().enumerate() {
-                    if ui.selectable_label(self.preset == index, preset.name).clicked() {
+                    if ui
+                        .selectable_label(self.preset == index, preset.name)
+                        .clicked()
+                    {
                         self.preset = index;
                         self.input.plant = preset.plant.clone();
                     }
@@ -85,10 +99,38 @@ impl Explore {
         ui.strong("Relay");
         let relay = &mut self.input.relay;
         let normal = Relay::default();
-        slider_ui(ui, &mut relay.gain, 0.1..=5.0, normal.gain, "gain k", "How strongly the relay pushes");
-        slider_ui(ui, &mut relay.hysteresis, 0.0..=0.5, normal.hysteresis, "hysteresis ε", "How far the output must pass zero before the relay switches");
-        slider_ui(ui, &mut relay.asymmetry, -0.6..=0.6, normal.asymmetry, "asymmetry a", "How much stronger it pushes up than down");
-        slider_ui(ui, &mut relay.delay, 0.0..=2.0, normal.delay, "delay [s]", "How late the switch takes effect");
+        slider_ui(
+            ui,
+            &mut relay.gain,
+            0.1..=5.0,
+            normal.gain,
+            "gain k",
+            "How strongly the relay pushes",
+        );
+        slider_ui(
+            ui,
+            &mut relay.hysteresis,
+            0.0..=0.5,
+            normal.hysteresis,
+            "hysteresis ε",
+            "How far the output must pass zero before the relay switches",
+        );
+        slider_ui(
+            ui,
+            &mut relay.asymmetry,
+            -0.6..=0.6,
+            normal.asymmetry,
+            "asymmetry a",
+            "How much stronger it pushes up than down",
+        );
+        slider_ui(
+            ui,
+            &mut relay.delay,
+            0.0..=2.0,
+            normal.delay,
+            "delay [s]",
+            "How late the switch takes effect",
+        );
         ui.small("Double-click a slider to reset it.");
     }
 
@@ -151,28 +193,56 @@ fn formula(input: &ExploreInput) -> String {
         terms.join(" + ").replace("+ -", "- ")
     };
     let plant = &input.plant;
-    let delay = if plant.dead_time > 0.0 { format!(" exp(-{} s)", plant.dead_time) } else { String::new() };
-    format!("P(s) = ({}) / ({}){delay}", polynomial(&plant.numerator), polynomial(&plant.denominator))
+    let delay = if plant.dead_time > 0.0 {
+        format!(" exp(-{} s)", plant.dead_time)
+    } else {
+        String::new()
+    };
+    format!(
+        "P(s) = ({}) / ({}){delay}",
+        polynomial(&plant.numerator),
+        polynomial(&plant.denominator)
+    )
 }
 
 /// Predictions beside the simulation.
 fn table_ui(ui: &mut egui::Ui, data: &ExploreData) {
     let reference = data.exact.or(data.simulated);
-    let describing = data.intersections.iter().find(|i| i.cycle.stable == Some(true)).or(data.intersections.first());
-    egui::Grid::new("predictions").num_columns(4).striped(true).spacing([14.0, 4.0]).show(ui, |ui| {
-        ui.label("");
-        ui.strong("period [s]");
-        ui.strong("amplitude");
-        ui.strong("stable");
-        ui.end_row();
-        row_ui(ui, "Describing function", describing.map(|i| i.cycle), reference, theme::DESCRIBING);
-        row_ui(ui, "Exact", data.exact, reference, theme::EXACT);
-        row_ui(ui, "Simulated", data.simulated, reference, theme::SIMULATED);
-    });
+    let describing = data
+        .intersections
+        .iter()
+        .find(|i| i.cycle.stable == Some(true))
+        .or(data.intersections.first());
+    egui::Grid::new("predictions")
+        .num_columns(4)
+        .striped(true)
+        .spacing([14.0, 4.0])
+        .show(ui, |ui| {
+            ui.label("");
+            ui.strong("period [s]");
+            ui.strong("amplitude");
+            ui.strong("stable");
+            ui.end_row();
+            row_ui(
+                ui,
+                "Describing function",
+                describing.map(|i| i.cycle),
+                reference,
+                theme::DESCRIBING,
+            );
+            row_ui(ui, "Exact", data.exact, reference, theme::EXACT);
+            row_ui(ui, "Simulated", data.simulated, reference, theme::SIMULATED);
+        });
     ui.small("Amplitude: half of peak to peak. In brackets: difference from the exact value.");
 }
 
-fn row_ui(ui: &mut egui::Ui, name: &str, cycle: Option<Cycle>, reference: Option<Cycle>, color: egui::Color32) {
+fn row_ui(
+    ui: &mut egui::Ui,
+    name: &str,
+    cycle: Option<Cycle>,
+    reference: Option<Cycle>,
+    color: egui::Color32,
+) {
     ui.colored_label(color, name);
     let Some(cycle) = cycle else {
         ui.label("none");
@@ -182,11 +252,16 @@ fn row_ui(ui: &mut egui::Ui, name: &str, cycle: Option<Cycle>, reference: Option
         return;
     };
     let with_difference = |value: f64, exact: Option<f64>| {
-        let difference = exact.map(|e| 100.0 * (value / e - 1.0)).filter(|d| d.abs() >= 0.05);
+        let difference = exact
+            .map(|e| 100.0 * (value / e - 1.0))
+            .filter(|d| d.abs() >= 0.05);
         difference.map_or(format!("{value:.4}"), |d| format!("{value:.4} ({d:+.1} %)"))
     };
     ui.label(with_difference(cycle.period, reference.map(|r| r.period)));
-    ui.label(with_difference(cycle.amplitude, reference.map(|r| r.amplitude)));
+    ui.label(with_difference(
+        cycle.amplitude,
+        reference.map(|r| r.amplitude),
+    ));
     ui.label(cycle.stable.map_or("?", |s| if s { "yes" } else { "no" }));
     ui.end_row();
 }
@@ -219,10 +294,24 @@ fn nyquist_plot(ui: &mut egui::Ui, data: &ExploreData, height: f32) {
         .allow_scroll(false)
         .legend(Legend::default())
         .show(ui, |plot| {
-            plot.line(Line::new("plant P(jω)", curve(&data.nyquist)).color(theme::MEASURED).width(2.0));
-            plot.line(Line::new("relay -1/N(a)", curve(&data.inverse_df)).color(theme::DESCRIBING).width(2.5).style(LineStyle::dashed_loose()));
+            plot.line(
+                Line::new("plant P(jω)", curve(&data.nyquist))
+                    .color(theme::MEASURED)
+                    .width(2.0),
+            );
+            plot.line(
+                Line::new("relay -1/N(a)", curve(&data.inverse_df))
+                    .color(theme::DESCRIBING)
+                    .width(2.5)
+                    .style(LineStyle::dashed_loose()),
+            );
             let marks: Vec<[f64; 2]> = data.intersections.iter().map(|i| i.point).collect();
-            plot.points(Points::new("predicted oscillation", curve(&marks)).color(theme::MODEL).radius(6.0).shape(MarkerShape::Diamond));
+            plot.points(
+                Points::new("predicted oscillation", curve(&marks))
+                    .color(theme::MODEL)
+                    .radius(6.0)
+                    .shape(MarkerShape::Diamond),
+            );
         });
 }
 
@@ -234,8 +323,16 @@ fn phase_plot(ui: &mut egui::Ui, data: &ExploreData, height: f32) {
         .allow_scroll(false)
         .legend(Legend::default())
         .show(ui, |plot| {
-            plot.line(Line::new("from the start", curve(&data.phase)).color(theme::SIMULATED.gamma_multiply(0.5)).width(1.0));
-            plot.line(Line::new("limit cycle", curve(&data.cycle)).color(theme::EXACT).width(3.0));
+            plot.line(
+                Line::new("from the start", curve(&data.phase))
+                    .color(theme::SIMULATED.gamma_multiply(0.5))
+                    .width(1.0),
+            );
+            plot.line(
+                Line::new("limit cycle", curve(&data.cycle))
+                    .color(theme::EXACT)
+                    .width(3.0),
+            );
         });
 }
 
@@ -247,11 +344,29 @@ fn time_plot(ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData, height
         .allow_scroll(false)
         .legend(Legend::default())
         .show(ui, |plot| {
-            plot.line(Line::new("input u", curve(&data.input)).color(theme::INPUT).width(1.2).allow_band(false));
-            let output: PlotPoints<'_> = data.time.iter().zip(&data.output).map(|(t, y)| [*t, *y]).collect();
-            plot.line(Line::new("output y", output).color(theme::SIMULATED).width(2.5));
+            plot.line(
+                Line::new("input u", curve(&data.input))
+                    .color(theme::INPUT)
+                    .width(1.2)
+                    .allow_band(false),
+            );
+            let output: PlotPoints<'_> = data
+                .time
+                .iter()
+                .zip(&data.output)
+                .map(|(t, y)| [*t, *y])
+                .collect();
+            plot.line(
+                Line::new("output y", output)
+                    .color(theme::SIMULATED)
+                    .width(2.5),
+            );
             for eps in [input.relay.hysteresis, -input.relay.hysteresis] {
-                plot.hline(HLine::new("±ε", eps).color(theme::NOISE).style(LineStyle::dashed_dense()));
+                plot.hline(
+                    HLine::new("±ε", eps)
+                        .color(theme::NOISE)
+                        .style(LineStyle::dashed_dense()),
+                );
             }
         });
 }

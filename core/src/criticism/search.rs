@@ -22,7 +22,7 @@ const WORTH_A_START: f64 = 0.2;
 const FEW_STARTS: usize = 1;
 
 /// Starting points that are followed to the end.
-const FINALISTS: usize = 2;
+const FINALISTS: usize = 3;
 
 /// A search that goes on piece by piece.
 pub(super) struct Search {

@@ -46,9 +46,15 @@ impl Effect for CoulombFriction {
             },
             ParameterSpec {
                 symbol: "s",
-                label: "displacement over which friction builds up",
+                label: "displacement over which it builds up",
                 dimension: Dimension::Position,
                 range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "z",
+                label: "damping ratio of the contact",
+                dimension: Dimension::Ratio,
+                range: Range::UnitInterval,
             },
         ]
     }
@@ -58,8 +64,8 @@ impl Effect for CoulombFriction {
         let crossed = scales.force / scales.inertia * scales.step * scales.step;
         let mut starts = Vec::new();
         for share in [0.03, 0.1, 0.3] {
-            for samples in [0.01, 0.5] {
-                starts.push(vec![share * scales.force, samples * crossed]);
+            for samples in [0.01, 0.35, 0.8] {
+                starts.push(vec![share * scales.force, samples * crossed, 0.1]);
             }
         }
         starts
@@ -68,5 +74,6 @@ impl Effect for CoulombFriction {
     fn apply(&self, values: &[f64], model: &mut Model) {
         model.dry_friction += values[0];
         model.presliding = values[1];
+        model.contact_damping = values[2];
     }
 }

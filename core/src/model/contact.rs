@@ -16,10 +16,6 @@ const KNOTS: [f64; 4] = [0.35, 1.0, 2.0, 4.0];
 /// last, where it is complete.
 const SHARES: [f64; 4] = [0.113_925, 0.285_701, 0.329_775, 0.270_599];
 
-/// Damping ratio of the sticking contact. Bristle models of metal contacts use 0.1 to 1 (Canudas de
-/// Wit et al. 1995); it keeps a held body from ringing for ever.
-const DAMPING_RATIO: f64 = 0.1;
-
 /// A contact with more radians of its own oscillation than this in one interval is taken as rigid.
 const RIGID_RADIANS: f64 = 60.0;
 
@@ -44,6 +40,8 @@ pub(super) struct Contact {
     slips: [f64; 4],
     stiffness: [f64; 4],
     total: f64,
+    /// Damping while all springs stick.
+    damping: f64,
 }
 
 impl Contact {
@@ -67,6 +65,9 @@ impl Contact {
             slips,
             stiffness,
             total: stiffness.iter().sum(),
+            damping: 2.0
+                * model.contact_damping
+                * (stiffness.iter().sum::<f64>() * model.inertia.abs()).sqrt(),
         })
     }
 
@@ -147,8 +148,7 @@ impl Contact {
             .filter(|i| sticking[*i])
             .map(|i| self.stiffness[i])
             .sum();
-        let critical = 2.0 * (self.total * self.inertia.abs()).sqrt();
-        let damping = self.viscous + DAMPING_RATIO * critical * stiffness / self.total;
+        let damping = self.viscous + self.damping * stiffness / self.total;
         let spring = Spring::new(self.inertia, stiffness, damping, self.lag);
         // One spring with the force of all: its deflection is that force over the stiffness.
         let start = Motion {

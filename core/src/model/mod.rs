@@ -9,8 +9,8 @@ mod engine;
 mod flow;
 mod replay;
 
-pub(crate) use flow::root;
 pub use engine::{Engine, State};
+pub(crate) use flow::root;
 pub use replay::{Excitation, Start};
 
 /// Static map of the input, applied sample by sample.
@@ -50,6 +50,9 @@ pub struct Model {
     /// Displacement after a reversal, rad or m, over which dry friction builds up to its level
     /// (friction level over contact stiffness, Dahl 1968); 0 for a rigid contact.
     pub presliding: f64,
+    /// Damping ratio of the sticking contact; bristle models of metal contacts use 0.1 to 1 (Canudas
+    /// de Wit et al. 1995).
+    pub contact_damping: f64,
     /// Load behind a gap.
     pub play: Option<Play>,
 }
@@ -66,6 +69,7 @@ impl Model {
             constant_force: 0.0,
             dry_friction: 0.0,
             presliding: 0.0,
+            contact_damping: 0.0,
             play: None,
         }
     }

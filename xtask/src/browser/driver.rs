@@ -24,7 +24,9 @@ impl Session {
             return Err("chromedriver is not installed: cargo xtask setup".to_owned());
         }
         let _ = std::fs::remove_dir_all(profile);
-        let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).and_then(|l| l.local_addr()).map_err(|e| e.to_string())?;
+        let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))
+            .and_then(|l| l.local_addr())
+            .map_err(|e| e.to_string())?;
         let port = free.port();
         let driver = Command::new("chromedriver")
             .arg(format!("--port={port}"))
@@ -32,11 +34,23 @@ impl Session {
             .stderr(Stdio::null())
             .spawn()
             .map_err(|e| format!("chromedriver: {e}"))?;
-        let mut session = Self { driver, port, id: String::new() };
+        let mut session = Self {
+            driver,
+            port,
+            id: String::new(),
+        };
         let mut arguments: Vec<String> = [
-            "--headless", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
-            "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-            "--disable-dev-shm-usage", "--window-size=1280,800",
+            "--headless",
+            "--use-gl=angle",
+            "--use-angle=swiftshader",
+            "--enable-unsafe-swiftshader",
+            "--disable-quic",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            "--disable-dev-shm-usage",
+            "--window-size=1280,800",
         ]
         .map(str::to_owned)
         .to_vec();
@@ -55,13 +69,17 @@ impl Session {
             }
         }
         let value = session.request("POST", "/session", &body)?;
-        value["sessionId"].as_str().ok_or("the browser did not start")?.clone_into(&mut session.id);
+        value["sessionId"]
+            .as_str()
+            .ok_or("the browser did not start")?
+            .clone_into(&mut session.id);
         Ok(session)
     }
 
     /// Opens an address.
     pub fn open(&self, url: &str) -> Result<(), String> {
-        self.command("POST", "url", &json!({"url": url})).map(|_| ())
+        self.command("POST", "url", &json!({"url": url}))
+            .map(|_| ())
     }
 
     /// The app's own word on what it shows; empty until it has one.
@@ -71,7 +89,11 @@ impl Session {
     }
 
     fn script(&self, script: &str) -> Result<Value, String> {
-        self.command("POST", "execute/sync", &json!({"script": script, "args": []}))
+        self.command(
+            "POST",
+            "execute/sync",
+            &json!({"script": script, "args": []}),
+        )
     }
 
     /// A click as a hand makes it: move, press, release.
@@ -97,7 +119,9 @@ impl Session {
             .as_array()
             .into_iter()
             .flatten()
-            .filter(|entry| entry["level"] == "SEVERE" && !entry["message"].to_string().contains("favicon.ico"))
+            .filter(|entry| {
+                entry["level"] == "SEVERE" && !entry["message"].to_string().contains("favicon.ico")
+            })
             .collect();
         let errors = self.script("return window.hysteron_errors || []")?;
         if severe.is_empty() && errors.as_array().is_none_or(Vec::is_empty) {
@@ -113,8 +137,14 @@ impl Session {
     fn request(&self, method: &str, path: &str, body: &Value) -> Result<Value, String> {
         let fail = |e: std::io::Error| format!("chromedriver {path}: {e}");
         let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).map_err(fail)?;
-        stream.set_read_timeout(Some(Duration::from_secs(300))).map_err(fail)?;
-        let body = if body.is_null() { String::new() } else { body.to_string() };
+        stream
+            .set_read_timeout(Some(Duration::from_secs(300)))
+            .map_err(fail)?;
+        let body = if body.is_null() {
+            String::new()
+        } else {
+            body.to_string()
+        };
         write!(
             stream,
             "{method} {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{body}",
@@ -122,9 +152,13 @@ impl Session {
         )
         .map_err(fail)?;
         let reply = read_reply(&mut stream).map_err(fail)?;
-        let value: Value = serde_json::from_str(&reply).map_err(|e| format!("chromedriver {path}: {e}"))?;
+        let value: Value =
+            serde_json::from_str(&reply).map_err(|e| format!("chromedriver {path}: {e}"))?;
         match value["value"]["error"].as_str() {
-            Some(error) => Err(format!("chromedriver {path}: {error}: {}", value["value"]["message"])),
+            Some(error) => Err(format!(
+                "chromedriver {path}: {error}: {}",
+                value["value"]["message"]
+            )),
             None => Ok(value["value"].clone()),
         }
     }
@@ -147,7 +181,10 @@ fn read_reply(stream: &mut TcpStream) -> std::io::Result<String> {
     loop {
         if let Some(end) = bytes.windows(4).position(|w| w == b"\r\n\r\n") {
             let head = String::from_utf8_lossy(&bytes[..end]).to_lowercase();
-            let length = head.lines().find_map(|l| l.strip_prefix("content-length:")).and_then(|l| l.trim().parse::<usize>().ok());
+            let length = head
+                .lines()
+                .find_map(|l| l.strip_prefix("content-length:"))
+                .and_then(|l| l.trim().parse::<usize>().ok());
             if let Some(length) = length
                 && bytes.len() >= end + 4 + length
             {
@@ -156,7 +193,10 @@ fn read_reply(stream: &mut TcpStream) -> std::io::Result<String> {
         }
         let n = stream.read(&mut part)?;
         if n == 0 {
-            let end = bytes.windows(4).position(|w| w == b"\r\n\r\n").map_or(bytes.len(), |e| e + 4);
+            let end = bytes
+                .windows(4)
+                .position(|w| w == b"\r\n\r\n")
+                .map_or(bytes.len(), |e| e + 4);
             return Ok(String::from_utf8_lossy(&bytes[end..]).into_owned());
         }
         bytes.extend_from_slice(&part[..n]);
@@ -166,7 +206,10 @@ fn read_reply(stream: &mut TcpStream) -> std::io::Result<String> {
 fn decode_base64(text: &str) -> Result<Vec<u8>, String> {
     let mut out = Vec::with_capacity(text.len() * 3 / 4);
     let (mut bits, mut count) = (0_u32, 0);
-    for c in text.bytes().filter(|c| !c.is_ascii_whitespace() && *c != b'=') {
+    for c in text
+        .bytes()
+        .filter(|c| !c.is_ascii_whitespace() && *c != b'=')
+    {
         let value = match c {
             b'A'..=b'Z' => c - b'A',
             b'a'..=b'z' => c - b'a' + 26,

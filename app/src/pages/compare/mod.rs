@@ -111,7 +111,10 @@ impl Compare {
 
     /// Opens a file that was dropped on the window.
     pub fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {
-        let name = file.path().file_name().map_or_else(|| "file".into(), |n| n.to_string_lossy().into_owned());
+        let name = file
+            .path()
+            .file_name()
+            .map_or_else(|| "file".into(), |n| n.to_string_lossy().into_owned());
         let (sender, ctx, file) = (self.arrivals.0.clone(), ctx.clone(), Arc::clone(file));
         #[cfg(not(target_arch = "wasm32"))]
         std::thread::spawn(move || {
@@ -198,9 +201,13 @@ impl Compare {
                     });
                 });
             } else {
-                egui::Panel::right("effects").default_size(400.0).min_size(320.0).show(ui, |ui| {
-                    egui::ScrollArea::vertical().show(ui, |ui| side::ui(self, ui, targets, &mut commands));
-                });
+                egui::Panel::right("effects")
+                    .default_size(400.0)
+                    .min_size(320.0)
+                    .show(ui, |ui| {
+                        egui::ScrollArea::vertical()
+                            .show(ui, |ui| side::ui(self, ui, targets, &mut commands));
+                    });
                 egui::CentralPanel::default().show(ui, |ui| {
                     self.answer_ui(ui);
                     self.message_ui(ui, &mut commands);
@@ -210,7 +217,8 @@ impl Compare {
                 });
             }
         } else {
-            egui::CentralPanel::default().show(ui, |ui| self.welcome_ui(ui, targets, &mut commands));
+            egui::CentralPanel::default()
+                .show(ui, |ui| self.welcome_ui(ui, targets, &mut commands));
         }
         for command in commands {
             self.carry_out(ui.ctx(), command);
@@ -227,7 +235,10 @@ impl Compare {
             Command::OpenDialog => self.open_dialog(ctx),
             Command::Close => {
                 let arrivals = std::mem::replace(&mut self.arrivals, channel());
-                *self = Self { arrivals, ..Self::default() };
+                *self = Self {
+                    arrivals,
+                    ..Self::default()
+                };
             }
             Command::Add(effect) => {
                 self.effects.push(effect);
@@ -302,7 +313,10 @@ impl Compare {
         };
         for (index, finding) in report.step.findings.iter().enumerate().take(3) {
             let row = ui.selectable_label(self.finding == index, &finding.text);
-            if row.on_hover_text("Click to shade it in the plots").clicked() {
+            if row
+                .on_hover_text("Click to shade it in the plots")
+                .clicked()
+            {
                 commands.push(Command::Shade(index));
             }
         }
@@ -354,19 +368,32 @@ fn answer(report: &StepReport) -> String {
             let main = step.parameters.iter().find(|p| p.effect == Some(*id));
             main.map_or_else(
                 || name_of(*id).to_owned(),
-                |p| format!("{}: {}", name_of(*id), with_error(p.value, p.std_error, &p.unit)),
+                |p| {
+                    format!(
+                        "{}: {}",
+                        name_of(*id),
+                        with_error(p.value, p.std_error, &p.unit)
+                    )
+                },
             )
         })
         .collect();
     match (&report.verdict, added.is_empty()) {
         (Some(verdict), false) if verdict.complete => {
             let ambiguous = verdict.missing.iter().any(|class| class.len() > 1);
-            let tail = if ambiguous { "Another effect would explain it as well." } else { "Nothing more is missing." };
+            let tail = if ambiguous {
+                "Another effect would explain it as well."
+            } else {
+                "Nothing more is missing."
+            };
             format!("The missing effect was {}. {tail}", added.join(" and "))
         }
         (Some(verdict), true) if verdict.complete => {
             "Nothing is missing: what the model leaves is measurement noise.".to_owned()
         }
-        _ => format!("The model misses by {} times the noise.", times_noise(step.error)),
+        _ => format!(
+            "The model misses by {} times the noise.",
+            times_noise(step.error)
+        ),
     }
 }

@@ -38,7 +38,10 @@ fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32)
     let group = egui::Id::unique(("compare", &measurement.name));
     Plot::new(id)
         .height(height)
-        .default_x_bounds(start, start + FIRST_VIEW * (end - start).max(f64::MIN_POSITIVE))
+        .default_x_bounds(
+            start,
+            start + FIRST_VIEW * (end - start).max(f64::MIN_POSITIVE),
+        )
         .auto_bounds([false, true])
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
@@ -50,7 +53,11 @@ fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32)
 }
 
 fn unit_label(name: &str, unit: &str) -> String {
-    if unit == "1" { name.to_owned() } else { format!("{name} [{unit}]") }
+    if unit == "1" {
+        name.to_owned()
+    } else {
+        format!("{name} [{unit}]")
+    }
 }
 
 fn signal_plot(
@@ -62,13 +69,27 @@ fn signal_plot(
     height: f32,
 ) {
     let label = unit_label(&output.name, &output.unit);
-    plot(measurement, format!("signal {}", output.name), label, height).show(ui, |plot| {
+    plot(
+        measurement,
+        format!("signal {}", output.name),
+        label,
+        height,
+    )
+    .show(ui, |plot| {
         shade(plot, finding);
         let measured = points(&measurement.time, &output.values);
-        plot.line(Line::new("measured", measured).color(theme::MEASURED).width(2.5));
+        plot.line(
+            Line::new("measured", measured)
+                .color(theme::MEASURED)
+                .width(2.5),
+        );
         if let Some(modelled) = modelled {
             let line = Line::new("model", points(&measurement.time, &modelled.modelled));
-            plot.line(line.color(theme::MODEL).width(1.5).style(LineStyle::dashed_loose()));
+            plot.line(
+                line.color(theme::MODEL)
+                    .width(1.5)
+                    .style(LineStyle::dashed_loose()),
+            );
         }
     });
 }
@@ -82,10 +103,25 @@ fn residual_plot(
     height: f32,
 ) {
     let label = unit_label(&format!("{} - model", output.name), &output.unit);
-    let residual: Vec<f64> = output.values.iter().zip(&modelled.modelled).map(|(y, m)| y - m).collect();
-    plot(measurement, format!("residual {}", output.name), label, height).show(ui, |plot| {
+    let residual: Vec<f64> = output
+        .values
+        .iter()
+        .zip(&modelled.modelled)
+        .map(|(y, m)| y - m)
+        .collect();
+    plot(
+        measurement,
+        format!("residual {}", output.name),
+        label,
+        height,
+    )
+    .show(ui, |plot| {
         shade(plot, finding);
-        plot.line(Line::new("residual", points(&measurement.time, &residual)).color(theme::RESIDUAL).width(1.2));
+        plot.line(
+            Line::new("residual", points(&measurement.time, &residual))
+                .color(theme::RESIDUAL)
+                .width(1.2),
+        );
         for side in [2.0, -2.0] {
             let line = HLine::new("noise, 2 sigma", side * modelled.noise);
             plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
@@ -99,7 +135,10 @@ fn shade(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
         return;
     };
     let bounds = plot.plot_bounds();
-    let visible = finding.spans.iter().filter(|s| s.1 >= bounds.min()[0] && s.0 <= bounds.max()[0]);
+    let visible = finding
+        .spans
+        .iter()
+        .filter(|s| s.1 >= bounds.min()[0] && s.0 <= bounds.max()[0]);
     for span in visible.take(60) {
         let color = theme::SHADE.gamma_multiply(0.16);
         plot.add(Span::new("", span.0..=span.1).fill(color).border_width(0.0));

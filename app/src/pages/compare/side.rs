@@ -11,7 +11,12 @@ use crate::theme;
 /// Width of the widest bar, in points.
 const BAR_WIDTH: f32 = 150.0;
 
-pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+pub(super) fn ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
     file_ui(page, ui, commands);
     progress_ui(page, ui, commands);
     let Some(report) = page.report() else {
@@ -58,13 +63,20 @@ fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 }
 
 /// The error from the baseline to the noise floor.
-fn waterfall_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+fn waterfall_ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
     ui.strong("Error, in units of the noise");
     let shown = page.shown.as_deref().unwrap_or_default();
     let steps: Vec<(String, &StepReport)> = (0..=shown.len())
         .filter_map(|n| {
             let report = page.reports.get(&shown[..n])?;
-            let label = n.checked_sub(1).map_or("Baseline".to_owned(), |i| format!("+ {}", name_of(shown[i])));
+            let label = n.checked_sub(1).map_or("Baseline".to_owned(), |i| {
+                format!("+ {}", name_of(shown[i]))
+            });
             Some((label, report))
         })
         .collect();
@@ -78,7 +90,10 @@ fn waterfall_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, comman
     });
     ui.small("Bars on a logarithmic scale.");
     if !page.effects.is_empty() && page.job.is_none() {
-        let undo = ui.button(format!("Take back {}", page.effects.last().map_or("", |e| name_of(*e))));
+        let undo = ui.button(format!(
+            "Take back {}",
+            page.effects.last().map_or("", |e| name_of(*e))
+        ));
         targets.note("undo", ui, &undo);
         if undo.clicked() {
             commands.push(Command::Undo);
@@ -144,36 +159,62 @@ fn card_ui(
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
-            let add = ui.add_enabled(page.job.is_none(), egui::Button::new(format!("Add {}", effect.name())));
+            let add = ui.add_enabled(
+                page.job.is_none(),
+                egui::Button::new(format!("Add {}", effect.name())),
+            );
             targets.note(format!("add:{id}"), ui, &add);
             if add.clicked() {
                 commands.push(Command::Add(id));
             }
             ui.label(RichText::new(format!("leaves {}", times_noise(candidate.error))).strong());
         });
-        bar_ui(ui, candidate.error, report.noise_floor, report.step.error.max(2.0), theme::MODEL);
+        bar_ui(
+            ui,
+            candidate.error,
+            report.noise_floor,
+            report.step.error.max(2.0),
+            theme::MODEL,
+        );
         ui.label(effect.sentence());
         if !candidate.equivalent_to.is_empty() {
-            let names: Vec<&str> = candidate.equivalent_to.iter().map(|e| name_of(*e)).collect();
-            ui.colored_label(ui.visuals().warn_fg_color, format!("These data cannot tell it from {}.", names.join(" or ")));
+            let names: Vec<&str> = candidate
+                .equivalent_to
+                .iter()
+                .map(|e| name_of(*e))
+                .collect();
+            ui.colored_label(
+                ui.visuals().warn_fg_color,
+                format!("These data cannot tell it from {}.", names.join(" or ")),
+            );
         }
-        egui::CollapsingHeader::new("Equation").id_salt(id.as_str()).show(ui, |ui| {
-            ui.monospace(effect.equation());
-            ui.small(effect.source());
-            for p in &candidate.parameters {
-                ui.label(format!("{} ({}) = {}", p.name, p.label, with_error(p.value, p.std_error, &p.unit)));
-            }
-        });
+        egui::CollapsingHeader::new("Equation")
+            .id_salt(id.as_str())
+            .show(ui, |ui| {
+                ui.monospace(effect.equation());
+                ui.small(effect.source());
+                for p in &candidate.parameters {
+                    ui.label(format!(
+                        "{} ({}) = {}",
+                        p.name,
+                        p.label,
+                        with_error(p.value, p.std_error, &p.unit)
+                    ));
+                }
+            });
     });
 }
 
 fn parameters_ui(report: &StepReport, ui: &mut egui::Ui) {
-    egui::Grid::new("parameters").num_columns(3).striped(true).show(ui, |ui| {
-        for p in &report.step.parameters {
-            ui.label(&p.name).on_hover_text(&p.label);
-            ui.label(with_error(p.value, p.std_error, &p.unit));
-            ui.label(p.effect.map_or("baseline", name_of));
-            ui.end_row();
-        }
-    });
+    egui::Grid::new("parameters")
+        .num_columns(3)
+        .striped(true)
+        .show(ui, |ui| {
+            for p in &report.step.parameters {
+                ui.label(&p.name).on_hover_text(&p.label);
+                ui.label(with_error(p.value, p.std_error, &p.unit));
+                ui.label(p.effect.map_or("baseline", name_of));
+                ui.end_row();
+            }
+        });
 }
