@@ -25,7 +25,7 @@ fn picture(harness: &mut Harness<'static, HysteronApp>, name: &str) {
     let options = SnapshotOptions::new()
         .output_path("../tests/snapshots")
         .threshold(1.0)
-        .failed_pixel_count_threshold(2000);
+        .max_failed_pixels(2000);
     harness.snapshot_options(name, &options);
 }
 

@@ -45,11 +45,6 @@ pub struct HysteronApp {
 }
 
 impl HysteronApp {
-    /// A fresh app.
-    pub fn new(cc: &eframe::CreationContext<'_>) -> Self {
-        Self::default()
-    }
-
     /// One frame: takes what came in, draws the page, publishes the state.
     pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
         if self.frame == 0 {
@@ -64,7 +59,7 @@ impl HysteronApp {
             Page::Explore => self.explore.ui(ui),
             Page::Compare => self.compare.ui(ui, &mut self.targets),
         }
-        self.drop_hint_ui(ui.ctx());
+        drop_hint_ui(ui.ctx());
         #[cfg(target_arch = "wasm32")]
         crate::hook::publish(&self.hook_state());
     }
@@ -107,16 +102,16 @@ impl HysteronApp {
             self.compare.open_dropped(ctx, &file);
         }
     }
+}
 
-    fn drop_hint_ui(&self, ctx: &egui::Context) {
-        if ctx.input(|i| !i.raw.hovered_files.is_empty()) {
-            egui::Area::new(egui::Id::unique("drop"))
-                .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
-                .show(ctx, |ui| {
-                    egui::Frame::popup(ui.style())
-                        .show(ui, |ui| ui.heading("Drop the measurement to compare it"));
-                });
-        }
+fn drop_hint_ui(ctx: &egui::Context) {
+    if ctx.input(|i| !i.raw.hovered_files.is_empty()) {
+        egui::Area::new(egui::Id::unique("drop"))
+            .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style())
+                    .show(ui, |ui| ui.heading("Drop the measurement to compare it"));
+            });
     }
 }
 

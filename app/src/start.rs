@@ -28,7 +28,7 @@ pub fn run_native() -> Result<(), String> {
     eframe::run_native(
         "hysteron",
         options,
-        Box::new(|cc| Ok(Box::new(HysteronApp::new(cc)))),
+        Box::new(|_| Ok(Box::new(HysteronApp::default()))),
     )
     .map_err(|e| format!("hysteron: {NO_DISPLAY} ({})", one_line(&e.to_string())))
 }
@@ -68,9 +68,14 @@ pub fn run_web() {
             .start(
                 canvas,
                 eframe::WebOptions::default(),
-                Box::new(|cc| Ok(Box::new(HysteronApp::new(cc)))),
+                Box::new(|_| Ok(Box::new(HysteronApp::default()))),
             )
             .await;
+        if started.is_ok()
+            && let Some(message) = document.get_element_by_id("hysteron-message")
+        {
+            message.remove();
+        }
         if let Err(error) = started {
             log::error!("the app did not start: {error:?}");
             if let Some(place) = document.get_element_by_id("hysteron-error") {

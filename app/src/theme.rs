@@ -25,10 +25,10 @@ pub const SHADE: Color32 = Color32::from_rgb(0xF0, 0xE4, 0x42);
 pub fn apply(ctx: &egui::Context) {
     // The default greys are too faint for a projector.
     ctx.style_mut_of(egui::Theme::Dark, |style| {
-        style.visuals.override_text_color = Some(Color32::from_gray(225))
+        style.visuals.override_text_color = Some(Color32::from_gray(225));
     });
     ctx.style_mut_of(egui::Theme::Light, |style| {
-        style.visuals.override_text_color = Some(Color32::from_gray(20))
+        style.visuals.override_text_color = Some(Color32::from_gray(20));
     });
     ctx.all_styles_mut(|style| {
         use egui::{FontId, TextStyle};

@@ -81,7 +81,8 @@ pub fn describing_function(plant: &TransferFunction, relay: &Relay) -> Vec<Inter
     for i in 0..count {
         let (low, high) = (frequency(i), frequency(i + 1));
         let (f_low, f_high) = (balance(low), balance(high));
-        if !(f_low * f_high < 0.0) {
+        let crosses = f_low * f_high < 0.0;
+        if !crosses {
             continue;
         }
         let omega = bisect(low, high, f_low, balance);
@@ -140,7 +141,8 @@ pub fn exact_symmetric(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) 
         let (Some(f_low), Some(f_high)) = (half.balance(low), half.balance(high)) else {
             continue;
         };
-        if !(f_low * f_high <= 0.0) {
+        let crosses = f_low * f_high <= 0.0;
+        if !crosses {
             continue;
         }
         let h = bisect(low, high, f_low, |h| half.balance(h).unwrap_or(f64::NAN));

@@ -9,21 +9,12 @@ use hysteron_core::relay::Relay;
 use crate::theme;
 
 /// The page: what is set, and what follows from it.
+#[derive(Default)]
 pub struct Explore {
     preset: usize,
     input: ExploreInput,
     /// Result for the input beside it.
     computed: Option<(ExploreInput, Result<ExploreData, String>)>,
-}
-
-impl Default for Explore {
-    fn default() -> Self {
-        Self {
-            preset: 0,
-            input: ExploreInput::default(),
-            computed: None,
-        }
-    }
 }
 
 impl Explore {
@@ -75,9 +66,8 @@ impl Explore {
 
     fn controls_ui(&mut self, ui: &mut egui::Ui) {
         ui.add_space(4.0);
-        ui.strong("Plant");
         let all = presets();
-        egui::ComboBox::from_id_salt("plant")
+        egui::ComboBox::from_label("plant")
             .selected_text(all.get(self.preset).map_or("", |p| p.name))
             .width(220.0)
             .show_ui(ui, |ui| {

@@ -92,6 +92,6 @@ impl std::fmt::Debug for Model {
             .field("dry_friction", &self.dry_friction)
             .field("presliding", &self.presliding)
             .field("play", &self.play)
-            .finish()
+            .finish_non_exhaustive()
     }
 }

@@ -138,7 +138,7 @@ impl Session {
         let fail = |e: std::io::Error| format!("chromedriver {path}: {e}");
         let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).map_err(fail)?;
         stream
-            .set_read_timeout(Some(Duration::from_secs(300)))
+            .set_read_timeout(Some(Duration::from_mins(5)))
             .map_err(fail)?;
         let body = if body.is_null() {
             String::new()
@@ -177,7 +177,7 @@ impl Drop for Session {
 /// Body of an HTTP reply with a content length.
 fn read_reply(stream: &mut TcpStream) -> std::io::Result<String> {
     let mut bytes = Vec::new();
-    let mut part = [0; 65536];
+    let mut part = vec![0; 65536];
     loop {
         if let Some(end) = bytes.windows(4).position(|w| w == b"\r\n\r\n") {
             let head = String::from_utf8_lossy(&bytes[..end]).to_lowercase();

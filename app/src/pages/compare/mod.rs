@@ -81,6 +81,7 @@ impl Default for Compare {
 }
 
 /// What a click asks for; carried out once, after drawing.
+#[derive(Clone, Copy)]
 enum Command {
     OpenBuiltIn(usize),
     OpenDialog,
