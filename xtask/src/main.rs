@@ -14,7 +14,7 @@ const HELP: &str = "cargo xtask COMMAND
   test            install what is missing, then every check and test
   setup           install what the tests need (Debian or Ubuntu)
   web             build the page into dist/
-  serve [PORT]    serve dist/ on http://127.0.0.1:PORT (8080)
+  serve [--port N]  serve dist/ on http://127.0.0.1:N (8080)
   browser-test    drive dist/ in headless Chromium
 ";
 
@@ -26,7 +26,7 @@ fn main() -> ExitCode {
         ["setup"] => setup::setup(),
         ["web"] => web::build(),
         ["serve"] => serve::forever(8080),
-        ["serve", port] => port
+        ["serve", "--port", port] => port
             .parse()
             .map_err(|_| format!("'{port}' is not a port; expected a number such as 8080"))
             .and_then(serve::forever),

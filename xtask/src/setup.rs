@@ -5,13 +5,14 @@ use std::process::Command;
 use crate::run::{check, exists, output};
 
 /// Debian packages, and a file or program that shows that each is there.
-const PACKAGES: [(&str, &str); 6] = [
+const PACKAGES: [(&str, &str); 7] = [
     ("chromium", "/usr/bin/chromium"),
     ("chromium-driver", "/usr/bin/chromedriver"),
-    ("mesa-vulkan-drivers", "/usr/share/vulkan/icd.d"),
+    ("mesa-vulkan-drivers", ""),
     ("libgl1-mesa-dri", ""),
     ("libegl1", ""),
     ("libxkbcommon-x11-0", ""),
+    ("libx11-xcb1", ""),
 ];
 
 /// Installs what is missing.
