@@ -213,7 +213,7 @@ fn the_text_tells_the_story_in_80_columns() {
         "71 % of the error lies within 3 ms",
         "coulomb_friction          1.02     -5210.0  helps",
         "same as constant_load",
-        "no better than chance",
+        "too little to add it",
         "+ Coulomb friction",
         "friction level  0.0401 ± 0.0012 N m",
         "Error step by step",

@@ -164,7 +164,7 @@ fn candidates(out: &mut String, list: &[Candidate]) {
         } else if candidate.significant {
             "helps".to_owned()
         } else {
-            "no better than chance".to_owned()
+            "too little to add it".to_owned()
         };
         let indent = head.chars().count();
         let notes = wrap(&note, WIDTH.saturating_sub(indent).max(20));
