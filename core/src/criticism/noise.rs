@@ -20,6 +20,9 @@ const QUANTILE: f64 = 0.3;
 /// The same quantile of the absolute value of a standard normal variable.
 const NORMAL_QUANTILE: f64 = 0.385_320_466_407_567_6;
 
+/// Excess of the variance over that of quantisation up to which it is quantisation alone.
+const QUANTISED: f64 = 1.25;
+
 /// Values that are looked at to find the step of a quantised channel.
 const QUANTUM_SAMPLES: usize = 4000;
 
@@ -40,6 +43,10 @@ pub fn noise_level(values: &[f64], input: &[f64]) -> f64 {
         .iter()
         .filter_map(|order| level_at_order(&dithered, &groups, *order))
         .fold(f64::INFINITY, f64::min);
+    // Quantisation and dither alone, within what the estimate can tell.
+    if quantum > 0.0 && smallest * smallest < QUANTISED * 2.0 * uniform {
+        return uniform.sqrt();
+    }
     let variance = if smallest.is_finite() {
         smallest * smallest - uniform
     } else {
