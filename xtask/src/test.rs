@@ -24,7 +24,7 @@ const STAGES: [Stage; 6] = [
         )
     }),
     ("tests: core, command line, app", || {
-        run("cargo", &["test", "--workspace"])
+        run("cargo", &["test", "--workspace", "--no-fail-fast"])
     }),
     ("web build", web::build),
     ("page in headless Chromium", browser::test),
