@@ -4,7 +4,7 @@ use super::CriticismError;
 use super::noise::noise_level;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
-use crate::model::{Excitation, Start};
+use crate::model::{Excitation, Sensor, Start};
 
 /// Samples per window of a drive: its position integrates, so that long windows would drown the
 /// effect in drift; a few relay periods fit in.
@@ -114,9 +114,14 @@ impl Data {
         } else {
             input[0]
         };
+        let sensor = if outputs.iter().any(|o| o.is_velocity) {
+            Sensor::Velocity
+        } else {
+            Sensor::Position
+        };
         Ok(Self {
             kind: measurement.kind,
-            excitation: Excitation::new(&measurement.time, input, before),
+            excitation: Excitation::new(&measurement.time, input, before, sensor),
             input: input.clone(),
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),
@@ -217,6 +222,19 @@ impl Data {
         }
         self.outputs.first().map_or_else(Vec::new, |x| {
             (0..self.len()).map(|i| self.slope(&x.values, i)).collect()
+        })
+    }
+
+    /// Measured less modelled velocity, or slopes of the position error.
+    pub fn velocity_error(&self, motion: &super::fit::Motion) -> Vec<f64> {
+        if let Some(v) = self.outputs.iter().find(|o| o.is_velocity) {
+            let pairs = v.values.iter().zip(&motion.velocity);
+            return pairs.map(|(a, b)| a - b).collect();
+        }
+        self.outputs.first().map_or_else(Vec::new, |x| {
+            let pairs = x.values.iter().zip(&motion.position);
+            let error: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+            (0..self.len()).map(|i| self.slope(&error, i)).collect()
         })
     }
 

@@ -7,13 +7,16 @@ mod job;
 mod locate;
 mod noise;
 mod report;
+mod race;
 mod search;
 mod select;
 mod session;
+mod step;
 mod structure;
 mod verdict;
 
-pub use job::{CriticismError, DiagnosisJob, Progress, StepJob};
+pub use job::{CriticismError, DiagnosisJob, Progress};
+pub use step::StepJob;
 pub use noise::noise_level;
 pub use report::{
     Candidate, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step, StepReport, Verdict,

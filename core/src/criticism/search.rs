@@ -6,7 +6,7 @@ use super::baseline;
 use super::data::Data;
 use super::fit::Fit;
 use super::structure::Structure;
-use crate::effect::{Effect, Scales};
+use crate::effect::{Effect, Probe, Scales};
 use crate::model::Start;
 
 /// Iterations that every starting point gets before the best are chosen.
@@ -21,20 +21,25 @@ const WORTH_A_START: f64 = 0.2;
 /// Effects with at most this many starting values have one valley.
 const FEW_STARTS: usize = 1;
 
-/// Starting points that are followed to the end.
+/// Starting points that are followed on the whole record.
 const FINALISTS: usize = 3;
+
+/// A fit that costs this many times the best one of its effect is not followed.
+const NEAR: f64 = 1.5;
+
+/// A fit that goes on is hoped to fall by this many times its last fall.
+const HOPE: f64 = 3.0;
 
 /// A search that goes on piece by piece.
 pub(super) struct Search {
     structure: Structure,
     pending: VecDeque<(Vec<f64>, Vec<Start>)>,
     scanned: Vec<(Fit, Vec<Start>)>,
-    finalists: VecDeque<Fit>,
-    best: Option<Fit>,
+    finalists: Vec<Fit>,
     /// Cost of the model that this one would replace.
     present: f64,
     total: usize,
-    steps: usize,
+    optimism: f64,
 }
 
 impl Search {
@@ -53,16 +58,17 @@ impl Search {
 
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
     /// the baseline, since a missing effect may have bent the baseline far off.
-    pub fn adding(data: &Data, fit: &Fit, effect: &'static dyn Effect, scales: &Scales) -> Self {
-        let structure = fit.structure.with(effect);
+    pub fn adding(data: &Data, fit: &Fit, effect: &'static dyn Effect, probe: &Probe) -> Self {
+        let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
+        let structure = rest.with(effect);
         let mut points = Vec::new();
-        for start in effect.starts(scales) {
-            let mut values = fit.values.clone();
+        for start in effect.starts(probe) {
+            let mut values = kept.clone();
             values.extend(&start);
             points.push((values.clone(), fit.starts.clone()));
             points.extend(Self::regressed(data, fit, &structure, values));
         }
-        points.extend(Self::other_valleys(data, fit, &structure, effect, scales));
+        points.extend(Self::other_valleys(data, fit, &rest, &kept, &structure, effect, probe));
         Self::from_points(structure, points, fit.cost)
     }
 
@@ -90,24 +96,29 @@ impl Search {
     fn other_valleys(
         data: &Data,
         fit: &Fit,
+        rest: &Structure,
+        kept: &[f64],
         structure: &Structure,
         effect: &'static dyn Effect,
-        scales: &Scales,
+        probe: &Probe,
     ) -> Vec<(Vec<f64>, Vec<Start>)> {
         let mut points = Vec::new();
-        let own = effect.starts(scales);
+        let own = effect.starts(probe);
         if own.len() > FEW_STARTS {
             return points;
         }
-        for (index, present) in fit.structure.effects.iter().enumerate() {
-            let starts = present.starts(scales);
-            if starts.len() <= FEW_STARTS || present.parameters().len() > 1 {
+        for (index, present) in rest.effects.iter().enumerate() {
+            if present.parameters().len() > 1 {
+                continue;
+            }
+            let starts = present.starts(probe);
+            if starts.len() <= FEW_STARTS {
                 continue;
             }
             for start in &own {
                 for other in &starts {
-                    let mut values = fit.values.clone();
-                    values[fit.structure.range(index)].copy_from_slice(other);
+                    let mut values = kept.to_vec();
+                    values[rest.range(index)].copy_from_slice(other);
                     values.extend(start);
                     points.extend(Self::regressed(data, fit, structure, values));
                 }
@@ -137,65 +148,101 @@ impl Search {
             total: points.len(),
             pending: points.into(),
             scanned: Vec::new(),
-            finalists: VecDeque::new(),
-            best: None,
+            finalists: Vec::new(),
             present,
-            steps: 0,
+            optimism: f64::INFINITY,
         }
     }
 
-    /// Share done, 0 to 1, roughly.
-    pub fn fraction(&self) -> f64 {
-        let scan = (self.total * SCAN_ITERATIONS) as f64;
-        (self.steps as f64 / (scan + 16.0)).min(1.0)
+    /// Share of the scan that is done, 0 to 1.
+    pub fn scanned(&self) -> f64 {
+        1.0 - self.pending.len() as f64 / self.total.max(1) as f64
+    }
+
+    /// Tries the next starting point on `scout`; false when all are tried and the best are chosen.
+    pub fn scan(&mut self, data: &Data, scout: &Data, scales: &Scales) -> bool {
+        let Some((values, starts)) = self.pending.pop_front() else {
+            return false;
+        };
+        let known = starts
+            .iter()
+            .copied()
+            .filter(|s| s.sample < scout.len())
+            .collect();
+        let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
+        for _ in 0..SCAN_ITERATIONS {
+            fit.iterate(scout, scales);
+        }
+        self.scanned.push((fit, starts));
+        if self.pending.is_empty() {
+            self.choose_finalists(data, scout, scales);
+        }
+        true
     }
 
     /// Goes on with the best of the scanned points on the whole record.
     fn choose_finalists(&mut self, data: &Data, scout: &Data, scales: &Scales) {
         self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
-        let hopeless = HOPELESS * self.present * scout.len() as f64 / data.len() as f64;
-        for (rank, (fit, starts)) in std::mem::take(&mut self.scanned).into_iter().enumerate() {
-            if rank < FINALISTS && (rank == 0 || fit.cost <= hopeless) {
-                let mut next = Fit::new(data, fit.structure, fit.values, starts, scales);
-                if fit.cost > hopeless {
-                    next.done = true;
-                }
-                self.finalists.push_back(next);
+        let share = scout.len() as f64 / data.len() as f64;
+        let mut scanned = std::mem::take(&mut self.scanned).into_iter();
+        let Some((best, starts)) = scanned.next() else {
+            return;
+        };
+        let hopeless = HOPELESS * self.present * share;
+        let near = NEAR * best.cost;
+        let mut first = Fit::new(data, best.structure, best.values, starts, scales);
+        first.done |= best.cost > hopeless;
+        self.finalists.push(first);
+        for (fit, starts) in scanned.take(FINALISTS - 1) {
+            if fit.cost <= near.min(hopeless) {
+                let next = Fit::new(data, fit.structure, fit.values, starts, scales);
+                self.finalists.push(next);
             }
         }
     }
 
-    /// One iteration of one fit; the best fit when finished. Starting points are tried on `scout`.
-    pub fn advance(&mut self, data: &Data, scout: &Data, scales: &Scales) -> Option<Fit> {
-        self.steps += 1;
-        if let Some((values, starts)) = self.pending.pop_front() {
-            let known = starts
-                .iter()
-                .copied()
-                .filter(|s| s.sample < scout.len())
-                .collect();
-            let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
-            for _ in 0..SCAN_ITERATIONS {
-                fit.iterate(scout, scales);
-            }
-            self.scanned.push((fit, starts));
-            if self.pending.is_empty() {
-                self.choose_finalists(data, scout, scales);
-            }
-            return None;
-        }
-        if let Some(fit) = self.finalists.front_mut() {
+    /// One iteration of every fit that may still win; false when none goes on.
+    pub fn iterate(&mut self, data: &Data, scales: &Scales) -> bool {
+        self.optimism = f64::INFINITY;
+        for fit in &mut self.finalists {
+            let before = fit.cost;
             fit.iterate(data, scales);
-            if fit.done
-                && let Some(fit) = self.finalists.pop_front()
-                && self.best.as_ref().is_none_or(|best| fit.cost < best.cost)
-            {
-                self.best = Some(fit);
-            }
-            return None;
+            let hoped = if fit.done {
+                fit.cost
+            } else {
+                fit.cost - HOPE * (before - fit.cost).max(0.0)
+            };
+            self.optimism = self.optimism.min(hoped);
         }
-        let mut best = self.best.take()?;
-        best.polish_starts(data, scales);
+        let best = self.cost();
+        self.finalists.retain(|fit| fit.cost <= NEAR * best);
+        self.finalists.iter().any(|fit| !fit.done)
+    }
+
+    /// Whether a fit may still become better.
+    pub fn goes_on(&self) -> bool {
+        self.finalists.iter().any(|fit| !fit.done)
+    }
+
+    /// Least cost so far.
+    pub fn cost(&self) -> f64 {
+        let costs = self.finalists.iter().map(|fit| fit.cost);
+        costs.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Cost that the fits could come to, judged by their last iteration.
+    pub fn optimism(&self) -> f64 {
+        self.optimism
+    }
+
+    /// The best fit, with the states of its windows improved if it was fitted to the end.
+    pub fn finish(self, data: &Data, scales: &Scales) -> Option<Fit> {
+        let mut finalists = self.finalists;
+        finalists.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut best = finalists.into_iter().next()?;
+        if best.done && best.cost.is_finite() {
+            best.polish_starts(data, scales);
+        }
         Some(best)
     }
 }

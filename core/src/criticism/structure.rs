@@ -34,6 +34,18 @@ impl Structure {
         next
     }
 
+    /// The same without the effects that `effect` contains, and their values left out of `values`.
+    pub fn without_contained(&self, effect: &dyn Effect, values: &[f64]) -> (Self, Vec<f64>) {
+        let (mut rest, mut kept) = (self.clone(), values.to_vec());
+        for index in (0..self.effects.len()).rev() {
+            if effect.contains().contains(&self.effects[index].id()) {
+                kept.drain(rest.range(index));
+                rest = rest.without(index);
+            }
+        }
+        (rest, kept)
+    }
+
     /// The same without the effect at `index`.
     pub fn without(&self, index: usize) -> Self {
         let mut next = self.clone();

@@ -1,6 +1,6 @@
 //! First-order lag between the commanded and the acting input of a drive.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -40,10 +40,10 @@ impl Effect for ActuatorLag {
         }]
     }
 
-    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         [0.5, 1.5, 5.0, 15.0, 50.0]
             .iter()
-            .map(|samples| vec![samples * scales.step])
+            .map(|samples| vec![samples * probe.scales.step])
             .collect()
     }
 

@@ -1,10 +1,32 @@
 //! Backlash: a load behind a gap.
+//!
+//! The contact is a stiff spring with damping that pushes and cannot pull; the rigid play with
+//! momentum-conserving impact, equations (10) and (11) of the paper, is its limit for large stiffness.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
-use crate::model::{Model, Play};
+use crate::model::{Coupling, Load, Model};
 
 pub(super) struct Backlash;
+
+/// Half gaps that are tried, as shares of the travel: evenly spaced on a log scale.
+const GAPS: u32 = 24;
+const SMALLEST_GAP: f64 = 0.005;
+const LARGEST_GAP: f64 = 0.8;
+
+/// Viscous and dry friction of the load that are tried, in units of those of the drive and its input.
+const LOAD_FRICTION: [(f64, f64); 3] = [(1.0, 0.005), (1.0, 0.02), (3.0, 0.05)];
+
+/// Stiffness and damping of the contact that are tried: a share of what one sample can follow.
+const CONTACT: f64 = 0.2;
+
+/// Gaps that are followed.
+const BEST: usize = 3;
+
+fn gap_shares() -> impl Iterator<Item = f64> {
+    let ratio = (LARGEST_GAP / SMALLEST_GAP).powf(1.0 / f64::from(GAPS - 1));
+    (0..GAPS).map(move |i| SMALLEST_GAP * ratio.powf(f64::from(i)))
+}
 
 impl Effect for Backlash {
     fn id(&self) -> EffectId {
@@ -20,11 +42,11 @@ impl Effect for Backlash {
     }
 
     fn equation(&self) -> &'static str {
-        "|x1 - x2| <= beta; in contact (J1 + J2) v' = u - (d1 + d2) v - friction; impacts keep J1 v1 + J2 v2, relative speed times -e"
+        "J2 dv2/dt = T - d2 v2 - c2 sgn(v2), T = K (|x1 - x2| - beta) + D |v1 - v2| towards the load where |x1 - x2| > beta and T > 0, else 0"
     }
 
     fn source(&self) -> &'static str {
-        "rigid play, equations (10) and (11) of the paper; Nordin and Gutman, 2002"
+        "rigid play, equations (10) and (11) of the paper; elastic contact: Nordin and Gutman, 2002"
     }
 
     fn kinds(&self) -> &'static [Kind] {
@@ -58,37 +80,71 @@ impl Effect for Backlash {
                 range: Range::NonNegative,
             },
             ParameterSpec {
-                symbol: "e",
-                label: "restitution",
-                dimension: Dimension::Ratio,
-                range: Range::UnitInterval,
+                symbol: "K",
+                label: "stiffness of the contact",
+                dimension: Dimension::Stiffness,
+                range: Range::Positive,
+            },
+            ParameterSpec {
+                symbol: "D",
+                label: "damping of the contact",
+                dimension: Dimension::ViscousFriction,
+                range: Range::NonNegative,
             },
         ]
     }
 
-    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
-        // The gap lies anywhere between a fraction of the travel and half of it.
-        [0.45, 0.3, 0.2, 0.12, 0.07, 0.04, 0.02, 0.01]
-            .iter()
-            .map(|share| {
-                vec![
-                    share * scales.travel,
-                    scales.inertia,
-                    scales.viscous,
-                    0.02 * scales.force,
-                    0.2,
-                ]
-            })
-            .collect()
+    fn contains(&self) -> &'static [EffectId] {
+        const { &[EffectId::new("joint_compliance")] }
+    }
+
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let inertia = probe.scales.inertia.abs();
+        let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+        for share in gap_shares() {
+            for (viscous, friction) in LOAD_FRICTION {
+                let load = Load {
+                    inertia,
+                    viscous: viscous * probe.scales.viscous,
+                    dry_friction: friction * probe.scales.force,
+                    coupling: Coupling {
+                        half_gap: share * probe.scales.travel,
+                        stiffness: CONTACT * probe.scales.of(Dimension::Stiffness),
+                        damping: CONTACT * inertia / probe.scales.step,
+                    },
+                };
+                let Some(fit) = probe.regress(&[&probe.load_torque(&load)]) else {
+                    continue;
+                };
+                let scale = -fit.coefficients[0];
+                if scale > 0.0 {
+                    let c = load.coupling;
+                    let values = vec![
+                        c.half_gap,
+                        scale * load.inertia,
+                        scale * load.viscous,
+                        scale * load.dry_friction,
+                        scale * c.stiffness,
+                        scale * c.damping,
+                    ];
+                    found.push((fit.left, values));
+                }
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().take(BEST).map(|f| f.1).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
-        model.play = Some(Play {
-            half_gap: values[0],
+        model.load = Some(Load {
             inertia: values[1],
             viscous: values[2],
             dry_friction: values[3],
-            restitution: values[4],
+            coupling: Coupling {
+                half_gap: values[0],
+                stiffness: values[4],
+                damping: values[5],
+            },
         });
     }
 }

@@ -5,7 +5,7 @@
 //! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
 //! none it goes to 0 and the contact is rigid.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -48,7 +48,7 @@ impl Effect for CoulombFriction {
                 symbol: "s",
                 label: "displacement over which it builds up",
                 dimension: Dimension::Position,
-                range: Range::NonNegative,
+                range: Range::Short,
             },
             ParameterSpec {
                 symbol: "z",
@@ -59,21 +59,19 @@ impl Effect for CoulombFriction {
         ]
     }
 
-    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         // The deflection is seen if it takes about a sample to cross after a reversal.
-        let crossed = scales.force / scales.inertia * scales.step * scales.step;
-        let mut starts = Vec::new();
-        for share in [0.03, 0.1, 0.3] {
-            for samples in [0.01, 0.35, 0.8] {
-                starts.push(vec![share * scales.force, samples * crossed, 0.1]);
-            }
-        }
-        starts
+        let crossed = probe.scales.crossed();
+        let level = probe.friction_level();
+        [0.01, 0.35, 0.8]
+            .iter()
+            .map(|samples| vec![level, samples * crossed, 0.1])
+            .collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
-        model.dry_friction += values[0];
-        model.presliding = values[1];
-        model.contact_damping = values[2];
+        model.friction.level += values[0];
+        model.friction.presliding = values[1];
+        model.friction.contact_damping = values[2];
     }
 }

@@ -1,6 +1,6 @@
 //! Different gain for positive and negative input.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -40,7 +40,7 @@ impl Effect for GainAsymmetry {
         }]
     }
 
-    fn starts(&self, _scales: &Scales) -> Vec<Vec<f64>> {
+    fn starts(&self, _probe: &Probe) -> Vec<Vec<f64>> {
         vec![vec![0.0]]
     }
 

@@ -1,6 +1,6 @@
 //! Dead time between the commanded and the acting input.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -46,9 +46,9 @@ impl Effect for InputDelay {
         }]
     }
 
-    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
-        let shortest = 0.5 * scales.step;
-        let longest = LONGEST_SHARE * scales.duration.min(1000.0 * scales.step);
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let shortest = 0.5 * probe.scales.step;
+        let longest = LONGEST_SHARE * probe.scales.duration.min(1000.0 * probe.scales.step);
         let ratio = (longest / shortest)
             .max(1.0)
             .powf(1.0 / f64::from(STARTS - 1));

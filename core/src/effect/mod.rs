@@ -2,15 +2,27 @@
 
 mod actuator_lag;
 mod backlash;
+mod cogging;
 mod constant_load;
 mod coulomb_friction;
+mod dead_zone;
 mod gain_asymmetry;
 mod id;
 mod input_delay;
+mod joint_compliance;
+mod load_ramp;
+mod presliding_friction;
+mod probe;
+mod quadratic_drag;
+mod saturation;
 mod second_lag;
+mod sensor_lag;
 mod spec;
+mod static_curvature;
+mod stribeck_friction;
 
 pub use id::{EffectId, VISCOUS_FRICTION};
+pub use probe::{Probe, ProbeInput, Regression};
 pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales};
 
 use crate::measurement::Kind;
@@ -33,7 +45,11 @@ pub trait Effect: Sync {
     /// Its parameters, in the order in which every slice of values has them.
     fn parameters(&self) -> &'static [ParameterSpec];
     /// Values from which a fit may start, most likely first; several where the error has several valleys.
-    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>>;
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>>;
+    /// Effects that are this one with some values at 0: it replaces them.
+    fn contains(&self) -> &'static [EffectId] {
+        &[]
+    }
     /// Puts the effect with these `values` into `model`.
     fn apply(&self, values: &[f64], model: &mut Model);
 }
@@ -42,12 +58,22 @@ pub trait Effect: Sync {
 pub fn registry() -> &'static [&'static dyn Effect] {
     &[
         &coulomb_friction::CoulombFriction,
+        &presliding_friction::PreslidingFriction,
+        &stribeck_friction::StribeckFriction,
+        &quadratic_drag::QuadraticDrag,
         &backlash::Backlash,
+        &joint_compliance::JointCompliance,
         &input_delay::InputDelay,
         &actuator_lag::ActuatorLag,
         &second_lag::SecondLag,
         &gain_asymmetry::GainAsymmetry,
         &constant_load::ConstantLoad,
+        &load_ramp::LoadRamp,
+        &cogging::Cogging,
+        &saturation::Saturation,
+        &dead_zone::DeadZone,
+        &sensor_lag::SensorLag,
+        &static_curvature::StaticCurvature,
     ]
 }
 

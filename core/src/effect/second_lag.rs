@@ -1,6 +1,6 @@
 //! A second first-order lag in series with the process.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Range, Scales};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -40,10 +40,10 @@ impl Effect for SecondLag {
         }]
     }
 
-    fn starts(&self, scales: &Scales) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         [0.02, 0.05, 0.1, 0.2, 0.4, 0.8]
             .iter()
-            .map(|share| vec![share * scales.time_constant])
+            .map(|share| vec![share * probe.scales.time_constant])
             .collect()
     }
 

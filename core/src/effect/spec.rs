@@ -29,6 +29,20 @@ pub enum Dimension {
     ViscousFriction,
     /// rad or m.
     Position,
+    /// rad/s or m/s.
+    Speed,
+    /// N m/rad or N/m.
+    Stiffness,
+    /// Force per square of speed.
+    Drag,
+    /// Periods of 2 pi in a unit of position: 1/rad or 1/m.
+    PerPosition,
+    /// An angle of a periodic function, rad.
+    Phase,
+    /// Force, or input, per second.
+    Rise,
+    /// Inverse of the unit of a process output.
+    PerOutput,
 }
 
 impl Dimension {
@@ -36,7 +50,10 @@ impl Dimension {
     pub const fn unit(self, motion: Motion) -> &'static str {
         match (self, motion) {
             (Self::Time, _) => "s",
-            (Self::Ratio, _) | (_, Motion::None) => "1",
+            (Self::Phase, _) => "rad",
+            (Self::Ratio, _) => "1",
+            (Self::Rise, Motion::None) => "1/s",
+            (_, Motion::None) => "1",
             (Self::Force, Motion::Rotational) => "N m",
             (Self::Force, Motion::Translational) => "N",
             (Self::Inertia, Motion::Rotational) => "kg m^2",
@@ -45,6 +62,17 @@ impl Dimension {
             (Self::ViscousFriction, Motion::Translational) => "N s/m",
             (Self::Position, Motion::Rotational) => "rad",
             (Self::Position, Motion::Translational) => "m",
+            (Self::Speed, Motion::Rotational) => "rad/s",
+            (Self::Speed, Motion::Translational) => "m/s",
+            (Self::Stiffness, Motion::Rotational) => "N m/rad",
+            (Self::Stiffness, Motion::Translational) => "N/m",
+            (Self::Drag, Motion::Rotational) => "N m s^2/rad^2",
+            (Self::Drag, Motion::Translational) => "N s^2/m^2",
+            (Self::PerPosition, Motion::Rotational) => "1/rad",
+            (Self::PerPosition, Motion::Translational) => "1/m",
+            (Self::Rise, Motion::Rotational) => "N m/s",
+            (Self::Rise, Motion::Translational) => "N/s",
+            (Self::PerOutput, _) => "1",
         }
     }
 }
@@ -62,6 +90,8 @@ pub enum Range {
     Fraction,
     /// 0 to 1.
     UnitInterval,
+    /// 0 to [`SHORT_CROSSINGS`] times [`Scales::crossed`].
+    Short,
 }
 
 /// A parameter of an effect.
@@ -77,6 +107,10 @@ pub struct ParameterSpec {
     pub range: Range,
 }
 
+/// A displacement counts as short up to this many times that which a sample crosses after a reversal:
+/// more than that can be seen building up sample by sample.
+pub const SHORT_CROSSINGS: f64 = 3.0;
+
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
 
@@ -90,6 +124,7 @@ impl ParameterSpec {
             Range::Positive => value.max(LEAST_SHARE * scale),
             Range::Fraction => value.clamp(-0.9, 0.9),
             Range::UnitInterval => value.clamp(0.0, 1.0),
+            Range::Short => value.clamp(0.0, SHORT_CROSSINGS * scales.crossed()),
         }
     }
 }
@@ -116,6 +151,11 @@ pub struct Scales {
 }
 
 impl Scales {
+    /// Displacement of the body in one sample after a reversal, under the typical force.
+    pub fn crossed(&self) -> f64 {
+        (self.force / self.inertia).abs() * self.step * self.step
+    }
+
     /// Typical size of a quantity of this dimension.
     pub fn of(&self, dimension: Dimension) -> f64 {
         match dimension {
@@ -125,6 +165,13 @@ impl Scales {
             Dimension::Inertia => self.inertia.abs(),
             Dimension::ViscousFriction => self.viscous.abs(),
             Dimension::Position => self.travel,
+            Dimension::Speed => self.speed,
+            Dimension::Stiffness => self.inertia.abs() / (self.step * self.step),
+            Dimension::Drag => self.force / (self.speed * self.speed),
+            Dimension::PerPosition => 1.0 / self.travel,
+            Dimension::Phase => 1.0,
+            Dimension::Rise => self.force / self.duration,
+            Dimension::PerOutput => 1.0 / self.speed,
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) struct Contact {
     inertia: f64,
     viscous: f64,
     lag: Option<f64>,
-    force: f64,
+    /// Friction level for which `slips` hold.
     level: f64,
     /// Deflection at which each spring slips.
     slips: [f64; 4],
@@ -47,26 +47,27 @@ pub(super) struct Contact {
 impl Contact {
     /// The contact of `model`, if its friction is not rigid.
     pub fn new(model: &Model) -> Option<Self> {
-        if model.presliding <= 0.0 || model.dry_friction <= 0.0 {
+        let friction = &model.friction;
+        let level = friction.breakaway();
+        if friction.presliding <= 0.0 || level <= 0.0 {
             return None;
         }
         // A reversal takes a spring from one slip to the other, twice its own.
-        let slips = KNOTS.map(|x| 0.5 * x * model.presliding);
+        let slips = KNOTS.map(|x| 0.5 * x * friction.presliding);
         let mut stiffness = [0.0; 4];
         for ((k, share), slip) in stiffness.iter_mut().zip(SHARES).zip(slips) {
-            *k = share * model.dry_friction / slip;
+            *k = share * level / slip;
         }
         Some(Self {
             inertia: model.inertia,
             viscous: model.viscous,
             lag: model.lag,
-            force: model.constant_force,
-            level: model.dry_friction,
+            level,
             slips,
             stiffness,
             total: stiffness.iter().sum(),
             damping: 2.0
-                * model.contact_damping
+                * friction.contact_damping
                 * (stiffness.iter().sum::<f64>() * model.inertia.abs()).sqrt(),
         })
     }
@@ -76,15 +77,33 @@ impl Contact {
         (self.total / self.inertia.abs()).sqrt() * h < RIGID_RADIANS
     }
 
-    /// Moves the body for `h` seconds under the held input `w`; `free` is its flow while slipping.
+    /// Moves the body for `h` seconds under the held input `w` and a held `force`, with dry friction at
+    /// `level`; `free` is its flow while slipping.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "state, what acts on it, and for how long"
+    )]
     pub fn advance(
         &self,
         free: &Flow,
         motion: &mut Motion,
         deflection: &mut Deflection,
+        force: f64,
+        level: f64,
         w: f64,
         h: f64,
     ) {
+        // The stiffness stays, so a lower level is reached at a smaller deflection.
+        let slips = self.slips.map(|s| s * level / self.level);
+        for (y, slip) in deflection.iter_mut().zip(slips) {
+            *y = y.clamp(-slip, slip);
+        }
+        let acting = Acting {
+            w,
+            force,
+            level,
+            slips,
+        };
         let mut left = h;
         for _ in 0..MAX_PIECES {
             if left <= 0.0 {
@@ -97,36 +116,18 @@ impl Contact {
                 .map(|(k, y)| k * y)
                 .sum();
             let direction = if motion.v == 0.0 {
-                (motion.z + self.force - held).signum()
+                (motion.z + force - held).signum()
             } else {
                 motion.v.signum()
             };
-            let sticking: [bool; 4] = std::array::from_fn(|i| {
-                deflection[i] * direction < self.slips[i] * (1.0 - SLIP_SHARE)
-            });
+            let sticking: [bool; 4] =
+                std::array::from_fn(|i| deflection[i] * direction < slips[i] * (1.0 - SLIP_SHARE));
             left -= if sticking.contains(&true) {
-                self.deflect(motion, deflection, sticking, direction, held, w, left)
+                self.deflect(&acting, motion, deflection, sticking, direction, held, left)
             } else {
-                self.slip(free, motion, direction, w, left)
+                acting.slip(free, motion, direction, left)
             };
         }
-    }
-
-    /// All springs slip, until the motion reverses; returns the time used.
-    fn slip(&self, free: &Flow, motion: &mut Motion, direction: f64, w: f64, left: f64) -> f64 {
-        let start = *motion;
-        let q = self.force - direction * self.level;
-        let end = free.after_cached(start, w, q, left);
-        if end.v * direction >= 0.0 || start.v == 0.0 {
-            *motion = end;
-            return left;
-        }
-        let time = root(left, start.v, end.v, |t| free.after(start, w, q, t).v);
-        *motion = Motion {
-            v: 0.0,
-            ..free.after(start, w, q, time)
-        };
-        time
     }
 
     /// Some springs stick, until the next one slips or the motion reverses; returns the time used.
@@ -136,14 +137,15 @@ impl Contact {
     )]
     fn deflect(
         &self,
+        acting: &Acting,
         motion: &mut Motion,
         deflection: &mut Deflection,
         sticking: [bool; 4],
         direction: f64,
         held: f64,
-        w: f64,
         left: f64,
     ) -> f64 {
+        let slips = &acting.slips;
         let stiffness: f64 = (0..4)
             .filter(|i| sticking[*i])
             .map(|i| self.stiffness[i])
@@ -155,7 +157,7 @@ impl Contact {
             x: held / stiffness,
             ..*motion
         };
-        let at = |t: f64| spring.after(start, w, self.force, t);
+        let at = |t: f64| spring.after(start, acting.w, acting.force, t);
         // Short enough that the motion reverses at most once.
         let mut time = left.min(1.0 / spring.frequency());
         let mut end = at(time);
@@ -170,7 +172,7 @@ impl Contact {
         }
         let room = (0..4)
             .filter(|i| sticking[*i])
-            .map(|i| self.slips[i] - deflection[i] * direction)
+            .map(|i| slips[i] - deflection[i] * direction)
             .fold(f64::INFINITY, f64::min);
         let travelled = |m: &Motion| (m.x - start.x) * direction;
         if travelled(&end) > room {
@@ -182,15 +184,43 @@ impl Contact {
         let moved = end.x - start.x;
         for (i, y) in deflection.iter_mut().enumerate() {
             if sticking[i] {
-                *y = (*y + moved).clamp(-self.slips[i], self.slips[i]);
-                if self.slips[i] - *y * direction < 1e-9 * self.slips[i] {
-                    *y = direction * self.slips[i];
+                *y = (*y + moved).clamp(-slips[i], slips[i]);
+                if slips[i] - *y * direction < 1e-9 * slips[i] {
+                    *y = direction * slips[i];
                 }
             }
         }
         *motion = Motion {
             x: motion.x + moved,
             ..end
+        };
+        time
+    }
+}
+
+/// What acts on the body over one interval.
+struct Acting {
+    w: f64,
+    force: f64,
+    level: f64,
+    /// Deflection at which each spring slips at this level.
+    slips: [f64; 4],
+}
+
+impl Acting {
+    /// All springs slip, until the motion reverses; returns the time used.
+    fn slip(&self, free: &Flow, motion: &mut Motion, direction: f64, left: f64) -> f64 {
+        let start = *motion;
+        let q = self.force - direction * self.level;
+        let end = free.after_cached(start, self.w, q, left);
+        if end.v * direction >= 0.0 || start.v == 0.0 {
+            *motion = end;
+            return left;
+        }
+        let time = root(left, start.v, end.v, |t| free.after(start, self.w, q, t).v);
+        *motion = Motion {
+            v: 0.0,
+            ..free.after(start, self.w, q, time)
         };
         time
     }

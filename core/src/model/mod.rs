@@ -1,34 +1,60 @@
 //! A model put together from mechanisms, and its motion under a measured input.
 //!
-//! Input path, body, dry friction and play are the mechanisms; an effect sets the ones that it
-//! needs. The order is: static maps of the input, dead time, lag, body. Between events the motion
-//! is an exact flow; sticking, slipping and contact are modes with guards.
+//! Input path, body, dry friction, further forces, a load and the sensor are the mechanisms; an
+//! effect sets the ones that it needs. The order is: static maps of the input, dead time, lag, body,
+//! sensor. Between events the motion of body and load is an exact flow, sticking and slipping are
+//! modes with guards. Smooth forces and the torque between body and load are held at their value at
+//! the middle of steps short against their change (exponential midpoint rule, second order).
 
 mod contact;
 mod engine;
 mod flow;
+mod friction;
+mod load;
 mod replay;
 
 pub use engine::{Engine, State};
 pub(crate) use flow::root;
-pub use replay::{Excitation, Start};
+pub use load::{Coupling, Load, load_torque};
+pub use replay::{Excitation, Sensor, Start};
 
-/// Static map of the input, applied sample by sample.
-pub type InputMap = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+/// Static map of the input or the output, applied sample by sample.
+pub type StaticMap = Box<dyn Fn(f64) -> f64 + Send + Sync>;
 
-/// A load behind a gap: rigid play with momentum-conserving impacts, equations (10) and (11) of the paper.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Play {
-    /// Half gap beta, rad or m; at least 0.
-    pub half_gap: f64,
-    /// Load inertia J2, kg m^2 or kg; above 0.
-    pub inertia: f64,
-    /// Load viscous friction d2; at least 0.
-    pub viscous: f64,
-    /// Load Coulomb friction; at least 0.
-    pub dry_friction: f64,
-    /// Coefficient of restitution, 0 (the bodies stay together) to 1 (no energy lost).
-    pub restitution: f64,
+/// A force on the body as a function of its position and velocity, added to the input.
+pub type BodyForce = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
+
+/// Dry friction at the body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DryFriction {
+    /// Coulomb friction: the level while moving fast; at least 0.
+    pub level: f64,
+    /// By how much the level is higher at standstill (Stribeck 1902); at least 0.
+    pub static_excess: f64,
+    /// Speed at which the excess has fallen to 1/e: `level + static_excess exp(-(v / speed)^2)`.
+    pub stribeck_speed: f64,
+    /// Displacement after a reversal, rad or m, over which dry friction builds up to its level
+    /// (friction level over contact stiffness, Dahl 1968); 0 for a rigid contact.
+    pub presliding: f64,
+    /// Damping ratio of the sticking contact; bristle models of metal contacts use 0.1 to 1 (Canudas
+    /// de Wit et al. 1995).
+    pub contact_damping: f64,
+}
+
+impl DryFriction {
+    /// Friction level at velocity `v`.
+    pub fn level_at(&self, v: f64) -> f64 {
+        if self.static_excess == 0.0 {
+            return self.level;
+        }
+        let ratio = v / self.stribeck_speed;
+        self.level + self.static_excess * (-ratio * ratio).exp()
+    }
+
+    /// Level at standstill.
+    pub fn breakaway(&self) -> f64 {
+        self.level + self.static_excess
+    }
 }
 
 /// What is simulated. Values are in SI units; see each field for its range.
@@ -38,23 +64,26 @@ pub struct Model {
     /// Viscous friction of the body: d1 of a drive, 1/K of a process.
     pub viscous: f64,
     /// Static maps of the input, in order.
-    pub input_maps: Vec<InputMap>,
+    pub input_maps: Vec<StaticMap>,
     /// Dead time of the input, s; at least 0.
     pub delay: f64,
     /// Time constant of the input lag, s; above 0.
     pub lag: Option<f64>,
     /// Constant force added to the input after its path.
     pub constant_force: f64,
-    /// Level of Coulomb friction at the body; at least 0.
-    pub dry_friction: f64,
-    /// Displacement after a reversal, rad or m, over which dry friction builds up to its level
-    /// (friction level over contact stiffness, Dahl 1968); 0 for a rigid contact.
-    pub presliding: f64,
-    /// Damping ratio of the sticking contact; bristle models of metal contacts use 0.1 to 1 (Canudas
-    /// de Wit et al. 1995).
-    pub contact_damping: f64,
-    /// Load behind a gap.
-    pub play: Option<Play>,
+    /// Its rise per second, counted from the first sample.
+    pub force_ramp: f64,
+    /// Dry friction at the body.
+    pub friction: DryFriction,
+    /// Further forces on the body.
+    pub forces: Vec<BodyForce>,
+    /// A second body behind a joint or a gap.
+    pub load: Option<Load>,
+    /// Static maps of the output (the velocity), in order.
+    pub output_maps: Vec<StaticMap>,
+    /// Time constant of the sensor, s; above 0. It slows the velocity signal, or the position where
+    /// that is all that is measured.
+    pub sensor_lag: Option<f64>,
 }
 
 impl Model {
@@ -67,16 +96,23 @@ impl Model {
             delay: 0.0,
             lag: None,
             constant_force: 0.0,
-            dry_friction: 0.0,
-            presliding: 0.0,
-            contact_damping: 0.0,
-            play: None,
+            force_ramp: 0.0,
+            friction: DryFriction::default(),
+            forces: Vec::new(),
+            load: None,
+            output_maps: Vec::new(),
+            sensor_lag: None,
         }
     }
 
     /// Input after the static maps.
     pub fn map_input(&self, u: f64) -> f64 {
         self.input_maps.iter().fold(u, |u, map| map(u))
+    }
+
+    /// Output after the static maps.
+    pub fn map_output(&self, y: f64) -> f64 {
+        self.output_maps.iter().fold(y, |y, map| map(y))
     }
 }
 
@@ -89,9 +125,12 @@ impl std::fmt::Debug for Model {
             .field("delay", &self.delay)
             .field("lag", &self.lag)
             .field("constant_force", &self.constant_force)
-            .field("dry_friction", &self.dry_friction)
-            .field("presliding", &self.presliding)
-            .field("play", &self.play)
-            .finish_non_exhaustive()
+            .field("force_ramp", &self.force_ramp)
+            .field("friction", &self.friction)
+            .field("forces", &self.forces.len())
+            .field("load", &self.load)
+            .field("output_maps", &self.output_maps.len())
+            .field("sensor_lag", &self.sensor_lag)
+            .finish()
     }
 }

@@ -25,11 +25,21 @@ pub struct Excitation {
     before: f64,
     /// Sampling time in s, if equal throughout.
     step: Option<f64>,
+    slow_sensor: Sensor,
+}
+
+/// Which output a slow sensor shows: a counting encoder is not slow, but the velocity made from it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// The velocity, or the output of a process.
+    Velocity,
+    /// The position, where nothing else is measured.
+    Position,
 }
 
 impl Excitation {
     /// `time` in s strictly increasing, `input` as long; `before` acted until the record starts.
-    pub fn new(time: &[f64], input: &[f64], before: f64) -> Self {
+    pub fn new(time: &[f64], input: &[f64], before: f64, slow_sensor: Sensor) -> Self {
         let n = time.len();
         let mean = (time[n - 1] - time[0]) / (n - 1) as f64;
         let uniform = time
@@ -41,6 +51,7 @@ impl Excitation {
             input: input.to_vec(),
             before,
             step: uniform.then_some(mean),
+            slow_sensor,
         }
     }
 
@@ -96,6 +107,35 @@ impl Excitation {
             if i + 1 < self.len() {
                 path.pieces(i, |w, h| engine.advance(&mut state, w, h));
             }
+        }
+        if !model.output_maps.is_empty() {
+            for v in velocity.iter_mut() {
+                *v = model.map_output(*v);
+            }
+        }
+        if let Some(lag) = model.sensor_lag {
+            let slowed = match self.slow_sensor {
+                Sensor::Velocity => velocity,
+                Sensor::Position => position,
+            };
+            self.slow_down(slowed, lag);
+        }
+    }
+
+    /// Passes a signal through a first-order lag, straight between its samples.
+    fn slow_down(&self, signal: &mut [f64], lag: f64) {
+        let Some(mut slow) = signal.first().copied() else {
+            return;
+        };
+        let mut before = slow;
+        for i in 1..signal.len() {
+            let h = self.time[i] - self.time[i - 1];
+            let now = signal[i];
+            let (decay, slope) = ((-h / lag).exp(), (now - before) / h);
+            // The lag follows a ramp at the distance slope * lag.
+            slow = now - slope * lag + (slow - before + slope * lag) * decay;
+            before = now;
+            signal[i] = slow;
         }
     }
 

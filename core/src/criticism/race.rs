@@ -1,0 +1,112 @@
+//! Many effects tried side by side on top of one model: only those that may win are fitted to the end.
+
+use super::fit::Fit;
+use super::search::Search;
+use super::session::Session;
+use crate::effect::Effect;
+
+/// Iterations on the whole record that every effect gets.
+const HEAT: usize = 2;
+
+/// An effect is fitted to the end while it may come this close to the best cost.
+const CLOSE: f64 = 1.03;
+
+/// One effect in the race.
+struct Contender {
+    effect: &'static dyn Effect,
+    search: Search,
+    heats: usize,
+}
+
+/// A race that goes on piece by piece.
+pub(super) struct Race {
+    contenders: Vec<Contender>,
+    /// Index of the contender that is scanned or in its heat.
+    at: usize,
+    /// Cost to come close to; infinite where the best of the race sets it.
+    target: f64,
+}
+
+impl Race {
+    /// Tries each of `effects` on top of `fit`. With a `target` only those that may reach that cost
+    /// are fitted to the end, otherwise those that may be the best.
+    pub fn new(
+        session: &Session,
+        fit: &Fit,
+        effects: impl IntoIterator<Item = &'static dyn Effect>,
+        target: Option<f64>,
+    ) -> Self {
+        let probe = session.probe(fit);
+        Self {
+            contenders: effects
+                .into_iter()
+                .map(|effect| Contender {
+                    effect,
+                    search: Search::adding(&session.data, fit, effect, &probe),
+                    heats: 0,
+                })
+                .collect(),
+            at: 0,
+            target: target.unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// Share done, 0 to 1, roughly, and the name of the effect that is tried.
+    pub fn progress(&self) -> (f64, &'static str) {
+        let count = self.contenders.len().max(1) as f64;
+        match self.contenders.get(self.at) {
+            Some(c) => (
+                0.7 * (self.at as f64 + c.search.scanned()) / count,
+                c.effect.name(),
+            ),
+            None => (0.8, "the best of them"),
+        }
+    }
+
+    /// One iteration; false when the race is over.
+    pub fn advance(&mut self, session: &Session) -> bool {
+        let Session {
+            data,
+            scout,
+            scales,
+            ..
+        } = session;
+        if let Some(contender) = self.contenders.get_mut(self.at) {
+            if !contender.search.scan(data, scout, scales) {
+                contender.heats += 1;
+                if !contender.search.iterate(data, scales) || contender.heats >= HEAT {
+                    self.at += 1;
+                }
+            }
+            return true;
+        }
+        let best = self
+            .contenders
+            .iter()
+            .map(|c| c.search.cost())
+            .fold(self.target, f64::min);
+        let next = self
+            .contenders
+            .iter_mut()
+            .filter(|c| c.search.goes_on() && c.search.optimism() <= CLOSE * best)
+            .min_by(|a, b| a.search.optimism().total_cmp(&b.search.optimism()));
+        match next {
+            Some(contender) => {
+                contender.search.iterate(data, scales);
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// Every effect with its best fit.
+    pub fn finish(self, session: &Session) -> Vec<(&'static dyn Effect, Fit)> {
+        self.contenders
+            .into_iter()
+            .filter_map(|c| {
+                let fit = c.search.finish(&session.data, &session.scales)?;
+                Some((c.effect, fit))
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,405 @@
+//! One step of a diagnosis: fits one model and tries every effect on top of it.
+
+use super::race::Race;
+use super::search::Search;
+use super::select::{delta_bic, helps, is_noise, same};
+use super::session::{Scored, Session};
+use super::verdict::{Class, verdict};
+use super::{Candidate, CriticismError, Progress, Step, StepReport};
+use crate::effect::{self, Effect, EffectId};
+use crate::measurement::Measurement;
+
+/// Error of a perfect model in noise units.
+pub(super) const NOISE_FLOOR: f64 = 1.0;
+
+/// What a step is doing.
+enum Stage {
+    /// Fitting the model itself, effect by effect; `next` is the one to add then.
+    Build { search: Search, next: usize },
+    /// Trying every effect on top.
+    Try(Race),
+    /// Trying to do without each effect.
+    Remove { index: usize, search: Search },
+    /// Trying every other effect in the place of each one.
+    Swap { place: usize, race: Race },
+    /// Everything is known.
+    Report,
+}
+
+/// Fits one model and tries every effect on top of it; where none helps, gives the verdict.
+pub struct StepJob {
+    session: Session,
+    wanted: Vec<&'static dyn Effect>,
+    stage: Stage,
+    model: Option<Scored>,
+    tried: Vec<(&'static dyn Effect, Scored)>,
+    without: Vec<Scored>,
+    classes: Vec<Class>,
+}
+
+/// Whether two effects are the same or one contains the other.
+fn nested(a: &dyn Effect, b: &dyn Effect) -> bool {
+    a.id() == b.id() || a.contains().contains(&b.id()) || b.contains().contains(&a.id())
+}
+
+impl StepJob {
+    /// The baseline plus `effects` (in the order in which the user added them) on `measurement`.
+    pub fn new(measurement: &Measurement, effects: &[EffectId]) -> Result<Self, CriticismError> {
+        let session = Session::new(measurement)?;
+        let wanted = effects
+            .iter()
+            .filter(|id| **id != effect::VISCOUS_FRICTION)
+            .map(|id| {
+                effect::find(*id)
+                    .filter(|e| e.kinds().contains(&measurement.kind))
+                    .ok_or(CriticismError::WrongEffect { effect: *id })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let search = Search::baseline(&session.data);
+        Ok(Self::of(session, wanted, Stage::Build { search, next: 0 }))
+    }
+
+    fn of(session: Session, wanted: Vec<&'static dyn Effect>, stage: Stage) -> Self {
+        Self {
+            session,
+            wanted,
+            stage,
+            model: None,
+            tried: Vec::new(),
+            without: Vec::new(),
+            classes: Vec::new(),
+        }
+    }
+
+    /// The next step of a diagnosis, which knows the fit already.
+    pub(super) fn from_fit(session: Session, model: Scored) -> Self {
+        let mut job = Self::of(session, model.fit.structure.effects.clone(), Stage::Report);
+        job.model = Some(model);
+        job.stage = job.try_stage();
+        job
+    }
+
+    /// Effects that could be added: not in the model, nor contained in one that is.
+    fn others(&self) -> Vec<&'static dyn Effect> {
+        effect::for_kind(self.session.kind())
+            .filter(|e| {
+                self.wanted
+                    .iter()
+                    .all(|w| w.id() != e.id() && !w.contains().contains(&e.id()))
+            })
+            .collect()
+    }
+
+    /// Effects that could stand in the place of the one at `place`, without touching the others.
+    fn rivals(&self, place: usize) -> Vec<&'static dyn Effect> {
+        effect::for_kind(self.session.kind())
+            .filter(|e| self.wanted.iter().all(|w| !nested(*w, *e)))
+            .filter(|_| place < self.wanted.len())
+            .collect()
+    }
+
+    /// Does a small piece of work.
+    pub fn advance(&mut self) -> Progress<StepReport> {
+        if matches!(self.stage, Stage::Report)
+            && let Some(report) = self.report()
+        {
+            return Progress::Done(report);
+        }
+        let session = &self.session;
+        let over = match &mut self.stage {
+            Stage::Build { search, .. } | Stage::Remove { search, .. } => {
+                let (data, scales) = (&session.data, &session.scales);
+                !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
+            }
+            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session),
+            Stage::Report => true,
+        };
+        if over {
+            let stage = std::mem::replace(&mut self.stage, Stage::Report);
+            self.stage = self.after(stage);
+        }
+        let (fraction, text) = self.progress();
+        Progress::Running { fraction, text }
+    }
+
+    fn finished(&self, search: Search) -> Option<Scored> {
+        let fit = search.finish(&self.session.data, &self.session.scales)?;
+        Some(self.session.scored(fit))
+    }
+
+    /// Takes the result of a stage and gives the next one.
+    fn after(&mut self, stage: Stage) -> Stage {
+        match stage {
+            Stage::Build { search, next } => {
+                let Some(scored) = self.finished(search) else {
+                    return Stage::Report;
+                };
+                let search = self.wanted.get(next).map(|effect| {
+                    let probe = self.session.probe(&scored.fit);
+                    Search::adding(&self.session.data, &scored.fit, *effect, &probe)
+                });
+                if search.is_none() {
+                    self.wanted.clone_from(&scored.fit.structure.effects);
+                }
+                self.model = Some(scored);
+                match search {
+                    Some(search) => Stage::Build {
+                        search,
+                        next: next + 1,
+                    },
+                    None => self.try_stage(),
+                }
+            }
+            Stage::Try(race) => {
+                let fits = race.finish(&self.session);
+                self.tried = fits
+                    .into_iter()
+                    .map(|(effect, fit)| (effect, self.session.scored(fit)))
+                    .collect();
+                self.remove_stage(0)
+            }
+            Stage::Remove { index, search } => {
+                let scored = self.finished(search);
+                self.without.extend(scored);
+                self.remove_stage(index + 1)
+            }
+            Stage::Swap { place, race } => {
+                let fits = race.finish(&self.session);
+                self.judge_swaps(place, fits);
+                self.swap_stage(place + 1)
+            }
+            Stage::Report => Stage::Report,
+        }
+    }
+
+    fn try_stage(&self) -> Stage {
+        self.model.as_ref().map_or(Stage::Report, |model| {
+            Stage::Try(Race::new(&self.session, &model.fit, self.others(), None))
+        })
+    }
+
+    fn remove_stage(&self, index: usize) -> Stage {
+        match &self.model {
+            Some(model) if index < self.wanted.len() => Stage::Remove {
+                index,
+                search: Search::removing(&model.fit, index),
+            },
+            _ => self.swap_stage(0),
+        }
+    }
+
+    /// Swaps are tried only for a final model: nothing helps it, and all in it is needed.
+    fn swap_stage(&self, place: usize) -> Stage {
+        let Some(model) = &self.model else {
+            return Stage::Report;
+        };
+        if self.suggestion(model).is_some() || !self.needless(model).is_empty() {
+            return Stage::Report;
+        }
+        match self.without.get(place) {
+            Some(without) => Stage::Swap {
+                place,
+                race: Race::new(
+                    &self.session,
+                    &without.fit,
+                    self.rivals(place),
+                    Some(model.fit.cost),
+                ),
+            },
+            None => Stage::Report,
+        }
+    }
+
+    fn judge_swaps(&mut self, place: usize, fits: Vec<(&'static dyn Effect, super::fit::Fit)>) {
+        let Some(model) = &self.model else {
+            return;
+        };
+        let class = fits
+            .into_iter()
+            .map(|(effect, fit)| (effect, self.session.scored(fit)))
+            .filter(|(_, swapped)| alike(model, swapped))
+            .map(|(effect, _)| effect)
+            .collect();
+        self.classes.resize_with(place, Class::default);
+        self.classes.push(class);
+    }
+
+    /// The effect to add next: the best that helps; of equals the one with fewer parameters.
+    fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
+        let helping = || self.tried.iter().filter(|(_, s)| helps_clearly(model, s));
+        let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
+        helping()
+            .filter(|(e, s)| {
+                alike(s, &best.1)
+                    && (s.fit.values.len() < best.1.fit.values.len()
+                        || best.0.contains().contains(&e.id()))
+            })
+            .min_by_key(|(_, s)| s.fit.values.len())
+            .or(Some(best))
+    }
+
+    /// Effects without which the held-back error does not rise.
+    fn needless(&self, model: &Scored) -> Vec<EffectId> {
+        self.wanted
+            .iter()
+            .zip(&self.without)
+            .filter(|(_, without)| !helps(&without.score, &model.score))
+            .map(|(e, _)| e.id())
+            .collect()
+    }
+
+    fn progress(&self) -> (f64, String) {
+        let wanted = self.wanted.len().max(1) as f64;
+        match &self.stage {
+            Stage::Build { search, .. } => {
+                (0.1 * search.scanned(), "Fitting the model".to_owned())
+            }
+            Stage::Try(race) => {
+                let (share, name) = race.progress();
+                (0.1 + 0.6 * share, format!("Trying: {name}"))
+            }
+            Stage::Remove { index, .. } => (
+                0.7 + 0.05 * *index as f64 / wanted,
+                "Checking that every effect is needed".to_owned(),
+            ),
+            Stage::Swap { place, race } => (
+                0.75 + 0.25 * (*place as f64 + race.progress().0) / wanted,
+                "Checking what else could explain it".to_owned(),
+            ),
+            Stage::Report => (1.0, "Done".to_owned()),
+        }
+    }
+
+    fn report(&self) -> Option<StepReport> {
+        let model = self.model.as_ref()?;
+        let suggestion = self.suggestion(model).map(|(e, _)| e.id());
+        let needless = self.needless(model);
+        let parameters = self.session.parameters(model);
+        let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
+            verdict(
+                &self.wanted,
+                &self.classes,
+                &parameters,
+                model,
+                is_noise(&model.score),
+            )
+        });
+        Some(StepReport {
+            step: Step {
+                effects: self.session.effects(&model.fit),
+                error: model.score.error,
+                error_fit: model.score.error_fit,
+                parameters,
+                findings: self.session.findings(model),
+                candidates: self.candidates(model, suggestion),
+            },
+            noise_floor: NOISE_FLOOR,
+            replay: self.session.replay(&model.fit),
+            suggestion,
+            needless,
+            verdict,
+        })
+    }
+
+    /// Every effect tried, best first; the suggested one leads.
+    fn candidates(&self, model: &Scored, suggestion: Option<EffectId>) -> Vec<Candidate> {
+        let length = model.fit.values.len();
+        let mut candidates: Vec<Candidate> = self
+            .tried
+            .iter()
+            .map(|(effect, scored)| {
+                let worse = scored.fit.cost > model.fit.cost;
+                let equivalent_to = self
+                    .tried
+                    .iter()
+                    .filter(|(other, o)| {
+                        !nested(*other, *effect)
+                            && helps_clearly(model, scored)
+                            && helps_clearly(model, o)
+                            && same(
+                                &scored.score,
+                                scored.fit.values.len(),
+                                &o.score,
+                                o.fit.values.len(),
+                            )
+                    })
+                    .map(|(other, _)| other.id())
+                    .collect();
+                Candidate {
+                    effects: vec![effect.id()],
+                    // Every effect contains "none of it", so it never has to make things worse.
+                    error: if worse {
+                        model.score.error
+                    } else {
+                        scored.score.error
+                    },
+                    delta_bic: if worse {
+                        effect.parameters().len() as f64 * model.score.fit_count.ln()
+                    } else {
+                        delta_bic(&model.score, length, &scored.score, scored.fit.values.len())
+                    },
+                    significant: helps_clearly(model, scored),
+                    parameters: self
+                        .session
+                        .parameters(scored)
+                        .into_iter()
+                        .filter(|p| p.effect == Some(effect.id()))
+                        .collect(),
+                    equivalent_to,
+                }
+            })
+            .collect();
+        candidates.sort_by(|a, b| {
+            let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
+            first(a).cmp(&first(b)).then(a.error.total_cmp(&b.error))
+        });
+        candidates
+    }
+
+    /// The model to go on from: with the suggestion, or without the first needless effect.
+    pub(super) fn successor(self) -> Option<(Session, Scored)> {
+        let model = self.model.as_ref()?;
+        let next = if let Some(id) = self.needless(model).first() {
+            let index = self.wanted.iter().position(|w| w.id() == *id)?;
+            self.without.get(index).cloned()
+        } else {
+            self.suggestion(model).map(|(_, scored)| scored.clone())
+        }?;
+        Some((self.session, next))
+    }
+}
+
+/// Whether two models leave the same error within noise.
+fn alike(a: &Scored, b: &Scored) -> bool {
+    same(
+        &a.score,
+        a.fit.values.len(),
+        &b.score,
+        b.fit.values.len(),
+    )
+}
+
+/// Fall of the error below which the leading parameter of an effect must stand out by itself.
+const LARGE_FALL: f64 = 0.1;
+
+/// Standard errors by which it must differ from 0 then.
+const CLEAR_ERRORS: f64 = 3.0;
+
+/// Whether the last effect of `with` helps `model`, and is itself seen if it helps only a little.
+fn helps_clearly(model: &Scored, with: &Scored) -> bool {
+    if !helps(&model.score, &with.score) {
+        return false;
+    }
+    if with.score.error < (1.0 - LARGE_FALL) * model.score.error {
+        return true;
+    }
+    let leading = model.fit.values.len();
+    let inflation = with.score.error_fit.powi(2).max(1.0) * with.score.correlation.max(1.0);
+    let errors = with.fit.standard_errors(inflation);
+    with.fit
+        .values
+        .get(leading)
+        .zip(errors.get(leading))
+        .is_some_and(|(v, e)| v.abs() > CLEAR_ERRORS * e)
+}
+

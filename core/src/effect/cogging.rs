@@ -1,0 +1,72 @@
+//! Cogging: a torque that repeats with the position.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct Cogging;
+
+/// Spatial frequencies that are followed.
+const BEST: usize = 3;
+
+impl Effect for Cogging {
+    fn id(&self) -> EffectId {
+        EffectId::new("cogging")
+    }
+
+    fn name(&self) -> &'static str {
+        "Cogging"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Magnets or teeth make the drive pull forward and back as it turns: the force repeats with the position."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = a sin(n x + phi)"
+    }
+
+    fn source(&self) -> &'static str {
+        "cogging torque of permanent-magnet motors: Zhu and Howe, 1992"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "a",
+                label: "cogging amplitude",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "n",
+                label: "spatial frequency",
+                dimension: Dimension::PerPosition,
+                range: Range::Positive,
+            },
+            ParameterSpec {
+                symbol: "phi",
+                label: "phase",
+                dimension: Dimension::Phase,
+                range: Range::Signed,
+            },
+        ]
+    }
+
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        probe
+            .spatial_frequencies(BEST)
+            .into_iter()
+            .map(|(n, sine, cosine)| vec![sine.hypot(cosine), n, cosine.atan2(sine)])
+            .collect()
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        let (a, n, phi) = (values[0], values[1], values[2]);
+        model.forces.push(Box::new(move |x, _| a * (n * x + phi).sin()));
+    }
+}

@@ -1,0 +1,59 @@
+//! Dead zone: small inputs do nothing.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct DeadZone;
+
+impl Effect for DeadZone {
+    fn id(&self) -> EffectId {
+        EffectId::new("dead_zone")
+    }
+
+    fn name(&self) -> &'static str {
+        "Dead zone"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Small commands have no effect at all, and large ones lose the same piece."
+    }
+
+    fn equation(&self) -> &'static str {
+        "u_acting = u - z sgn(u) where |u| > z, else 0"
+    }
+
+    fn source(&self) -> &'static str {
+        "dead zone: Gelb and Vander Velde, Multiple-Input Describing Functions, 1968"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "z",
+                label: "half width of the dead zone",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+        ]
+    }
+
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let largest = probe.largest_input();
+        [0.03, 0.1, 0.25, 0.5]
+            .iter()
+            .map(|share| vec![share * largest])
+            .collect()
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        let zone = values[0];
+        model
+            .input_maps
+            .push(Box::new(move |u| u - u.clamp(-zone, zone)));
+    }
+}

@@ -1,0 +1,115 @@
+//! Joint compliance: a load behind an elastic joint.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::{Coupling, Load, Model};
+
+pub(super) struct JointCompliance;
+
+/// Damping of the joint that is tried, over inertia times natural frequency.
+const DAMPING_RATIO: f64 = 0.05;
+
+/// Natural frequencies that are followed.
+const BEST: usize = 3;
+
+impl Effect for JointCompliance {
+    fn id(&self) -> EffectId {
+        EffectId::new("joint_compliance")
+    }
+
+    fn name(&self) -> &'static str {
+        "Joint compliance"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "A load is connected through a springy joint: it swings against the motor with a rhythm of its own."
+    }
+
+    fn equation(&self) -> &'static str {
+        "J2 dv2/dt = K (x1 - x2) + D (v1 - v2) - d2 v2, and the opposite torque on the motor"
+    }
+
+    fn source(&self) -> &'static str {
+        "two-mass drive with an elastic shaft: Nordin and Gutman, 2002, without play"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "K",
+                label: "stiffness of the joint",
+                dimension: Dimension::Stiffness,
+                range: Range::Positive,
+            },
+            ParameterSpec {
+                symbol: "D",
+                label: "damping of the joint",
+                dimension: Dimension::ViscousFriction,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "J2",
+                label: "load inertia",
+                dimension: Dimension::Inertia,
+                range: Range::Positive,
+            },
+            ParameterSpec {
+                symbol: "d2",
+                label: "load viscous friction",
+                dimension: Dimension::ViscousFriction,
+                range: Range::NonNegative,
+            },
+        ]
+    }
+
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let inertia = probe.scales.inertia.abs();
+        let mut found: Vec<(f64, Vec<f64>)> = probe
+            .load_frequencies()
+            .into_iter()
+            .filter_map(|omega| {
+                let load = Load {
+                    inertia,
+                    viscous: 0.0,
+                    dry_friction: 0.0,
+                    coupling: Coupling {
+                        half_gap: 0.0,
+                        stiffness: inertia * omega * omega,
+                        damping: DAMPING_RATIO * inertia * omega,
+                    },
+                };
+                let fit = probe.regress(&[&probe.load_torque(&load)])?;
+                let scale = -fit.coefficients[0];
+                (scale > 0.0).then(|| {
+                    let c = load.coupling;
+                    let values = vec![
+                        scale * c.stiffness,
+                        scale * c.damping,
+                        scale * inertia,
+                        0.1 * probe.scales.viscous,
+                    ];
+                    (fit.left, values)
+                })
+            })
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().take(BEST).map(|f| f.1).collect()
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.load = Some(Load {
+            inertia: values[2],
+            viscous: values[3],
+            dry_friction: 0.0,
+            coupling: Coupling {
+                half_gap: 0.0,
+                stiffness: values[0],
+                damping: values[1],
+            },
+        });
+    }
+}

@@ -1,0 +1,52 @@
+//! Load ramp: a disturbance that grows steadily.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct LoadRamp;
+
+impl Effect for LoadRamp {
+    fn id(&self) -> EffectId {
+        EffectId::new("load_ramp")
+    }
+
+    fn name(&self) -> &'static str {
+        "Load ramp"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "A disturbance grows steadily through the whole record, like a tank that slowly cools or a supply that drifts."
+    }
+
+    fn equation(&self) -> &'static str {
+        "u_acting = u + r t"
+    }
+
+    fn source(&self) -> &'static str {
+        "ramp load disturbance: Åström and Hägglund, Advanced PID Control, 2006"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "r",
+                label: "rise of the load",
+                dimension: Dimension::Rise,
+                range: Range::Signed,
+            },
+        ]
+    }
+
+    fn starts(&self, _probe: &Probe) -> Vec<Vec<f64>> {
+        vec![vec![0.0]]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.force_ramp += values[0];
+    }
+}

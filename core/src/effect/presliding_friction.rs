@@ -1,0 +1,81 @@
+//! Presliding friction: a soft contact that gives way like a spring before it slips.
+//!
+//! The same contact as in Coulomb friction, with a deflection so long that its build-up is seen
+//! sample by sample (Maxwell-slip elements along Dahl's curve).
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct PreslidingFriction;
+
+/// Deflections that are tried, in displacements of the first sample after a reversal.
+const CROSSINGS: [f64; 4] = [4.0, 12.0, 40.0, 150.0];
+
+impl Effect for PreslidingFriction {
+    fn id(&self) -> EffectId {
+        EffectId::new("presliding_friction")
+    }
+
+    fn name(&self) -> &'static str {
+        "Presliding friction"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The contact gives way like a spring before it slips: after each reversal the friction builds up gradually over a small displacement."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F follows the displacement x after a reversal, F = -c + 2 c (1 - exp(-x / s)), up to the friction level c"
+    }
+
+    fn source(&self) -> &'static str {
+        "Dahl, 1968; Maxwell-slip (Prandtl-Ishlinskii) form: Iwan, 1966; Lampaert, Al-Bender and Swevers, 2003"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "c",
+                label: "friction level",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "s",
+                label: "displacement over which it builds up",
+                dimension: Dimension::Position,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "z",
+                label: "damping ratio of the contact",
+                dimension: Dimension::Ratio,
+                range: Range::UnitInterval,
+            },
+        ]
+    }
+
+    fn contains(&self) -> &'static [EffectId] {
+        const { &[EffectId::new("coulomb_friction")] }
+    }
+
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let crossed = probe.scales.crossed();
+        let level = probe.friction_level();
+        CROSSINGS
+            .iter()
+            .map(|samples| vec![level, samples * crossed, 0.1])
+            .collect()
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.friction.level += values[0];
+        model.friction.presliding = values[1];
+        model.friction.contact_damping = values[2];
+    }
+}

@@ -1,0 +1,64 @@
+//! Static curvature: the static characteristic is bent.
+//!
+//! Two places can bend: the balance of the process (its time constant then changes with the output)
+//! and the sensor. Both are fitted.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct StaticCurvature;
+
+impl Effect for StaticCurvature {
+    fn id(&self) -> EffectId {
+        EffectId::new("static_curvature")
+    }
+
+    fn name(&self) -> &'static str {
+        "Static curvature"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The static characteristic is bent: the same step of the input moves the output more on one side than on the other."
+    }
+
+    fn equation(&self) -> &'static str {
+        "T dw/dt = K u - w - q w^2, y = w + p w^2"
+    }
+
+    fn source(&self) -> &'static str {
+        "second-order static nonlinearity: Hammerstein and Wiener models, Ljung, System Identification, 1999"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "q",
+                label: "curvature of the balance",
+                dimension: Dimension::PerOutput,
+                range: Range::Signed,
+            },
+            ParameterSpec {
+                symbol: "p",
+                label: "curvature of the reading",
+                dimension: Dimension::PerOutput,
+                range: Range::Signed,
+            },
+        ]
+    }
+
+    fn starts(&self, _probe: &Probe) -> Vec<Vec<f64>> {
+        vec![vec![0.0, 0.0]]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        // As a force on the body (T/K) w' = u - w/K - (q/K) w^2.
+        let (balance, reading) = (values[0] * model.viscous, values[1]);
+        model.forces.push(Box::new(move |_, w| -balance * w * w));
+        model.output_maps.push(Box::new(move |w| w + reading * w * w));
+    }
+}

@@ -1,0 +1,106 @@
+//! Stribeck friction: dry friction that is higher at standstill than in motion.
+//!
+//! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct StribeckFriction;
+
+/// Stribeck speeds that are tried, in typical speeds.
+const SPEEDS: [f64; 8] = [0.03, 0.06, 0.12, 0.2, 0.3, 0.45, 0.7, 1.1];
+
+impl Effect for StribeckFriction {
+    fn id(&self) -> EffectId {
+        EffectId::new("stribeck_friction")
+    }
+
+    fn name(&self) -> &'static str {
+        "Stribeck friction"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Dry friction that is strongest at rest and falls off as the drive gets moving, so that it sticks, breaks loose and jumps ahead."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = -(c + (c_s - c) exp(-(v / v_s)^2)) sgn(v) while moving; at rest F balances the input up to c_s"
+    }
+
+    fn source(&self) -> &'static str {
+        "R. Stribeck, 1902; exponential form: Bo and Pavelescu, 1982; Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "c",
+                label: "friction level in motion",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "dc",
+                label: "excess at standstill",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "v_s",
+                label: "Stribeck speed",
+                dimension: Dimension::Speed,
+                range: Range::Positive,
+            },
+            ParameterSpec {
+                symbol: "s",
+                label: "displacement over which it builds up",
+                dimension: Dimension::Position,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "z",
+                label: "damping ratio of the contact",
+                dimension: Dimension::Ratio,
+                range: Range::UnitInterval,
+            },
+        ]
+    }
+
+    fn contains(&self) -> &'static [EffectId] {
+        const { &[EffectId::new("coulomb_friction"), EffectId::new("presliding_friction")] }
+    }
+
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let crossed = probe.scales.crossed();
+        let sign = probe.signature(|_, v| v.signum());
+        let mut found: Vec<(f64, Vec<f64>)> = SPEEDS
+            .iter()
+            .filter_map(|share| {
+                let speed = share * probe.scales.speed;
+                let falling = probe.signature(|_, v| v.signum() * (-(v / speed).powi(2)).exp());
+                let fit = probe.regress(&[&sign, &falling])?;
+                let (level, excess) = (-fit.coefficients[0], -fit.coefficients[1]);
+                (level + excess > 0.0).then(|| {
+                    let level = level.max(0.1 * (level + excess));
+                    let excess = excess.max(0.1 * level);
+                    (fit.left, vec![level, excess, speed, 0.5 * crossed, 0.1])
+                })
+            })
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().take(2).map(|f| f.1).collect()
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.friction.level += values[0];
+        model.friction.static_excess = values[1];
+        model.friction.stribeck_speed = values[2];
+        model.friction.presliding = values[3];
+        model.friction.contact_damping = values[4];
+    }
+}
