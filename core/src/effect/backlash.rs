@@ -83,7 +83,7 @@ impl Effect for Backlash {
                 symbol: "K",
                 label: "stiffness of the contact",
                 dimension: Dimension::Stiffness,
-                range: Range::Positive,
+                range: Range::Stiff,
             },
             ParameterSpec {
                 symbol: "D",

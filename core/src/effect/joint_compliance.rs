@@ -43,7 +43,7 @@ impl Effect for JointCompliance {
                 symbol: "K",
                 label: "stiffness of the joint",
                 dimension: Dimension::Stiffness,
-                range: Range::Positive,
+                range: Range::Stiff,
             },
             ParameterSpec {
                 symbol: "D",

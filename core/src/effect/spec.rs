@@ -90,6 +90,8 @@ pub enum Range {
     Fraction,
     /// 0 to 1.
     UnitInterval,
+    /// Above 0, up to [`STIFFEST`] times its [`Scales::of`].
+    Stiff,
     /// 0 to [`SHORT_CROSSINGS`] times [`Scales::crossed`].
     Short,
 }
@@ -111,6 +113,9 @@ pub struct ParameterSpec {
 /// more than that can be seen building up sample by sample.
 pub const SHORT_CROSSINGS: f64 = 3.0;
 
+/// A spring that swings by more than this in a sample, squared radians, is rigid to the measurement.
+pub const STIFFEST: f64 = 1.0;
+
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
 
@@ -124,6 +129,7 @@ impl ParameterSpec {
             Range::Positive => value.max(LEAST_SHARE * scale),
             Range::Fraction => value.clamp(-0.9, 0.9),
             Range::UnitInterval => value.clamp(0.0, 1.0),
+            Range::Stiff => value.clamp(LEAST_SHARE * scale, STIFFEST * scale),
             Range::Short => value.clamp(0.0, SHORT_CROSSINGS * scales.crossed()),
         }
     }
