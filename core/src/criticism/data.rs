@@ -119,9 +119,21 @@ impl Data {
         } else {
             Sensor::Position
         };
+        let position = match measurement.kind {
+            Kind::Drive => position_estimate(&measurement.time, &outputs),
+            Kind::Process => Vec::new(),
+        };
+        let position_noise = outputs.iter().find(|o| !o.is_velocity).map(|o| o.noise);
         Ok(Self {
             kind: measurement.kind,
-            excitation: Excitation::new(&measurement.time, input, before, sensor),
+            excitation: Excitation::new(
+                &measurement.time,
+                input,
+                before,
+                sensor,
+                position,
+                position_noise,
+            ),
             input: input.clone(),
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),
@@ -225,38 +237,28 @@ impl Data {
         })
     }
 
-    /// Measured less modelled velocity, or slopes of the position error.
-    pub fn velocity_error(&self, motion: &super::fit::Motion) -> Vec<f64> {
-        if let Some(v) = self.outputs.iter().find(|o| o.is_velocity) {
-            let pairs = v.values.iter().zip(&motion.velocity);
-            return pairs.map(|(a, b)| a - b).collect();
-        }
-        self.outputs.first().map_or_else(Vec::new, |x| {
-            let pairs = x.values.iter().zip(&motion.position);
-            let error: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
-            (0..self.len()).map(|i| self.slope(&error, i)).collect()
-        })
-    }
-
     /// Measured position, or the integral of the measured velocity from 0.
     pub fn position_estimate(&self) -> Vec<f64> {
-        if let Some(x) = self.outputs.iter().find(|o| !o.is_velocity) {
-            return x.values.clone();
-        }
-        let mut sum = 0.0;
-        self.outputs.first().map_or_else(Vec::new, |v| {
-            (0..self.len())
-                .map(|i| {
-                    if i > 0 {
-                        sum += 0.5
-                            * (v.values[i] + v.values[i - 1])
-                            * (self.time[i] - self.time[i - 1]);
-                    }
-                    sum
-                })
-                .collect()
-        })
+        position_estimate(&self.time, &self.outputs)
     }
+}
+
+/// Measured position, or the integral of the measured velocity from 0.
+fn position_estimate(time: &[f64], outputs: &[Output]) -> Vec<f64> {
+    if let Some(x) = outputs.iter().find(|o| !o.is_velocity) {
+        return x.values.clone();
+    }
+    let mut sum = 0.0;
+    outputs.first().map_or_else(Vec::new, |v| {
+        (0..time.len())
+            .map(|i| {
+                if i > 0 {
+                    sum += 0.5 * (v.values[i] + v.values[i - 1]) * (time[i] - time[i - 1]);
+                }
+                sum
+            })
+            .collect()
+    })
 }
 
 /// First samples of runs of `length` samples; a short rest joins the last run.

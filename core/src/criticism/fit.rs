@@ -21,6 +21,13 @@ const COST_TOLERANCE: f64 = 1e-6;
 /// Damping above which no step is tried any more.
 const MAX_DAMPING: f64 = 1e9;
 
+/// A fit ends when it stalls for the second time; damping with which it goes on after the first.
+const MAX_STALLS: usize = 2;
+const RESTART_DAMPING: f64 = 1e-3;
+
+/// Smallest step for finite differences, as a share of the first one.
+const LEAST_DIFFERENCE: f64 = 1e-4;
+
 /// Position and velocity of the body at every sample.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
@@ -50,6 +57,7 @@ pub(super) struct Fit {
     pub cost: f64,
     damping: f64,
     iterations: usize,
+    stalls: usize,
     pub done: bool,
     /// Inverse covariance of the values for unit noise, from the last iteration.
     information: DMatrix<f64>,
@@ -83,6 +91,7 @@ impl Fit {
             cost,
             damping: 1e-3,
             iterations: 0,
+            stalls: 0,
             done: !cost.is_finite(),
             information: DMatrix::identity(p, p),
         }
@@ -95,7 +104,7 @@ impl Fit {
         }
         self.iterations += 1;
         let p = self.values.len();
-        let steps = self.structure.difference_steps(&self.values, scales);
+        let steps = self.difference_steps(data, scales);
         let columns = self.columns(data, &steps, scales);
         let (matrix, gradient, windows) = self.normal_equations(data, &columns);
         let mut lowered = false;
@@ -118,7 +127,28 @@ impl Fit {
         }
         let schur = reduced(&matrix, &gradient, &windows, data, p).0;
         self.information = schur;
-        self.done = !lowered || self.iterations >= MAX_ITERATIONS;
+        if !lowered {
+            // Once more with long difference steps, which see past the kinks around a stall.
+            self.stalls += 1;
+            self.damping = RESTART_DAMPING;
+        }
+        self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
+    }
+
+    /// Steps for finite differences: as large as the uncertainty of a value, once that is known, so that
+    /// curvature does not bend the derivative by more than the noise does.
+    fn difference_steps(&self, data: &Data, scales: &Scales) -> Vec<f64> {
+        let mut steps = self.structure.difference_steps(&self.values, scales);
+        if self.iterations > 1 && self.stalls == 0 {
+            let count = data.len() as f64;
+            let level = (self.cost / count).sqrt().max(1.0);
+            for (j, step) in steps.iter_mut().enumerate() {
+                let uncertain = level / self.information[(j, j)].max(f64::MIN_POSITIVE).sqrt();
+                let size = uncertain.clamp(LEAST_DIFFERENCE * step.abs(), step.abs());
+                *step = size.copysign(*step);
+            }
+        }
+        steps
     }
 
     /// Derivatives of the motion: one column per value, then position and velocity of the starts.

@@ -11,6 +11,10 @@ const HEAT: usize = 2;
 /// An effect is fitted to the end while it may come this close to the best cost.
 const CLOSE: f64 = 1.03;
 
+/// Share of the present cost below which an effect must hope to come, or it is not fitted to the end:
+/// a fall of the error by less than 3 % does not count.
+const WORTHWHILE: f64 = 0.94;
+
 /// One effect in the race.
 struct Contender {
     effect: &'static dyn Effect,
@@ -25,6 +29,8 @@ pub(super) struct Race {
     at: usize,
     /// Cost to come close to; infinite where the best of the race sets it.
     target: f64,
+    /// Cost above which it is not worth going on.
+    ceiling: f64,
 }
 
 impl Race {
@@ -48,6 +54,11 @@ impl Race {
                 .collect(),
             at: 0,
             target: target.unwrap_or(f64::INFINITY),
+            ceiling: if target.is_some() {
+                f64::INFINITY
+            } else {
+                WORTHWHILE * fit.cost
+            },
         }
     }
 
@@ -85,10 +96,11 @@ impl Race {
             .iter()
             .map(|c| c.search.cost())
             .fold(self.target, f64::min);
+        let hope = self.ceiling.min(CLOSE * best);
         let next = self
             .contenders
             .iter_mut()
-            .filter(|c| c.search.goes_on() && c.search.optimism() <= CLOSE * best)
+            .filter(|c| c.search.goes_on() && c.search.optimism() <= hope)
             .min_by(|a, b| a.search.optimism().total_cmp(&b.search.optimism()));
         match next {
             Some(contender) => {

@@ -6,7 +6,7 @@ use super::fit::{Fit, Score, score};
 use super::locate::locate;
 use super::select::is_noise;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
-use crate::effect::{EffectId, Motion, Probe, ProbeInput, Scales};
+use crate::effect::{EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales};
 use crate::measurement::{Kind, Measurement, Quantity};
 
 /// A fit with its score.
@@ -51,21 +51,28 @@ impl Session {
     pub fn probe(&self, fit: &Fit) -> Probe {
         let data = &self.data;
         let model = fit.structure.model(&fit.values);
-        let error = data.velocity_error(&fit.motion);
+        let outputs: Vec<ProbeOutput> = data
+            .outputs
+            .iter()
+            .map(|o| ProbeOutput {
+                is_velocity: o.is_velocity,
+                error: o
+                    .values
+                    .iter()
+                    .zip(fit.motion.of(o.is_velocity))
+                    .map(|(y, m)| y - m)
+                    .collect(),
+                noise: o.noise,
+            })
+            .collect();
         Probe::new(&ProbeInput {
             kind: data.kind,
             scales: self.scales,
-            time: &data.time,
             position: &data.position_estimate(),
             velocity: &data.velocity_estimate(),
             input: &data.input,
             acting: &data.excitation.effective_input(&model),
-            error: &error,
-            noise: data
-                .outputs
-                .iter()
-                .find(|o| o.is_velocity)
-                .map_or(0.0, |o| o.noise),
+            outputs: &outputs,
             windows: &data.windows,
             body: (model.inertia, model.viscous),
         })

@@ -379,27 +379,34 @@ fn alike(a: &Scored, b: &Scored) -> bool {
     )
 }
 
-/// Fall of the error below which the leading parameter of an effect must stand out by itself.
+/// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how
+/// many standard errors; a larger fall asks for less, since its errors are widened by what is left.
 const LARGE_FALL: f64 = 0.1;
-
-/// Standard errors by which it must differ from 0 then.
 const CLEAR_ERRORS: f64 = 3.0;
+const LEAST_ERRORS: f64 = 1.5;
 
-/// Whether the last effect of `with` helps `model`, and is itself seen if it helps only a little.
+/// Fall of the error that speaks for itself.
+const HUGE_FALL: f64 = 0.5;
+
+/// Whether the last effect of `with` helps `model`, and is itself seen.
 fn helps_clearly(model: &Scored, with: &Scored) -> bool {
     if !helps(&model.score, &with.score) {
         return false;
     }
-    if with.score.error < (1.0 - LARGE_FALL) * model.score.error {
+    let fall = 1.0 - with.score.error / model.score.error;
+    if fall > HUGE_FALL {
         return true;
     }
-    let leading = model.fit.values.len();
+    let clear = if fall > LARGE_FALL {
+        LEAST_ERRORS
+    } else {
+        CLEAR_ERRORS
+    };
+    let leading = with.fit.structure.effects.len().checked_sub(1);
     let inflation = with.score.error_fit.powi(2).max(1.0) * with.score.correlation.max(1.0);
     let errors = with.fit.standard_errors(inflation);
-    with.fit
-        .values
-        .get(leading)
-        .zip(errors.get(leading))
-        .is_some_and(|(v, e)| v.abs() > CLEAR_ERRORS * e)
+    leading.is_some_and(|index| {
+        let j = with.fit.structure.range(index).start;
+        with.fit.values[j].abs() > clear * errors[j]
+    })
 }
-

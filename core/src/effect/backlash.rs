@@ -9,23 +9,83 @@ use crate::model::{Coupling, Load, Model};
 
 pub(super) struct Backlash;
 
-/// Half gaps that are tried, as shares of the travel: evenly spaced on a log scale.
-const GAPS: u32 = 24;
-const SMALLEST_GAP: f64 = 0.005;
+/// Half gaps that are tried, as shares of the travel: the contact comes and goes within a narrow range
+/// of gaps, so that they lie close together.
+const SMALLEST_GAP: f64 = 5e-4;
 const LARGEST_GAP: f64 = 0.8;
+const GAP_RATIO: f64 = 1.15;
+const GAP_SPACING: f64 = 1.0 / 160.0;
 
-/// Viscous and dry friction of the load that are tried, in units of those of the drive and its input.
-const LOAD_FRICTION: [(f64, f64); 3] = [(1.0, 0.005), (1.0, 0.02), (3.0, 0.05)];
+/// Rate at which a free load is slowed down by viscous friction, per sample, and its dry friction in
+/// units of the typical input.
+const LOAD_FRICTION: [(f64, f64); 4] = [(1e-3, 0.01), (1e-3, 0.0), (4e-3, 0.0), (1e-3, 0.05)];
 
-/// Stiffness and damping of the contact that are tried: a share of what one sample can follow.
-const CONTACT: f64 = 0.2;
+/// Stiffness of the contact: squared radians of its oscillation in a sample.
+const STIFFNESS: [f64; 3] = [0.03, 0.01, 0.2];
 
-/// Gaps that are followed.
+/// Damping ratio of the contact.
+const DAMPING_RATIO: f64 = 0.3;
+
+/// Gaps that are tried with every friction and stiffness, and combinations that are followed.
+const REFINED: usize = 5;
 const BEST: usize = 3;
 
 fn gap_shares() -> impl Iterator<Item = f64> {
-    let ratio = (LARGEST_GAP / SMALLEST_GAP).powf(1.0 / f64::from(GAPS - 1));
-    (0..GAPS).map(move |i| SMALLEST_GAP * ratio.powf(f64::from(i)))
+    std::iter::successors(Some(SMALLEST_GAP), |share| {
+        Some((share * GAP_RATIO).min(share + GAP_SPACING))
+    })
+    .take_while(|share| *share < LARGEST_GAP)
+}
+
+/// A starting point with the share of the unexplained force that it leaves.
+#[derive(Clone)]
+struct Trial {
+    left: f64,
+    load: Load,
+    /// By how much the load must be scaled.
+    scale: f64,
+}
+
+impl Trial {
+    fn new(probe: &Probe, half_gap: f64, friction: (f64, f64), stiffness: f64) -> Option<Self> {
+        let (inertia, step) = (probe.scales.inertia.abs(), probe.scales.step);
+        let load = Load {
+            inertia,
+            viscous: friction.0 * inertia / step,
+            dry_friction: friction.1 * probe.scales.force,
+            coupling: Coupling {
+                half_gap,
+                stiffness: stiffness * inertia / (step * step),
+                damping: 2.0 * DAMPING_RATIO * stiffness.sqrt() * inertia / step,
+            },
+        };
+        let fit = probe.regress(&[&probe.load_torque(&load)])?;
+        let scale = -fit.coefficients[0];
+        (scale > 0.0).then_some(Self {
+            left: fit.left,
+            load,
+            scale,
+        })
+    }
+
+    fn values(&self) -> Vec<f64> {
+        let c = self.load.coupling;
+        let scale = self.scale;
+        vec![
+            c.half_gap,
+            scale * self.load.inertia,
+            scale * self.load.viscous,
+            scale * self.load.dry_friction,
+            scale * c.stiffness,
+            scale * c.damping,
+        ]
+    }
+}
+
+fn best(mut trials: Vec<Trial>, count: usize) -> Vec<Trial> {
+    trials.sort_by(|a, b| a.left.total_cmp(&b.left));
+    trials.truncate(count);
+    trials
 }
 
 impl Effect for Backlash {
@@ -65,7 +125,7 @@ impl Effect for Backlash {
                 symbol: "J2",
                 label: "load inertia",
                 dimension: Dimension::Inertia,
-                range: Range::Positive,
+                range: Range::Sizeable,
             },
             ParameterSpec {
                 symbol: "d2",
@@ -99,40 +159,23 @@ impl Effect for Backlash {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        let inertia = probe.scales.inertia.abs();
-        let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
-        for share in gap_shares() {
-            for (viscous, friction) in LOAD_FRICTION {
-                let load = Load {
-                    inertia,
-                    viscous: viscous * probe.scales.viscous,
-                    dry_friction: friction * probe.scales.force,
-                    coupling: Coupling {
-                        half_gap: share * probe.scales.travel,
-                        stiffness: CONTACT * probe.scales.of(Dimension::Stiffness),
-                        damping: CONTACT * inertia / probe.scales.step,
-                    },
-                };
-                let Some(fit) = probe.regress(&[&probe.load_torque(&load)]) else {
-                    continue;
-                };
-                let scale = -fit.coefficients[0];
-                if scale > 0.0 {
-                    let c = load.coupling;
-                    let values = vec![
-                        c.half_gap,
-                        scale * load.inertia,
-                        scale * load.viscous,
-                        scale * load.dry_friction,
-                        scale * c.stiffness,
-                        scale * c.damping,
-                    ];
-                    found.push((fit.left, values));
-                }
-            }
-        }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.into_iter().take(BEST).map(|f| f.1).collect()
+        let scanned = gap_shares()
+            .filter_map(|share| {
+                let half_gap = share * probe.scales.travel;
+                Trial::new(probe, half_gap, LOAD_FRICTION[0], STIFFNESS[0])
+            })
+            .collect();
+        let refined = best(scanned, REFINED)
+            .iter()
+            .flat_map(|trial| {
+                let half_gap = trial.load.coupling.half_gap;
+                LOAD_FRICTION
+                    .iter()
+                    .flat_map(|friction| STIFFNESS.map(|k| (*friction, k)))
+                    .filter_map(move |(friction, k)| Trial::new(probe, half_gap, friction, k))
+            })
+            .collect();
+        best(refined, BEST).iter().map(Trial::values).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -55,7 +55,7 @@ impl Effect for JointCompliance {
                 symbol: "J2",
                 label: "load inertia",
                 dimension: Dimension::Inertia,
-                range: Range::Positive,
+                range: Range::Sizeable,
             },
             ParameterSpec {
                 symbol: "d2",

@@ -22,7 +22,7 @@ mod static_curvature;
 mod stribeck_friction;
 
 pub use id::{EffectId, VISCOUS_FRICTION};
-pub use probe::{Probe, ProbeInput, Regression};
+pub use probe::{Probe, ProbeInput, ProbeOutput, Regression};
 pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales};
 
 use crate::measurement::Kind;

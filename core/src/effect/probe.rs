@@ -1,30 +1,26 @@
-//! What a present model leaves unexplained, as a force: where effects look for starting values.
+//! What a present model leaves unexplained: where effects look for starting values.
 //!
-//! Between two samples the velocity error `r` of a model with inertia `J` and viscous friction `d`
-//! changes by `J dr = int (f - d r) dt`, with `f` the missing force. Summed over short chunks and
-//! regressed on what the effect would do, together with changes of inertia, viscous friction and a
-//! constant, this is a score test in force space: one linear regression instead of a fit.
+//! A missing force moves the body, and the body's answer shows in the outputs. To first order the error
+//! of a model is therefore the answer of its linear part (inertia `J`, viscous friction `d`) to the
+//! missing force. A force that an effect would bring is sent through that part and compared with the
+//! error in all outputs, in noise units, beyond what other starting states of the windows, another
+//! inertia or viscous friction, and a constant force can explain: a score test (Rao 1948), one linear
+//! regression instead of a fit.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::Scales;
 use crate::measurement::Kind;
-use crate::model::{Load, load_torque};
+use crate::model::{Load, free_body, load_torque};
 
 /// Samples at most that are looked at.
-const MAX_SAMPLES: usize = 20_000;
+const MAX_SAMPLES: usize = 200_000;
 
-/// Chunks at most that enter a regression.
-const MAX_CHUNKS: usize = 5000;
+/// Samples at most that enter a regression, and one of a scan over very many of them.
+const REGRESSED: usize = 60_000;
+const SCANNED: usize = 6_000;
 
-/// Chunk lengths, in samples; the first over which velocity differences stand well above the noise is
-/// taken.
-const CHUNKS: [usize; 7] = [1, 2, 5, 10, 20, 50, 100];
-
-/// How far above the noise, root mean square.
-const CLEAR_OF_NOISE: f64 = 10.0;
-
-/// Columns of every regression: input, velocity, constant.
+/// Forces of every regression: input, velocity, constant.
 const BASE: usize = 3;
 
 /// Spatial frequencies that are scanned at most, over the measured travel.
@@ -52,13 +48,37 @@ pub struct Probe {
     position: Vec<f64>,
     velocity: Vec<f64>,
     input: Vec<f64>,
-    /// First and last sample of each chunk.
-    chunks: Vec<(usize, usize)>,
-    /// Change of the velocity error over each chunk, its viscous decay taken out.
-    target: DVector<f64>,
-    base: DMatrix<f64>,
+    /// First sample and end of each window.
+    spans: Vec<(usize, usize)>,
+    /// Whether an output is a velocity, and one over its noise.
+    outputs: Vec<(bool, f64)>,
+    body: FreeBody,
+    /// What other starting states do, orthonormal, for the longest window.
+    states: Vec<[Vec<f64>; 2]>,
+    /// Error of each window, free of what a starting state explains.
+    target: Vec<Vec<f64>>,
+    /// Answers to the base forces, likewise.
+    base: Vec<[Vec<f64>; BASE]>,
     base_left: f64,
     inverse_inertia: f64,
+}
+
+/// One step of the linear body.
+#[derive(Clone, Copy, Debug)]
+struct FreeBody {
+    decay: f64,
+    phi1: f64,
+    phi2: f64,
+}
+
+/// An output of a [`ProbeInput`].
+pub struct ProbeOutput {
+    /// Whether it shows the velocity (or the output of a process), else the position.
+    pub is_velocity: bool,
+    /// Measured less modelled values.
+    pub error: Vec<f64>,
+    /// Standard deviation of its noise.
+    pub noise: f64,
 }
 
 /// What a [`Probe`] is made from.
@@ -67,8 +87,6 @@ pub struct ProbeInput<'a> {
     pub kind: Kind,
     /// Typical sizes.
     pub scales: Scales,
-    /// Sampling times, s.
-    pub time: &'a [f64],
     /// Measured position, or an estimate.
     pub position: &'a [f64],
     /// Measured velocity (output of a process), or an estimate.
@@ -77,10 +95,8 @@ pub struct ProbeInput<'a> {
     pub input: &'a [f64],
     /// Input that reaches the body, as its mean over each sampling interval.
     pub acting: &'a [f64],
-    /// Velocity that the present model leaves unexplained.
-    pub error: &'a [f64],
-    /// Standard deviation of the noise of `velocity`.
-    pub noise: f64,
+    /// What the present model leaves of each output.
+    pub outputs: &'a [ProbeOutput],
     /// First samples of the windows at which the present model restarts.
     pub windows: &'a [usize],
     /// Inertia and viscous friction of the present model.
@@ -92,7 +108,7 @@ pub struct ProbeInput<'a> {
 pub struct Regression {
     /// Force per unit of each signature.
     pub coefficients: Vec<f64>,
-    /// Share of the unexplained force that is left, 0 to 1.
+    /// Share of the squared error that is left, 0 to 1.
     pub left: f64,
 }
 
@@ -100,56 +116,115 @@ impl Probe {
     /// Prepares the regressions.
     pub fn new(input: &ProbeInput) -> Self {
         let n = input.velocity.len().min(MAX_SAMPLES);
-        let (time, v) = (&input.time[..n], &input.velocity[..n]);
-        let length = chunk_length(v, input.noise);
-        let mut chunks: Vec<(usize, usize)> = Vec::new();
-        for (k, from) in input.windows.iter().enumerate() {
-            let end = input.windows.get(k + 1).copied().unwrap_or(n).min(n);
-            let mut i = *from;
-            while i + length < end {
-                chunks.push((i, i + length));
-                i += length;
-            }
-        }
-        let stride = chunks.len().div_ceil(MAX_CHUNKS).max(1);
-        let chunks: Vec<_> = chunks.into_iter().step_by(stride).collect();
+        let spans: Vec<(usize, usize)> = input
+            .windows
+            .iter()
+            .enumerate()
+            .map(|(k, from)| (*from, input.windows.get(k + 1).map_or(n, |w| (*w).min(n))))
+            .filter(|(from, to)| from + 2 < *to)
+            .collect();
+        let stride = spans_stride(&spans, REGRESSED);
+        let spans: Vec<_> = spans.into_iter().step_by(stride).collect();
         let (inertia, viscous) = input.body;
-        let rate = viscous / inertia;
-        let integral = |values: &[f64], (from, to): (usize, usize)| -> f64 {
-            (from..to)
-                .map(|j| 0.5 * (values[j] + values[j + 1]) * (time[j + 1] - time[j]))
-                .sum()
-        };
-        let target = DVector::from_iterator(
-            chunks.len(),
-            chunks.iter().map(|&(from, to)| {
-                input.error[to] - input.error[from] + rate * integral(input.error, (from, to))
-            }),
-        );
-        let mut base = DMatrix::zeros(chunks.len(), BASE);
-        for (row, &(from, to)) in chunks.iter().enumerate() {
-            base[(row, 0)] = (from..to)
-                .map(|j| input.acting[j] * (time[j + 1] - time[j]))
-                .sum();
-            base[(row, 1)] = -integral(v, (from, to));
-            base[(row, 2)] = time[to] - time[from];
-        }
+        let (decay, phi1, phi2) = free_body(viscous / inertia, input.scales.step);
+        let outputs: Vec<(bool, f64)> = input
+            .outputs
+            .iter()
+            .map(|o| (o.is_velocity, 1.0 / o.noise))
+            .collect();
         let mut probe = Self {
             kind: input.kind,
             scales: input.scales,
             position: input.position[..n].to_vec(),
-            velocity: v.to_vec(),
+            velocity: input.velocity[..n].to_vec(),
             input: input.input[..n].to_vec(),
-            chunks,
-            target,
-            base,
+            spans,
+            outputs,
+            body: FreeBody { decay, phi1, phi2 },
+            states: Vec::new(),
+            target: Vec::new(),
+            base: Vec::new(),
             base_left: f64::NAN,
             inverse_inertia: 1.0 / inertia,
         };
-        probe.base_left = probe
-            .solve(&DMatrix::zeros(probe.chunks.len(), 0))
-            .map_or(f64::NAN, |(_, left)| left);
+        let mut lengths: Vec<usize> = probe.spans.iter().map(|(a, b)| b - a).collect();
+        lengths.sort_unstable();
+        lengths.dedup();
+        probe.states = lengths.iter().map(|l| probe.state_answers(*l)).collect();
+        let v = &probe.velocity;
+        let drag: Vec<f64> = v.windows(2).map(|w| -0.5 * (w[0] + w[1])).collect();
+        let ones = vec![1.0; n];
+        (probe.target, probe.base) = probe
+            .spans
+            .iter()
+            .map(|&(from, to)| {
+                let mut target: Vec<f64> = input
+                    .outputs
+                    .iter()
+                    .flat_map(|o| o.error[from..to].iter().map(|e| e / o.noise))
+                    .collect();
+                probe.without_states(&mut target, to - from);
+                let base = [input.acting, &drag, &ones].map(|f| probe.answer((from, to), |k| f[k]));
+                (target, base)
+            })
+            .unzip();
+        probe.base_left = probe.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
         probe
+    }
+
+    /// Orthonormal answers to a starting position and velocity over a window of `length` samples.
+    fn state_answers(&self, length: usize) -> [Vec<f64>; 2] {
+        let (mut position, mut velocity) = (Vec::new(), Vec::new());
+        for (is_velocity, weight) in &self.outputs {
+            let (mut x, mut v) = (0.0, 1.0);
+            for _ in 0..length {
+                position.push(if *is_velocity { 0.0 } else { *weight });
+                velocity.push(weight * if *is_velocity { v } else { x });
+                x += self.body.phi1 * v;
+                v *= self.body.decay;
+            }
+        }
+        normalise(&mut position);
+        let shared = dot(&position, &velocity);
+        for (v, p) in velocity.iter_mut().zip(&position) {
+            *v -= shared * p;
+        }
+        normalise(&mut velocity);
+        [position, velocity]
+    }
+
+    /// Takes out of the outputs of a window what a starting state explains.
+    fn without_states(&self, outputs: &mut [f64], length: usize) {
+        let known = self
+            .states
+            .iter()
+            .find(|s| s[0].len() == length * self.outputs.len());
+        for state in known.into_iter().flatten() {
+            let share = dot(state, outputs);
+            for (o, s) in outputs.iter_mut().zip(state) {
+                *o -= share * s;
+            }
+        }
+    }
+
+    /// Answer of the outputs in a window to an acceleration (one value per interval), in noise units.
+    fn answer(&self, (from, to): (usize, usize), acceleration: impl Fn(usize) -> f64) -> Vec<f64> {
+        let length = to - from;
+        let FreeBody { decay, phi1, phi2 } = self.body;
+        let mut answer = vec![0.0; length * self.outputs.len()];
+        let (mut x, mut v) = (0.0, 0.0);
+        for k in 0..length {
+            for (j, (is_velocity, weight)) in self.outputs.iter().enumerate() {
+                answer[j * length + k] = weight * if *is_velocity { v } else { x };
+            }
+            if k + 1 < length {
+                let a = acceleration(from + k);
+                x += phi1 * v + phi2 * a;
+                v = decay * v + phi1 * a;
+            }
+        }
+        self.without_states(&mut answer, length);
+        answer
     }
 
     /// A force signature as a function of position and velocity, at every sample.
@@ -162,16 +237,23 @@ impl Probe {
             .collect()
     }
 
-    /// Regresses the unexplained force on `signatures`, each with a value for every sample; `None` where
-    /// they leave no trace or cannot be told from the baseline.
+    /// Regresses the error on the answers to `signatures`, each with a value for every sample; `None`
+    /// where they leave no trace or cannot be told from the baseline.
     pub fn regress(&self, signatures: &[&[f64]]) -> Option<Regression> {
-        let step = self.scales.step;
-        let columns = DMatrix::from_fn(self.chunks.len(), signatures.len(), |row, j| {
-            let (from, to) = self.chunks[row];
-            let s = signatures[j];
-            (from..to).map(|k| 0.5 * (s[k] + s[k + 1])).sum::<f64>() * step
-        });
-        let (solution, left) = self.solve(&columns)?;
+        let forces: Vec<Box<dyn Fn(usize) -> f64 + '_>> = signatures
+            .iter()
+            .map(|s| -> Box<dyn Fn(usize) -> f64> { Box::new(|k| 0.5 * (s[k] + s[k + 1])) })
+            .collect();
+        self.regress_forces(&forces, 1)
+    }
+
+    /// The same for forces as functions of the interval, on one window in `stride`.
+    fn regress_forces(
+        &self,
+        forces: &[Box<dyn Fn(usize) -> f64 + '_>],
+        stride: usize,
+    ) -> Option<Regression> {
+        let (solution, left) = self.solve(forces, stride)?;
         let b = self.inverse_inertia + solution[0];
         let coefficients: Vec<f64> = solution.iter().skip(BASE).map(|c| c / b).collect();
         (b * self.inverse_inertia > 0.0 && coefficients.iter().all(|c| c.is_finite())).then(|| {
@@ -182,31 +264,48 @@ impl Probe {
         })
     }
 
-    /// Least squares on the base columns and `columns`: coefficients and squared remainder.
-    fn solve(&self, columns: &DMatrix<f64>) -> Option<(DVector<f64>, f64)> {
-        let p = BASE + columns.ncols();
-        let column = |j: usize| {
-            if j < BASE {
-                self.base.column(j)
-            } else {
-                columns.column(j - BASE)
+    /// Least squares on the base forces and `forces`: coefficients and squared remainder.
+    fn solve(
+        &self,
+        forces: &[Box<dyn Fn(usize) -> f64 + '_>],
+        stride: usize,
+    ) -> Option<(DVector<f64>, f64)> {
+        let p = BASE + forces.len();
+        let mut normal = DMatrix::zeros(p, p);
+        let mut right = DVector::zeros(p);
+        let (mut power, mut count) = (0.0, 0);
+        for ((span, target), base) in self
+            .spans
+            .iter()
+            .zip(&self.target)
+            .zip(&self.base)
+            .step_by(stride)
+        {
+            let own: Vec<Vec<f64>> = forces.iter().map(|f| self.answer(*span, f)).collect();
+            let columns: Vec<&[f64]> = base.iter().chain(&own).map(Vec::as_slice).collect();
+            for a in 0..p {
+                for b in 0..=a {
+                    normal[(a, b)] += dot(columns[a], columns[b]);
+                }
+                right[a] += dot(columns[a], target);
             }
-        };
-        let sizes: Vec<f64> = (0..p).map(|j| column(j).norm()).collect();
-        if self.chunks.len() <= 2 * p || sizes.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+            power += dot(target, target);
+            count += target.len();
+        }
+        let sizes: Vec<f64> = (0..p).map(|j| f64::sqrt(normal[(j, j)])).collect();
+        if count <= 4 * p || sizes.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
             return None;
         }
-        let mut normal = DMatrix::identity(p, p) * (1.0 + 1e-9);
         for a in 0..p {
             for b in 0..a {
-                let product = column(a).dot(&column(b)) / (sizes[a] * sizes[b]);
-                normal[(a, b)] = product;
-                normal[(b, a)] = product;
+                normal[(a, b)] /= sizes[a] * sizes[b];
+                normal[(b, a)] = normal[(a, b)];
             }
+            normal[(a, a)] = 1.0 + 1e-9;
+            right[a] /= sizes[a];
         }
-        let right = DVector::from_fn(p, |j, _| column(j).dot(&self.target) / sizes[j]);
         let scaled = normal.cholesky()?.solve(&right);
-        let left = self.target.norm_squared() - scaled.dot(&right);
+        let left = power - scaled.dot(&right);
         let solution = DVector::from_fn(p, |j, _| scaled[j] / sizes[j]);
         solution
             .iter()
@@ -279,31 +378,34 @@ impl Probe {
 
     /// Frequency, coefficients of sine and cosine, share left.
     fn spatial(&self, n: f64) -> Option<(f64, f64, f64, f64)> {
-        let length = |c: &(usize, usize)| (c.1 - c.0) as f64 * self.scales.step;
-        let columns = DMatrix::from_fn(self.chunks.len(), 2, |_, _| 0.0);
-        let mut columns = columns;
-        for (row, chunk) in self.chunks.iter().enumerate() {
-            let middle = 0.5 * (self.position[chunk.0] + self.position[chunk.1]);
-            let (sine, cosine) = (n * middle).sin_cos();
-            columns[(row, 0)] = sine * length(chunk);
-            columns[(row, 1)] = cosine * length(chunk);
-        }
-        let (solution, left) = self.solve(&columns)?;
-        let b = self.inverse_inertia + solution[0];
-        Some((n, solution[BASE] / b, solution[BASE + 1] / b, left))
+        let middle = |k: usize| n * 0.5 * (self.position[k] + self.position[k + 1]);
+        let stride = spans_stride(&self.spans, SCANNED);
+        let fit = self.regress_forces(
+            &[
+                Box::new(|k| middle(k).sin()),
+                Box::new(|k| middle(k).cos()),
+            ],
+            stride,
+        )?;
+        Some((n, fit.coefficients[0], fit.coefficients[1], fit.left))
     }
 }
 
-/// Chunk length over which velocity differences stand above `noise`.
-fn chunk_length(v: &[f64], noise: f64) -> usize {
-    let n = v.len();
-    CHUNKS
-        .iter()
-        .copied()
-        .filter(|c| c * 20 < n)
-        .find(|c| {
-            let sum: f64 = (0..n - c).map(|i| (v[i + c] - v[i]).powi(2)).sum();
-            (sum / (n - c) as f64).sqrt() > CLEAR_OF_NOISE * noise
-        })
-        .unwrap_or((n / 40).clamp(1, 100))
+/// One window in how many makes at most `samples`.
+fn spans_stride(spans: &[(usize, usize)], samples: usize) -> usize {
+    let total: usize = spans.iter().map(|(from, to)| to - from).sum();
+    total.div_ceil(samples).clamp(1, spans.len().max(1))
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn normalise(values: &mut [f64]) {
+    let size = dot(values, values).sqrt();
+    if size > 0.0 {
+        for v in values {
+            *v /= size;
+        }
+    }
 }

@@ -92,6 +92,8 @@ pub enum Range {
     UnitInterval,
     /// Above 0, up to [`STIFFEST`] times its [`Scales::of`].
     Stiff,
+    /// At least [`LIGHTEST`] times its [`Scales::of`].
+    Sizeable,
     /// 0 to [`SHORT_CROSSINGS`] times [`Scales::crossed`].
     Short,
 }
@@ -114,7 +116,10 @@ pub struct ParameterSpec {
 pub const SHORT_CROSSINGS: f64 = 3.0;
 
 /// A spring that swings by more than this in a sample, squared radians, is rigid to the measurement.
-pub const STIFFEST: f64 = 1.0;
+pub const STIFFEST: f64 = 0.3;
+
+/// A load lighter than this share of the motor is part of it.
+pub const LIGHTEST: f64 = 0.03;
 
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
@@ -130,6 +135,7 @@ impl ParameterSpec {
             Range::Fraction => value.clamp(-0.9, 0.9),
             Range::UnitInterval => value.clamp(0.0, 1.0),
             Range::Stiff => value.clamp(LEAST_SHARE * scale, STIFFEST * scale),
+            Range::Sizeable => value.max(LIGHTEST * scale),
             Range::Short => value.clamp(0.0, SHORT_CROSSINGS * scales.crossed()),
         }
     }

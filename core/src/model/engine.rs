@@ -1,9 +1,10 @@
 //! The hybrid engine: exact flow between events, modes for sticking, slipping and contact.
 
 use super::Model;
-use super::contact::{Contact, Deflection};
+use super::contact::Contact;
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
+use super::load::Follower;
 
 /// Halvings of an interval at most.
 const MAX_HALVINGS: u32 = 6;
@@ -18,8 +19,8 @@ const SMOOTH_SHARE: f64 = 0.05;
 pub struct State {
     motion: Motion,
     mode: Mode,
-    /// Elastic deflections of the contact of dry friction.
-    deflection: Deflection,
+    /// Elastic deflection of the contact of dry friction.
+    deflection: f64,
     /// x1 - x2.
     twist: f64,
     /// Motion of the load; its position is told by the twist.
@@ -70,6 +71,25 @@ impl State {
         next.mode = Mode::of(velocity);
         next
     }
+
+    /// The same with the contact of dry friction at this deflection.
+    #[must_use]
+    pub(super) fn with_deflection(&self, deflection: f64) -> Self {
+        Self {
+            deflection,
+            ..*self
+        }
+    }
+
+    /// The same with the load as `follower` found it; `position` is where the body was measured.
+    #[must_use]
+    pub(super) fn with_load(&self, follower: &Follower, position: f64) -> Self {
+        let mut next = *self;
+        next.twist = position - follower.motion.x;
+        next.load = follower.motion;
+        next.load_mode = follower.mode;
+        next
+    }
 }
 
 /// Forces that are held over a step, besides the input.
@@ -114,6 +134,11 @@ impl<'m> Engine<'m> {
                 && model.friction.static_excess == 0.0,
             model,
         }
+    }
+
+    /// The elastic contact of dry friction, if there is one.
+    pub(super) fn contact(&self) -> Option<&Contact> {
+        self.contact.as_ref()
     }
 
     /// Computes the flows over a duration that will recur, such as the sampling time.

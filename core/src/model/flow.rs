@@ -34,6 +34,9 @@ const SERIES_LIMIT: f64 = 0.5;
 /// Terms of the series; `0.5^18 / 18!` is far below round-off.
 const SERIES_TERMS: u32 = 18;
 
+/// The series ends at terms below this share of round-off.
+const SERIES_REST: f64 = 1e-3;
+
 /// Durations closer than this share of each other use the same coefficients; the error is the
 /// same share of one sample's motion, far below round-off of the file.
 const SAME_DURATION: f64 = 1e-12;
@@ -94,6 +97,10 @@ impl Coefficients {
             lag_term *= -mu * h / (k + 1.0);
             decay += decay_term;
             lag_decay += lag_term;
+            let largest = decay_term.abs().max(lag_term.abs()).max(psi_term.abs() / h);
+            if largest < f64::EPSILON * SERIES_REST {
+                break;
+            }
         }
         Self {
             h,
@@ -105,6 +112,13 @@ impl Coefficients {
             psi2,
         }
     }
+}
+
+/// What a body with this rate of decay does in `h` seconds: what stays of its velocity, and velocity and
+/// position per unit of acceleration.
+pub(crate) fn free_body(rate: f64, h: f64) -> (f64, f64, f64) {
+    let c = Coefficients::new(rate, None, h);
+    (c.decay, c.phi1, c.phi2)
 }
 
 /// Position, velocity and lagged input.

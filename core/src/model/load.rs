@@ -65,36 +65,90 @@ impl Load {
     }
 }
 
+/// A load that follows a body which moves as measured.
+///
+/// Since the body's motion is given, the load cannot drift away from it: its hidden state is known at
+/// any time, however long ago the record began.
+pub(super) struct Follower<'m> {
+    load: &'m Load,
+    flow: Flow,
+    pub motion: Motion,
+    pub mode: Mode,
+    steps: u32,
+}
+
+/// Most steps in an interval of a follower.
+const MAX_FOLLOWER_STEPS: f64 = 32.0;
+
+impl<'m> Follower<'m> {
+    /// `load` at rest in the middle of the gap around `position`, to be moved in intervals of about
+    /// `h` seconds.
+    pub fn new(load: &'m Load, position: f64, h: f64) -> Self {
+        let mut flow = Flow::new(load.inertia, load.viscous, None);
+        let steps = (h / load.longest_step(f64::INFINITY))
+            .ceil()
+            .clamp(1.0, MAX_FOLLOWER_STEPS);
+        flow.prepare(h);
+        flow.prepare(h / steps);
+        Self {
+            load,
+            flow,
+            motion: Motion {
+                x: position,
+                ..Motion::default()
+            },
+            mode: Mode::Stick,
+            steps: steps as u32,
+        }
+    }
+
+    /// Moves the body along `position` from sample `i` to the next one in `h` seconds, on a parabola
+    /// bent like the samples around; mean torque or force on the load.
+    pub fn advance(&mut self, position: &[f64], i: usize, h: f64) -> f64 {
+        let at = |j: usize| position[j.min(position.len() - 1)];
+        let (from, to) = (at(i), at(i + 1));
+        let before = if i == 0 { from } else { at(i - 1) };
+        // Mean second difference; the samples are taken as equally spaced.
+        let bend = if i == 0 || i + 2 >= position.len() {
+            0.0
+        } else {
+            0.5 * (at(i + 2) - to - from + before)
+        };
+        let v1 = (to - from) / h;
+        let touching = self
+            .load
+            .may_touch(from - self.motion.x, v1 - self.motion.v, h);
+        let steps = if touching { self.steps } else { 1 };
+        let part = h / f64::from(steps);
+        let mut sum = 0.0;
+        for k in 0..steps {
+            let share = (f64::from(k) + 0.5) / f64::from(steps);
+            let middle = from + (to - from) * share - 0.5 * bend * share * (1.0 - share);
+            let rate = v1 - 0.5 * bend * (1.0 - 2.0 * share) / h;
+            let twist = middle - self.motion.x - 0.5 * part * self.motion.v;
+            let force = self.load.coupling.force(twist, rate - self.motion.v);
+            sum += force;
+            slide(
+                &self.flow,
+                &mut self.motion,
+                &mut self.mode,
+                0.0,
+                force,
+                self.load.dry_friction,
+                part,
+            );
+        }
+        sum / f64::from(steps)
+    }
+}
+
 /// Torque or force that a load with `coupling` would put on a body which is moved as measured:
 /// `position` at equal steps of `h` seconds, the load at rest in the middle of the gap at first.
-///
-/// Since the body's motion is given, the load cannot drift away from it: whole records can be
-/// compared with the force that a model lacks, without windows.
 pub fn load_torque(load: &Load, position: &[f64], h: f64) -> Vec<f64> {
-    let flow = Flow::new(load.inertia, load.viscous, None);
-    let steps = (h / load.longest_step(f64::INFINITY)).ceil().clamp(1.0, 32.0) as usize;
-    let part = h / steps as f64;
-    let (mut motion, mut mode) = (Motion::default(), Mode::Stick);
-    motion.x = position.first().copied().unwrap_or(0.0);
-    let mut torque = Vec::with_capacity(position.len());
-    for pair in position.windows(2) {
-        let v1 = (pair[1] - pair[0]) / h;
-        let mut sum = 0.0;
-        let steps = if load.may_touch(pair[0] - motion.x, v1 - motion.v, h) {
-            steps
-        } else {
-            1
-        };
-        let part = if steps == 1 { h } else { part };
-        for k in 0..steps {
-            let middle = pair[0] + v1 * part * (k as f64 + 0.5);
-            let twist = middle - motion.x - 0.5 * part * motion.v;
-            let force = load.coupling.force(twist, v1 - motion.v);
-            sum += force;
-            slide(&flow, &mut motion, &mut mode, 0.0, force, load.dry_friction, part);
-        }
-        torque.push(sum / steps as f64);
-    }
+    let mut follower = Follower::new(load, position.first().copied().unwrap_or(0.0), h);
+    let mut torque: Vec<f64> = (1..position.len())
+        .map(|i| follower.advance(position, i - 1, h))
+        .collect();
     torque.push(torque.last().copied().unwrap_or(0.0));
     torque
 }

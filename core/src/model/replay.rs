@@ -1,6 +1,8 @@
 //! Replay: a model driven by a measured input, restarted at the windows' estimated states.
 
-use super::{Engine, Model, State};
+use super::contact::Contact;
+use super::load::Follower;
+use super::{DryFriction, Engine, Model, State};
 
 /// A time step within this share of the mean one counts as equal: files round their time column.
 const UNIFORM_TOLERANCE: f64 = 0.02;
@@ -26,6 +28,10 @@ pub struct Excitation {
     /// Sampling time in s, if equal throughout.
     step: Option<f64>,
     slow_sensor: Sensor,
+    /// Measured position, or an estimate, which hidden states follow; empty for a process.
+    position: Vec<f64>,
+    /// Standard deviation of its noise, where it is measured.
+    position_noise: Option<f64>,
 }
 
 /// Which output a slow sensor shows: a counting encoder is not slow, but the velocity made from it is.
@@ -38,8 +44,16 @@ pub enum Sensor {
 }
 
 impl Excitation {
-    /// `time` in s strictly increasing, `input` as long; `before` acted until the record starts.
-    pub fn new(time: &[f64], input: &[f64], before: f64, slow_sensor: Sensor) -> Self {
+    /// `time` in s strictly increasing, `input` as long; `before` acted until the record starts;
+    /// `position` as measured or estimated, as long or empty, with its noise if it is measured.
+    pub fn new(
+        time: &[f64],
+        input: &[f64],
+        before: f64,
+        slow_sensor: Sensor,
+        position: Vec<f64>,
+        position_noise: Option<f64>,
+    ) -> Self {
         let n = time.len();
         let mean = (time[n - 1] - time[0]) / (n - 1) as f64;
         let uniform = time
@@ -52,6 +66,8 @@ impl Excitation {
             before,
             step: uniform.then_some(mean),
             slow_sensor,
+            position,
+            position_noise,
         }
     }
 
@@ -61,6 +77,7 @@ impl Excitation {
         Self {
             time: self.time[..n].to_vec(),
             input: self.input[..n].to_vec(),
+            position: self.position.iter().take(n).copied().collect(),
             ..*self
         }
     }
@@ -83,7 +100,8 @@ impl Excitation {
     /// Runs `model` through the whole record and writes position and velocity at every sample.
     ///
     /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
-    /// given there; hidden states (lagged input, load) go on from the window before.
+    /// given there. Of the hidden states the lagged input goes on from the window before; a load and the
+    /// deflection of a friction contact are where they must be if the body moved as measured.
     pub fn replay(
         &self,
         model: &Model,
@@ -98,9 +116,37 @@ impl Excitation {
         path.prepare(&mut engine);
         let mut state = State::at_rest(before);
         let mut next = starts.iter().peekable();
+        let mut follower = model
+            .load
+            .as_ref()
+            .filter(|_| self.position.len() == self.len())
+            .map(|load| Follower::new(load, self.position[0], self.mean_step()));
+        let mut bristle = engine
+            .contact()
+            .zip(self.position_noise)
+            .map(|(contact, noise)| Bristle {
+                contact,
+                noise,
+                position: self.position[0],
+                deflection: 0.0,
+            });
         for i in 0..self.len() {
+            if i > 0 && let Some(bristle) = &mut bristle {
+                let h = self.time[i] - self.time[i - 1];
+                bristle.follow(self.position[i], h, &model.friction);
+            }
+            if i > 0 && let Some(follower) = &mut follower {
+                let h = self.time[i] - self.time[i - 1];
+                follower.advance(&self.position, i - 1, h);
+            }
             if let Some(start) = next.next_if(|s| s.sample == i) {
                 state = state.restarted(start.position, start.velocity);
+                if let Some(follower) = &follower {
+                    state = state.with_load(follower, self.position[i]);
+                }
+                if let Some(bristle) = &bristle {
+                    state = state.with_deflection(bristle.deflection);
+                }
             }
             position[i] = state.position();
             velocity[i] = state.velocity();
@@ -162,6 +208,31 @@ impl Excitation {
                 sum / duration
             })
             .collect()
+    }
+}
+
+/// Noise of the position, in standard deviations, that does not count as motion: a little more than half
+/// a step of an encoder.
+const TREMBLING: f64 = 2.0;
+
+/// A friction contact that follows a body which moves as measured.
+struct Bristle<'e> {
+    contact: &'e Contact,
+    noise: f64,
+    position: f64,
+    deflection: f64,
+}
+
+impl Bristle<'_> {
+    fn follow(&mut self, measured: f64, h: f64, friction: &DryFriction) {
+        let width = TREMBLING * self.noise;
+        let position = self.position.clamp(measured - width, measured + width);
+        let moved = position - self.position;
+        self.position = position;
+        if moved != 0.0 {
+            let level = friction.level_at(moved / h);
+            self.deflection = self.contact.followed(self.deflection, moved, level);
+        }
     }
 }
 
