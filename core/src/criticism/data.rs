@@ -143,9 +143,67 @@ impl Data {
         })
     }
 
-    /// The first part of the record, for trying starting points quickly; all of it if it is short.
+    /// Samples that are used.
+    pub fn used(&self) -> usize {
+        self.blocks.iter().map(|b| b.to - b.from).sum()
+    }
+
+    /// First sample and end of each window.
+    pub fn spans(&self) -> Vec<(usize, usize)> {
+        let mut spans: Vec<(usize, usize)> = self.windows.iter().map(|w| (*w, *w)).collect();
+        for block in &self.blocks {
+            let span = &mut spans[block.window];
+            span.1 = span.1.max(block.to);
+        }
+        spans
+    }
+
+    /// Runs of samples that are used without a break.
+    pub fn runs(&self) -> Vec<(usize, usize)> {
+        let mut runs: Vec<(usize, usize)> = Vec::new();
+        for block in &self.blocks {
+            match runs.last_mut() {
+                Some(last) if last.1 == block.from => last.1 = block.to,
+                _ => runs.push((block.from, block.to)),
+            }
+        }
+        runs
+    }
+
+    /// Pairs of windows (fitted and held back) spread over the record, about `samples` in all.
+    pub fn thinned(&self, samples: usize) -> Self {
+        let stride = self.used().div_ceil(samples.max(1)).max(1);
+        if stride == 1 || self.kind == Kind::Process {
+            return self.clone();
+        }
+        let mut part = self.clone();
+        let chosen = |window: usize| (window / 2) % stride == 0;
+        part.windows = (0..self.windows.len())
+            .filter(|w| chosen(*w))
+            .map(|w| self.windows[w])
+            .collect();
+        part.blocks = self
+            .blocks
+            .iter()
+            .filter(|b| chosen(b.window))
+            .map(|b| Block {
+                window: part
+                    .windows
+                    .binary_search(&self.windows[b.window])
+                    .unwrap_or(0),
+                ..*b
+            })
+            .collect();
+        part.excitation = self.excitation.within(part.spans());
+        part
+    }
+
+    /// A small part of the record, for trying starting points quickly; all of it if it is short.
     pub fn scout(&self) -> Self {
-        let wanted = (self.len() / SCOUT_PART).max(SCOUT_SAMPLES);
+        let wanted = (self.used() / SCOUT_PART).max(SCOUT_SAMPLES);
+        if self.kind == Kind::Drive {
+            return self.thinned(wanted);
+        }
         let blocks: Vec<Block> = self
             .blocks
             .iter()

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use super::data::{Data, spread};
+use super::data::Data;
 use super::structure::Structure;
 use crate::effect::Scales;
 use crate::model::Start;
@@ -525,7 +525,7 @@ fn window_costs(data: &Data, motion: &Motion) -> Vec<f64> {
 pub(super) struct Score {
     pub error: f64,
     pub error_fit: f64,
-    /// Squared residuals of each held-back block.
+    /// Mean squared residuals of each held-back block.
     pub held_blocks: Vec<f64>,
     /// Number of residuals on each part.
     pub held_count: f64,
@@ -548,6 +548,12 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
             .map(|b| (b.to - b.from) as f64 * outputs)
             .sum()
     };
+    // A held-back block that is a window of its own has its states fitted.
+    let own_states = if informed.iter().all(|i| *i) {
+        0.0
+    } else {
+        states
+    };
     let own = |flag: bool| states * informed.iter().filter(|i| **i == flag).count() as f64;
     let held_blocks: Vec<f64> = data
         .blocks
@@ -555,13 +561,18 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
         .filter(|b| b.held_back)
         .map(|b| cost_between(data, &fit.motion, b.from, b.to))
         .collect();
+    let sizes = data
+        .blocks
+        .iter()
+        .filter(|b| b.held_back)
+        .map(|b| ((b.to - b.from) as f64 * outputs - own_states).max(1.0));
     let fit_cost = fit_cost(data, &fit.motion);
     let held_count = (count(true) - own(false)).max(1.0);
     let fit_count = (count(false) - own(true) - fit.values.len() as f64).max(1.0);
     Score {
         error: (held_blocks.iter().sum::<f64>() / held_count).sqrt(),
         error_fit: (fit_cost / fit_count).sqrt(),
-        held_blocks,
+        held_blocks: held_blocks.iter().zip(sizes).map(|(c, n)| c / n).collect(),
         held_count,
         fit_count,
         fit_cost,
@@ -576,15 +587,26 @@ const MAX_LAG: usize = 200;
 /// the outputs weighted by their squared error.
 fn correlation_inflation(data: &Data, motion: &Motion) -> f64 {
     let (mut weighted, mut weights) = (0.0, 0.0);
+    let runs = data.runs();
     for r in residuals(data, motion) {
-        let power = r.iter().map(|r| r * r).sum::<f64>();
-        if spread(&r) == 0.0 || power == 0.0 {
+        let power: f64 = runs
+            .iter()
+            .flat_map(|(from, to)| &r[*from..*to])
+            .map(|r| r * r)
+            .sum();
+        if power == 0.0 {
             continue;
         }
-        let white = 2.0 / (r.len() as f64).sqrt();
+        let count = data.used();
+        let white = 2.0 / (count as f64).sqrt();
         let mut sum = 1.0;
-        for lag in 1..MAX_LAG.min(r.len() / 4) {
-            let rho = r.windows(lag + 1).map(|w| w[0] * w[lag]).sum::<f64>() / power;
+        for lag in 1..MAX_LAG.min(count / 4) {
+            let product: f64 = runs
+                .iter()
+                .flat_map(|(from, to)| r[*from..*to].windows(lag + 1))
+                .map(|w| w[0] * w[lag])
+                .sum();
+            let rho = product / power;
             if rho < white {
                 break;
             }

@@ -58,7 +58,12 @@ impl Search {
 
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
     /// the baseline, since a missing effect may have bent the baseline far off.
-    pub fn adding(data: &Data, fit: &Fit, effect: &'static dyn Effect, probe: &Probe) -> Self {
+    pub fn adding(
+        data: &Data,
+        fit: &Fit,
+        effect: &'static dyn Effect,
+        probe: &Probe,
+    ) -> Self {
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
         let mut points = Vec::new();
@@ -167,7 +172,7 @@ impl Search {
         let known = starts
             .iter()
             .copied()
-            .filter(|s| s.sample < scout.len())
+            .filter(|s| scout.windows.binary_search(&s.sample).is_ok())
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
         for _ in 0..SCAN_ITERATIONS {
@@ -183,7 +188,7 @@ impl Search {
     /// Goes on with the best of the scanned points on the whole record.
     fn choose_finalists(&mut self, data: &Data, scout: &Data, scales: &Scales) {
         self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
-        let share = scout.len() as f64 / data.len() as f64;
+        let share = scout.used() as f64 / data.used() as f64;
         let mut scanned = std::mem::take(&mut self.scanned).into_iter();
         let Some((best, starts)) = scanned.next() else {
             return;

@@ -32,10 +32,25 @@ const NOISE_CORRELATION: f64 = 2.0;
 /// Error up to which what is left is noise even if it is correlated.
 const SURE_NOISE_ERROR: f64 = 1.05;
 
+/// Mean square of a held-back block, in units of the median one, above which it is far off, and share of
+/// the blocks that may be so in a model that is right.
+const ODD: f64 = 10.0;
+const ODD_BLOCKS: f64 = 0.06;
+
+/// A model that explains all but this share of the error that there was, down to this many times the
+/// noise, is complete: no clock, no rig and no equation is right to more digits.
+const SMALL_SHARE: f64 = 2e-3;
+const SMALL_ERROR: f64 = 3.0;
+
 /// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
 fn statistic(before: &Score, after: &Score) -> f64 {
     let effective = after.held_count / after.correlation.max(1.0);
     2.0 * effective * (before.error / after.error).ln()
+}
+
+/// Relative fall of the held-back error from `before` to `after`.
+pub(super) fn fall(before: &Score, after: &Score) -> f64 {
+    1.0 - after.error / before.error
 }
 
 /// Whether held-back data want the step from `before` to `after`.
@@ -47,7 +62,7 @@ pub(super) fn helps(before: &Score, after: &Score) -> bool {
         .filter(|(b, a)| a < b)
         .count();
     statistic(before, after) > LEAST_STATISTIC
-        && after.error < (1.0 - LEAST_FALL) * before.error
+        && fall(before, after) > LEAST_FALL
         && better as f64 > LEAST_BLOCKS * before.held_blocks.len() as f64
 }
 
@@ -55,13 +70,28 @@ pub(super) fn helps(before: &Score, after: &Score) -> bool {
 pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
     let penalty = (b_len as f64 - a_len as f64) * a.held_count.ln();
     (statistic(b, a) + penalty).abs() < SAME_STATISTIC
-        && (a.error / b.error - 1.0).abs() < SAME_SHARE
+        && fall(b, a).abs() < SAME_SHARE
 }
 
-/// Whether what is left is noise.
-pub(super) fn is_noise(score: &Score) -> bool {
-    score.error < SURE_NOISE_ERROR
-        || (score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
+/// Error without the few blocks that are far off: where a body sticks or breaks loose, a hair decides.
+fn usual_error(score: &Score) -> f64 {
+    let mut blocks = score.held_blocks.clone();
+    blocks.sort_by(f64::total_cmp);
+    let median = blocks.get(blocks.len() / 2).copied().unwrap_or(1.0);
+    let (odd, usual): (Vec<f64>, Vec<f64>) = blocks.iter().partition(|m| **m > ODD * median);
+    if odd.len() as f64 > ODD_BLOCKS * blocks.len() as f64 {
+        return score.error;
+    }
+    (usual.iter().sum::<f64>() / usual.len().max(1) as f64).sqrt()
+}
+
+/// Whether what is left is noise, against the error that there was at first.
+pub(super) fn is_noise(score: &Score, first: f64) -> bool {
+    let error = usual_error(score);
+    let excess = (error * error - 1.0).max(0.0).sqrt();
+    error < SURE_NOISE_ERROR
+        || (error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
+        || (error < SMALL_ERROR && excess < SMALL_SHARE * first)
 }
 
 /// Change of the Bayesian information criterion on the fitted part; negative is better.

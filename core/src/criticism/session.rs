@@ -16,8 +16,19 @@ pub(super) struct Scored {
     pub score: Score,
 }
 
+/// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
+const COMPARED: usize = 60_000;
+
+/// Iterations of a fit of the whole record from that of a part of it.
+const WHOLE_ITERATIONS: usize = 2;
+
 pub(super) struct Session {
+    /// What fits are compared on: all of the record, or windows spread over a long one.
     pub data: Data,
+    /// All of a long record, if `data` is not.
+    full: Option<Data>,
+    /// Error of the baseline, once it is fitted.
+    pub baseline_error: Option<f64>,
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
@@ -33,10 +44,14 @@ impl Session {
         let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| vec![1.0, 1.0]);
         let (inertia, viscous) = baseline::body(data.kind, &guess);
+        let scales = data.scales(inertia, viscous);
+        let compared = data.thinned(COMPARED);
         Ok(Self {
-            scales: data.scales(inertia, viscous),
-            scout: data.scout(),
-            data,
+            scales,
+            scout: compared.scout(),
+            baseline_error: None,
+            full: (compared.used() < data.used()).then_some(data),
+            data: compared,
             motion: measurement.motion(),
             input_unit: measurement.input.unit.clone(),
             outputs: measurement
@@ -73,9 +88,41 @@ impl Session {
             input: &data.input,
             acting: &data.excitation.effective_input(&model),
             outputs: &outputs,
-            windows: &data.windows,
+            spans: &data.spans(),
             body: (model.inertia, model.viscous),
         })
+    }
+
+    /// Error of the baseline, or of `scored` if there is none yet.
+    pub fn first_error(&self, scored: &Scored) -> f64 {
+        self.baseline_error.unwrap_or(scored.score.error)
+    }
+
+    /// The whole record.
+    pub fn whole(&self) -> &Data {
+        self.full.as_ref().unwrap_or(&self.data)
+    }
+
+    /// The fit carried over to the whole record.
+    pub fn completed(&self, scored: &Scored) -> Scored {
+        let Some(full) = &self.full else {
+            return scored.clone();
+        };
+        let mut starts = full.guessed_starts();
+        for known in &scored.fit.starts {
+            if let Ok(at) = starts.binary_search_by_key(&known.sample, |s| s.sample) {
+                starts[at] = *known;
+            }
+        }
+        let (structure, values) = (scored.fit.structure.clone(), scored.fit.values.clone());
+        let mut fit = Fit::new(full, structure, values, starts, &self.scales);
+        fit.polish_starts(full, &self.scales);
+        for _ in 0..WHOLE_ITERATIONS {
+            fit.iterate(full, &self.scales);
+        }
+        fit.polish_starts(full, &self.scales);
+        let score = score(full, &fit);
+        Scored { fit, score }
     }
 
     pub fn kind(&self) -> Kind {
@@ -134,7 +181,7 @@ impl Session {
 
     /// Where the fit fails; empty where what is left is noise.
     pub fn findings(&self, scored: &Scored) -> Vec<super::Finding> {
-        if is_noise(&scored.score) {
+        if is_noise(&scored.score, self.first_error(scored)) {
             return Vec::new();
         }
         let unit = self
@@ -142,7 +189,7 @@ impl Session {
             .iter()
             .find(|o| o.0 != Quantity::Position)
             .map_or_else(|| self.velocity_unit(), |o| o.2.as_str());
-        locate(&self.data, &scored.fit.motion, unit)
+        locate(self.whole(), &scored.fit.motion, unit)
     }
 
     fn velocity_unit(&self) -> &'static str {
@@ -159,7 +206,7 @@ impl Session {
             channels: self
                 .outputs
                 .iter()
-                .zip(&self.data.outputs)
+                .zip(&self.whole().outputs)
                 .map(|((quantity, name, unit), output)| ReplayChannel {
                     quantity: *quantity,
                     name: name.clone(),
@@ -168,7 +215,7 @@ impl Session {
                     modelled: fit.motion.of(output.is_velocity).to_vec(),
                 })
                 .collect(),
-            window_starts: self.data.windows.clone(),
+            window_starts: self.whole().windows.clone(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::race::Race;
 use super::search::Search;
-use super::select::{delta_bic, helps, is_noise, same};
+use super::select::{delta_bic, fall, helps, is_noise, same};
 use super::session::{Scored, Session};
 use super::verdict::{Class, verdict};
 use super::{Candidate, CriticismError, Progress, Step, StepReport};
@@ -136,8 +136,14 @@ impl StepJob {
                 };
                 let search = self.wanted.get(next).map(|effect| {
                     let probe = self.session.probe(&scored.fit);
-                    Search::adding(&self.session.data, &scored.fit, *effect, &probe)
+                    Search::adding(
+                        &self.session.data,
+                        &scored.fit,
+                        *effect,
+                        &probe,
+                    )
                 });
+                self.session.baseline_error.get_or_insert(scored.score.error);
                 if search.is_none() {
                     self.wanted.clone_from(&scored.fit.structure.effects);
                 }
@@ -274,27 +280,28 @@ impl StepJob {
         let model = self.model.as_ref()?;
         let suggestion = self.suggestion(model).map(|(e, _)| e.id());
         let needless = self.needless(model);
-        let parameters = self.session.parameters(model);
+        let whole = self.session.completed(model);
+        let parameters = self.session.parameters(&whole);
         let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
             verdict(
                 &self.wanted,
                 &self.classes,
                 &parameters,
-                model,
-                is_noise(&model.score),
+                &whole,
+                is_noise(&whole.score, self.session.first_error(&whole)),
             )
         });
         Some(StepReport {
             step: Step {
                 effects: self.session.effects(&model.fit),
-                error: model.score.error,
-                error_fit: model.score.error_fit,
+                error: whole.score.error,
+                error_fit: whole.score.error_fit,
                 parameters,
-                findings: self.session.findings(model),
+                findings: self.session.findings(&whole),
                 candidates: self.candidates(model, suggestion),
             },
             noise_floor: NOISE_FLOOR,
-            replay: self.session.replay(&model.fit),
+            replay: self.session.replay(&whole.fit),
             suggestion,
             needless,
             verdict,
@@ -308,7 +315,7 @@ impl StepJob {
             .tried
             .iter()
             .map(|(effect, scored)| {
-                let worse = scored.fit.cost > model.fit.cost;
+                let worse = scored.score.fit_cost > model.score.fit_cost;
                 let equivalent_to = self
                     .tried
                     .iter()
@@ -393,7 +400,7 @@ fn helps_clearly(model: &Scored, with: &Scored) -> bool {
     if !helps(&model.score, &with.score) {
         return false;
     }
-    let fall = 1.0 - with.score.error / model.score.error;
+    let fall = fall(&model.score, &with.score);
     if fall > HUGE_FALL {
         return true;
     }

@@ -12,7 +12,7 @@ const RELATIVE_STEP: f64 = 1e-3;
 /// Share of the typical size that stands in for a parameter near 0.
 const ZERO_SHARE: f64 = 0.01;
 
-/// Largest change of inertia or time constant in one step of a fit.
+/// Largest change of a size, such as inertia, time constant or stiffness, in one step of a fit.
 const STEP_FACTOR: f64 = 4.0;
 
 /// Baseline and effects; the order of the values is baseline first, then effect by effect.
@@ -88,14 +88,24 @@ impl Structure {
         }
     }
 
-    /// Keeps inertia or time constant within a factor of `present`: the motion goes with its inverse,
-    /// so that a linear step from a value far too large would overshoot below 0.
+    /// Keeps sizes within a factor of `present`: the motion goes with their inverse or logarithm, so that
+    /// a linear step from a value far too large would overshoot below 0.
     pub fn limit_step(&self, values: &mut [f64], present: &[f64]) {
         let j = match self.kind {
             Kind::Drive => 0,
             Kind::Process => 1,
         };
-        values[j] = values[j].clamp(present[j] / STEP_FACTOR, present[j] * STEP_FACTOR);
+        let limit = |value: &mut f64, present: f64| {
+            *value = value.clamp(present / STEP_FACTOR, present * STEP_FACTOR);
+        };
+        limit(&mut values[j], present[j]);
+        for (index, effect) in self.effects.iter().enumerate() {
+            for (j, spec) in self.range(index).zip(effect.parameters()) {
+                if spec.is_size() && present[j] > 0.0 {
+                    limit(&mut values[j], present[j]);
+                }
+            }
+        }
     }
 
     /// Steps for finite differences, one per value, pointing into the ranges.

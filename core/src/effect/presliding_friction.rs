@@ -49,7 +49,7 @@ impl Effect for PreslidingFriction {
                 symbol: "s",
                 label: "displacement over which it builds up",
                 dimension: Dimension::Position,
-                range: Range::NonNegative,
+                range: Range::Long,
             },
             ParameterSpec {
                 symbol: "z",

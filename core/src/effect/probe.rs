@@ -97,8 +97,8 @@ pub struct ProbeInput<'a> {
     pub acting: &'a [f64],
     /// What the present model leaves of each output.
     pub outputs: &'a [ProbeOutput],
-    /// First samples of the windows at which the present model restarts.
-    pub windows: &'a [usize],
+    /// First sample and end of the windows at which the present model restarts.
+    pub spans: &'a [(usize, usize)],
     /// Inertia and viscous friction of the present model.
     pub body: (f64, f64),
 }
@@ -117,10 +117,9 @@ impl Probe {
     pub fn new(input: &ProbeInput) -> Self {
         let n = input.velocity.len().min(MAX_SAMPLES);
         let spans: Vec<(usize, usize)> = input
-            .windows
+            .spans
             .iter()
-            .enumerate()
-            .map(|(k, from)| (*from, input.windows.get(k + 1).map_or(n, |w| (*w).min(n))))
+            .map(|(from, to)| (*from, (*to).min(n)))
             .filter(|(from, to)| from + 2 < *to)
             .collect();
         let stride = spans_stride(&spans, REGRESSED);

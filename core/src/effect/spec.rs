@@ -94,8 +94,10 @@ pub enum Range {
     Stiff,
     /// At least [`LIGHTEST`] times its [`Scales::of`].
     Sizeable,
-    /// 0 to [`SHORT_CROSSINGS`] times [`Scales::crossed`].
+    /// [`RIGID_CROSSINGS`] to [`SHORT_CROSSINGS`] times [`Scales::crossed`].
     Short,
+    /// At least [`RIGID_CROSSINGS`] times [`Scales::crossed`].
+    Long,
 }
 
 /// A parameter of an effect.
@@ -115,6 +117,9 @@ pub struct ParameterSpec {
 /// more than that can be seen building up sample by sample.
 pub const SHORT_CROSSINGS: f64 = 3.0;
 
+/// Below this share of it the contact cannot be told from a rigid one.
+pub const RIGID_CROSSINGS: f64 = 0.02;
+
 /// A spring that swings by more than this in a sample, squared radians, is rigid to the measurement.
 pub const STIFFEST: f64 = 0.3;
 
@@ -125,6 +130,14 @@ pub const LIGHTEST: f64 = 0.03;
 pub const LEAST_SHARE: f64 = 1e-4;
 
 impl ParameterSpec {
+    /// Whether the parameter is a size, which changes by factors rather than by differences.
+    pub fn is_size(&self) -> bool {
+        matches!(
+            self.range,
+            Range::Positive | Range::Stiff | Range::Sizeable | Range::Short | Range::Long
+        )
+    }
+
     /// `value` moved into the range.
     pub fn clamp(&self, value: f64, scales: &Scales) -> f64 {
         let scale = scales.of(self.dimension);
@@ -136,7 +149,11 @@ impl ParameterSpec {
             Range::UnitInterval => value.clamp(0.0, 1.0),
             Range::Stiff => value.clamp(LEAST_SHARE * scale, STIFFEST * scale),
             Range::Sizeable => value.max(LIGHTEST * scale),
-            Range::Short => value.clamp(0.0, SHORT_CROSSINGS * scales.crossed()),
+            Range::Short => {
+                let crossed = scales.crossed();
+                value.clamp(RIGID_CROSSINGS * crossed, SHORT_CROSSINGS * crossed)
+            }
+            Range::Long => value.max(RIGID_CROSSINGS * scales.crossed()),
         }
     }
 }

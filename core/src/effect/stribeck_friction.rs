@@ -60,7 +60,7 @@ impl Effect for StribeckFriction {
                 symbol: "s",
                 label: "displacement over which it builds up",
                 dimension: Dimension::Position,
-                range: Range::NonNegative,
+                range: Range::Long,
             },
             ParameterSpec {
                 symbol: "z",

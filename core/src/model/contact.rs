@@ -20,10 +20,10 @@ const MAX_PIECES: usize = 200;
 const SLIP_SHARE: f64 = 1e-4;
 
 /// Displacement of one piece, in units of `s` over the share of the stiffness that is left.
-const PIECE: f64 = 0.15;
+const PIECE: f64 = 0.1;
 
 /// Longest piece in units of `s`, and in radians of the contact's oscillation.
-const LONGEST_PIECE: f64 = 0.4;
+const LONGEST_PIECE: f64 = 0.25;
 const PIECE_RADIANS: f64 = 0.35;
 
 /// The contact of one body.
@@ -191,7 +191,7 @@ impl Acting {
             *motion = end;
             return left;
         }
-        let time = root(left, start.v, end.v, |t| free.after(start, self.w, q, t).v);
+        let time = free.stops(start, self.w, q, left, end.v);
         *motion = Motion {
             v: 0.0,
             ..free.after(start, self.w, q, time)

@@ -72,6 +72,15 @@ impl State {
         next
     }
 
+    /// Lets time pass without motion: only the lagged input goes on.
+    pub(super) fn wait(&mut self, model: &Model, w: f64, h: f64) {
+        self.motion.z = match model.lag {
+            Some(tau) => w + (self.motion.z - w) * (-h / tau).exp(),
+            None => w,
+        };
+        self.time += h;
+    }
+
     /// The same with the contact of dry friction at this deflection.
     #[must_use]
     pub(super) fn with_deflection(&self, deflection: f64) -> Self {

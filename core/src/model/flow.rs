@@ -31,6 +31,22 @@ struct Coefficients {
 /// a few units of round-off, where the other one cancels or converges slowly.
 const SERIES_LIMIT: f64 = 0.5;
 
+/// Below this `rate * h` the first terms of the series are exact to round-off.
+const SHORT: f64 = 0.1;
+
+/// Inverses of 2, 3, ... and of 3, 4, ...
+const INVERSES: [(f64, f64); 9] = [
+    (1.0 / 2.0, 1.0 / 3.0),
+    (1.0 / 3.0, 1.0 / 4.0),
+    (1.0 / 4.0, 1.0 / 5.0),
+    (1.0 / 5.0, 1.0 / 6.0),
+    (1.0 / 6.0, 1.0 / 7.0),
+    (1.0 / 7.0, 1.0 / 8.0),
+    (1.0 / 8.0, 1.0 / 9.0),
+    (1.0 / 9.0, 1.0 / 10.0),
+    (1.0 / 10.0, 1.0 / 11.0),
+];
+
 /// Terms of the series; `0.5^18 / 18!` is far below round-off.
 const SERIES_TERMS: u32 = 18;
 
@@ -43,6 +59,9 @@ const SAME_DURATION: f64 = 1e-12;
 
 impl Coefficients {
     fn new(lambda: f64, mu: Option<f64>, h: f64) -> Self {
+        if mu.is_none() && (h * lambda).abs() < SHORT {
+            return Self::short(lambda, h);
+        }
         let mu_value = mu.unwrap_or(0.0);
         if h * lambda.abs().max(mu_value.abs()) < SERIES_LIMIT {
             return Self::series(lambda, mu_value, h);
@@ -78,6 +97,27 @@ impl Coefficients {
             phi2,
             psi1,
             psi2,
+        }
+    }
+
+    /// The series without a lag, by Horner's rule.
+    fn short(lambda: f64, h: f64) -> Self {
+        let x = lambda * h;
+        // (1 - exp(-x)) / x and (x - 1 + exp(-x)) / x^2
+        let (mut first, mut second) = (1.0, 1.0);
+        for inverse in INVERSES.iter().rev() {
+            second = 1.0 - x * inverse.1 * second;
+            first = 1.0 - x * inverse.0 * first;
+        }
+        let phi1 = h * first;
+        Self {
+            h,
+            decay: 1.0 - lambda * phi1,
+            lag_decay: 1.0,
+            phi1,
+            phi2: 0.5 * h * h * second,
+            psi1: 0.0,
+            psi2: 0.0,
         }
     }
 
@@ -175,6 +215,22 @@ impl Flow {
     /// State after `h` seconds with input `w` and force `q`.
     pub fn after(&self, m: Motion, w: f64, q: f64, h: f64) -> Motion {
         self.apply(&Coefficients::new(self.lambda, self.mu, h), m, w, q)
+    }
+
+    /// Time after which the velocity passes through zero, if it does before `until`, where it is `end`.
+    pub fn stops(&self, m: Motion, w: f64, q: f64, until: f64, end: f64) -> f64 {
+        if self.mu.is_some() {
+            return root(until, m.v, end, |t| self.after(m, w, q, t).v);
+        }
+        // v exp(-lambda t) + a (1 - exp(-lambda t)) / lambda = 0
+        let a = self.b * (w + q);
+        let ratio = -self.lambda * m.v / a;
+        let time = if ratio.abs() < 1e-12 {
+            -m.v / a
+        } else {
+            ratio.ln_1p() / self.lambda
+        };
+        time.clamp(0.0, until)
     }
 
     /// Acceleration in state `m`.

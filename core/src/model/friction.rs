@@ -133,7 +133,7 @@ fn body_event(
     let time = if start.v * sign <= 0.0 {
         0.0
     } else {
-        root(until, start.v, v_until, |t| velocity_at(flow, t))
+        flow.stops(start, w, q, until, v_until)
     };
     let mut motion = flow.after(start, w, q, time);
     motion.v = 0.0;

@@ -32,6 +32,8 @@ pub struct Excitation {
     position: Vec<f64>,
     /// Standard deviation of its noise, where it is measured.
     position_noise: Option<f64>,
+    /// Sample ranges that are simulated, ascending; between them only hidden states go on.
+    runs: Vec<(usize, usize)>,
 }
 
 /// Which output a slow sensor shows: a counting encoder is not slow, but the velocity made from it is.
@@ -68,6 +70,16 @@ impl Excitation {
             slow_sensor,
             position,
             position_noise,
+            runs: vec![(0, time.len())],
+        }
+    }
+
+    /// The same, to be simulated in these sample ranges (ascending, apart) only; each begins at a start.
+    #[must_use]
+    pub fn within(&self, runs: Vec<(usize, usize)>) -> Self {
+        Self {
+            runs,
+            ..self.clone()
         }
     }
 
@@ -78,6 +90,7 @@ impl Excitation {
             time: self.time[..n].to_vec(),
             input: self.input[..n].to_vec(),
             position: self.position.iter().take(n).copied().collect(),
+            runs: vec![(0, n)],
             ..*self
         }
     }
@@ -97,7 +110,7 @@ impl Excitation {
         (self.time[self.len() - 1] - self.time[0]) / (self.len() - 1) as f64
     }
 
-    /// Runs `model` through the whole record and writes position and velocity at every sample.
+    /// Runs `model` through the record and writes position and velocity at every simulated sample.
     ///
     /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
     /// given there. Of the hidden states the lagged input goes on from the window before; a load and the
@@ -116,6 +129,7 @@ impl Excitation {
         path.prepare(&mut engine);
         let mut state = State::at_rest(before);
         let mut next = starts.iter().peekable();
+        let mut runs = self.runs.iter().peekable();
         let mut follower = model
             .load
             .as_ref()
@@ -148,9 +162,19 @@ impl Excitation {
                     state = state.with_deflection(bristle.deflection);
                 }
             }
+            while runs.peek().is_some_and(|(_, end)| *end <= i) {
+                runs.next();
+            }
+            let Some((from, end)) = runs.peek() else {
+                break;
+            };
+            if *from > i {
+                path.pieces(i, |w, h| state.wait(model, w, h));
+                continue;
+            }
             position[i] = state.position();
             velocity[i] = state.velocity();
-            if i + 1 < self.len() {
+            if i + 1 < *end || (i + 1 == *end && i + 1 < self.len()) {
                 path.pieces(i, |w, h| engine.advance(&mut state, w, h));
             }
         }
