@@ -177,7 +177,7 @@ impl Data {
             return self.clone();
         }
         let mut part = self.clone();
-        let chosen = |window: usize| (window / 2) % stride == 0;
+        let chosen = |window: usize| (window / 2).is_multiple_of(stride);
         part.windows = (0..self.windows.len())
             .filter(|w| chosen(*w))
             .map(|w| self.windows[w])

@@ -1,7 +1,8 @@
 //! Long computations as resumable jobs: threads natively, a worker on the web, a loop in tests.
 
-use super::Diagnosis;
+use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
+use super::{Diagnosis, Step};
 use crate::effect::EffectId;
 use crate::measurement::Measurement;
 
@@ -10,6 +11,17 @@ const MAX_EFFECTS: usize = 6;
 
 /// Most models that a diagnosis visits, so that adding and removing cannot go round for ever.
 const MAX_STEPS: usize = 12;
+
+/// Other effects that are tried first where the best ones led to no end: the greedy choice may be the
+/// wrong one of two that hide each other.
+const MAX_DETOURS: usize = 3;
+
+/// Steps in which alternatives are noted, and how many in each.
+const DETOUR_STEPS: usize = 2;
+const DETOURS_PER_STEP: usize = 2;
+
+/// Share by which a detour must lower the error to be the better way.
+const DETOUR_GAIN: f64 = 0.97;
 
 /// How far a job has come.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +63,11 @@ pub enum CriticismError {
 pub struct DiagnosisJob {
     job: Option<StepJob>,
     diagnosis: Diagnosis,
+    /// Ways not taken: the steps before, and the model to go on from.
+    detours: Vec<(Vec<Step>, Scored)>,
+    detours_taken: usize,
+    /// The best that came to an end without explaining everything.
+    unfinished: Option<Diagnosis>,
 }
 
 impl DiagnosisJob {
@@ -73,6 +90,9 @@ impl DiagnosisJob {
                 },
                 seconds: 0.0,
             },
+            detours: Vec::new(),
+            detours_taken: 0,
+            unfinished: None,
         })
     }
 
@@ -91,25 +111,58 @@ impl DiagnosisJob {
             Progress::Done(report) => report,
         };
         let effects = report.step.effects.len();
+        let before = self.diagnosis.steps.len();
         self.diagnosis.steps.push(report.step);
-        if let Some(verdict) = report.verdict {
-            self.diagnosis.verdict = verdict;
-            self.job = None;
+        let Some(job) = self.job.take() else {
             return Progress::Done(self.diagnosis.clone());
+        };
+        if before < DETOUR_STEPS && self.detours_taken == 0 {
+            let steps = &self.diagnosis.steps;
+            let noted = job.alternatives(DETOURS_PER_STEP).into_iter();
+            self.detours
+                .extend(noted.map(|model| (steps.clone(), model)));
         }
+        let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
-        let next = self
-            .job
-            .take()
-            .filter(|_| !ended)
-            .and_then(StepJob::successor);
-        match next {
-            Some((session, model)) => self.job = Some(StepJob::from_fit(session, model)),
-            None => self.diagnosis.verdict = super::verdict::undecided(&self.diagnosis.steps),
+        match (report.verdict, next) {
+            (_, Some(model)) if !ended => {
+                self.job = Some(StepJob::from_fit(session, model));
+            }
+            (verdict, _) => {
+                self.diagnosis.verdict =
+                    verdict.unwrap_or_else(|| super::verdict::undecided(&self.diagnosis.steps));
+                if let Some(done) = self.end_of_way(session) {
+                    return Progress::Done(done);
+                }
+            }
         }
         Progress::Running {
             fraction: 1.0 - 0.5_f64.powf(self.diagnosis.steps.len() as f64),
             text: "Next".to_owned(),
         }
+    }
+
+    /// Takes the diagnosis that came to an end, or another way if there is one and this one explains too
+    /// little.
+    fn end_of_way(&mut self, session: Session) -> Option<Diagnosis> {
+        let error = |d: &Diagnosis| d.steps.last().map_or(f64::INFINITY, |s| s.error);
+        let better = self
+            .unfinished
+            .take()
+            .filter(|other| DETOUR_GAIN * error(other) <= error(&self.diagnosis));
+        let best = match better {
+            Some(other) if !self.diagnosis.verdict.complete => other,
+            _ => self.diagnosis.clone(),
+        };
+        if best.verdict.complete || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
+            self.diagnosis = best;
+            return Some(self.diagnosis.clone());
+        }
+        self.unfinished = Some(best);
+        self.detours_taken += 1;
+        let (steps, model) = self.detours.remove(0);
+        self.diagnosis.steps = steps;
+        self.job = Some(StepJob::from_fit(session, model));
+        None
     }
 }

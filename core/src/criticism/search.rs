@@ -58,12 +58,7 @@ impl Search {
 
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
     /// the baseline, since a missing effect may have bent the baseline far off.
-    pub fn adding(
-        data: &Data,
-        fit: &Fit,
-        effect: &'static dyn Effect,
-        probe: &Probe,
-    ) -> Self {
+    pub fn adding(data: &Data, fit: &Fit, effect: &'static dyn Effect, probe: &Probe) -> Self {
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
         let mut points = Vec::new();
@@ -73,7 +68,9 @@ impl Search {
             points.push((values.clone(), fit.starts.clone()));
             points.extend(Self::regressed(data, fit, &structure, values));
         }
-        points.extend(Self::other_valleys(data, fit, &rest, &kept, &structure, effect, probe));
+        points.extend(Self::other_valleys(
+            data, fit, &rest, &kept, &structure, effect, probe,
+        ));
         Self::from_points(structure, points, fit.cost)
     }
 

@@ -69,8 +69,7 @@ pub(super) fn helps(before: &Score, after: &Score) -> bool {
 /// Whether two models with `a_len` and `b_len` parameters leave the same error within noise.
 pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
     let penalty = (b_len as f64 - a_len as f64) * a.held_count.ln();
-    (statistic(b, a) + penalty).abs() < SAME_STATISTIC
-        && fall(b, a).abs() < SAME_SHARE
+    (statistic(b, a) + penalty).abs() < SAME_STATISTIC && fall(b, a).abs() < SAME_SHARE
 }
 
 /// Error without the few blocks that are far off: where a body sticks or breaks loose, a hair decides.
@@ -88,10 +87,10 @@ fn usual_error(score: &Score) -> f64 {
 /// Whether what is left is noise, against the error that there was at first.
 pub(super) fn is_noise(score: &Score, first: f64) -> bool {
     let error = usual_error(score);
-    let excess = (error * error - 1.0).max(0.0).sqrt();
+    let excess = (score.error.powi(2) - 1.0).max(0.0).sqrt();
     error < SURE_NOISE_ERROR
         || (error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
-        || (error < SMALL_ERROR && excess < SMALL_SHARE * first)
+        || (score.error < SMALL_ERROR && excess < SMALL_SHARE * first)
 }
 
 /// Change of the Bayesian information criterion on the fitted part; negative is better.

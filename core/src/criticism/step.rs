@@ -35,6 +35,8 @@ pub struct StepJob {
     tried: Vec<(&'static dyn Effect, Scored)>,
     without: Vec<Scored>,
     classes: Vec<Class>,
+    /// The model with an effect replaced by a part of it that does as well.
+    simpler: Option<Scored>,
 }
 
 /// Whether two effects are the same or one contains the other.
@@ -68,6 +70,7 @@ impl StepJob {
             tried: Vec::new(),
             without: Vec::new(),
             classes: Vec::new(),
+            simpler: None,
         }
     }
 
@@ -90,11 +93,19 @@ impl StepJob {
             .collect()
     }
 
-    /// Effects that could stand in the place of the one at `place`, without touching the others.
+    /// Effects that could stand in the place of the one at `place`, without touching the others; what it
+    /// contains may be enough.
     fn rivals(&self, place: usize) -> Vec<&'static dyn Effect> {
+        let own = self.wanted.get(place);
         effect::for_kind(self.session.kind())
-            .filter(|e| self.wanted.iter().all(|w| !nested(*w, *e)))
-            .filter(|_| place < self.wanted.len())
+            .filter(|e| {
+                own.is_some_and(|own| !nested(*own, *e) || own.contains().contains(&e.id()))
+                    && self
+                        .wanted
+                        .iter()
+                        .enumerate()
+                        .all(|(k, w)| k == place || !nested(*w, *e))
+            })
             .collect()
     }
 
@@ -136,14 +147,11 @@ impl StepJob {
                 };
                 let search = self.wanted.get(next).map(|effect| {
                     let probe = self.session.probe(&scored.fit);
-                    Search::adding(
-                        &self.session.data,
-                        &scored.fit,
-                        *effect,
-                        &probe,
-                    )
+                    Search::adding(&self.session.data, &scored.fit, *effect, &probe)
                 });
-                self.session.baseline_error.get_or_insert(scored.score.error);
+                self.session
+                    .baseline_error
+                    .get_or_insert(scored.score.error);
                 if search.is_none() {
                     self.wanted.clone_from(&scored.fit.structure.effects);
                 }
@@ -220,12 +228,22 @@ impl StepJob {
         let Some(model) = &self.model else {
             return;
         };
-        let class = fits
-            .into_iter()
-            .map(|(effect, fit)| (effect, self.session.scored(fit)))
-            .filter(|(_, swapped)| alike(model, swapped))
-            .map(|(effect, _)| effect)
-            .collect();
+        let own = self.wanted[place];
+        let mut class = Class::default();
+        for (effect, fit) in fits {
+            let swapped = self.session.scored(fit);
+            if !alike(model, &swapped) {
+                continue;
+            }
+            if own.contains().contains(&effect.id()) {
+                let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
+                if self.simpler.as_ref().is_none_or(fewer) {
+                    self.simpler = Some(swapped);
+                }
+            } else {
+                class.push(effect);
+            }
+        }
         self.classes.resize_with(place, Class::default);
         self.classes.push(class);
     }
@@ -257,9 +275,7 @@ impl StepJob {
     fn progress(&self) -> (f64, String) {
         let wanted = self.wanted.len().max(1) as f64;
         match &self.stage {
-            Stage::Build { search, .. } => {
-                (0.1 * search.scanned(), "Fitting the model".to_owned())
-            }
+            Stage::Build { search, .. } => (0.1 * search.scanned(), "Fitting the model".to_owned()),
             Stage::Try(race) => {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))
@@ -363,27 +379,44 @@ impl StepJob {
         candidates
     }
 
-    /// The model to go on from: with the suggestion, or without the first needless effect.
-    pub(super) fn successor(self) -> Option<(Session, Scored)> {
-        let model = self.model.as_ref()?;
-        let next = if let Some(id) = self.needless(model).first() {
-            let index = self.wanted.iter().position(|w| w.id() == *id)?;
-            self.without.get(index).cloned()
-        } else {
-            self.suggestion(model).map(|(_, scored)| scored.clone())
-        }?;
-        Some((self.session, next))
+    /// The model to go on from: with the suggestion, without the first needless effect, or with a part of
+    /// one; and the session.
+    pub(super) fn successor(self) -> (Session, Option<Scored>) {
+        let next = self.model.as_ref().and_then(|model| {
+            if let Some(id) = self.needless(model).first() {
+                let index = self.wanted.iter().position(|w| w.id() == *id)?;
+                self.without.get(index).cloned()
+            } else {
+                let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
+                suggested.or_else(|| self.simpler.clone())
+            }
+        });
+        (self.session, next)
+    }
+
+    /// Models with another effect that would help too, the best first: where the suggestion may turn
+    /// out to lead astray.
+    pub(super) fn alternatives(&self, count: usize) -> Vec<Scored> {
+        let Some(model) = &self.model else {
+            return Vec::new();
+        };
+        let Some((suggested, _)) = self.suggestion(model) else {
+            return Vec::new();
+        };
+        let mut others: Vec<&Scored> = self
+            .tried
+            .iter()
+            .filter(|(e, s)| !nested(*e, *suggested) && helps_clearly(model, s))
+            .map(|(_, s)| s)
+            .collect();
+        others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
+        others.into_iter().take(count).cloned().collect()
     }
 }
 
 /// Whether two models leave the same error within noise.
 fn alike(a: &Scored, b: &Scored) -> bool {
-    same(
-        &a.score,
-        a.fit.values.len(),
-        &b.score,
-        b.fit.values.len(),
-    )
+    same(&a.score, a.fit.values.len(), &b.score, b.fit.values.len())
 }
 
 /// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how

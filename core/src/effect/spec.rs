@@ -50,17 +50,14 @@ impl Dimension {
     pub const fn unit(self, motion: Motion) -> &'static str {
         match (self, motion) {
             (Self::Time, _) => "s",
-            (Self::Phase, _) => "rad",
-            (Self::Ratio, _) => "1",
             (Self::Rise, Motion::None) => "1/s",
-            (_, Motion::None) => "1",
             (Self::Force, Motion::Rotational) => "N m",
             (Self::Force, Motion::Translational) => "N",
             (Self::Inertia, Motion::Rotational) => "kg m^2",
             (Self::Inertia, Motion::Translational) => "kg",
             (Self::ViscousFriction, Motion::Rotational) => "N m s/rad",
             (Self::ViscousFriction, Motion::Translational) => "N s/m",
-            (Self::Position, Motion::Rotational) => "rad",
+            (Self::Phase, _) | (Self::Position, Motion::Rotational) => "rad",
             (Self::Position, Motion::Translational) => "m",
             (Self::Speed, Motion::Rotational) => "rad/s",
             (Self::Speed, Motion::Translational) => "m/s",
@@ -72,7 +69,7 @@ impl Dimension {
             (Self::PerPosition, Motion::Translational) => "1/m",
             (Self::Rise, Motion::Rotational) => "N m/s",
             (Self::Rise, Motion::Translational) => "N/s",
-            (Self::PerOutput, _) => "1",
+            (Self::Ratio | Self::PerOutput, _) | (_, Motion::None) => "1",
         }
     }
 }
@@ -118,7 +115,7 @@ pub struct ParameterSpec {
 pub const SHORT_CROSSINGS: f64 = 3.0;
 
 /// Below this share of it the contact cannot be told from a rigid one.
-pub const RIGID_CROSSINGS: f64 = 0.02;
+pub const RIGID_CROSSINGS: f64 = 0.04;
 
 /// A spring that swings by more than this in a sample, squared radians, is rigid to the measurement.
 pub const STIFFEST: f64 = 0.3;
@@ -190,7 +187,6 @@ impl Scales {
         match dimension {
             Dimension::Force => self.force,
             Dimension::Time => self.step,
-            Dimension::Ratio => 1.0,
             Dimension::Inertia => self.inertia.abs(),
             Dimension::ViscousFriction => self.viscous.abs(),
             Dimension::Position => self.travel,
@@ -198,7 +194,7 @@ impl Scales {
             Dimension::Stiffness => self.inertia.abs() / (self.step * self.step),
             Dimension::Drag => self.force / (self.speed * self.speed),
             Dimension::PerPosition => 1.0 / self.travel,
-            Dimension::Phase => 1.0,
+            Dimension::Ratio | Dimension::Phase => 1.0,
             Dimension::Rise => self.force / self.duration,
             Dimension::PerOutput => 1.0 / self.speed,
         }

@@ -145,11 +145,15 @@ impl Excitation {
                 deflection: 0.0,
             });
         for i in 0..self.len() {
-            if i > 0 && let Some(bristle) = &mut bristle {
+            if i > 0
+                && let Some(bristle) = &mut bristle
+            {
                 let h = self.time[i] - self.time[i - 1];
                 bristle.follow(self.position[i], h, &model.friction);
             }
-            if i > 0 && let Some(follower) = &mut follower {
+            if i > 0
+                && let Some(follower) = &mut follower
+            {
                 let h = self.time[i] - self.time[i - 1];
                 follower.advance(&self.position, i - 1, h);
             }
@@ -198,14 +202,13 @@ impl Excitation {
             return;
         };
         let mut before = slow;
-        for i in 1..signal.len() {
-            let h = self.time[i] - self.time[i - 1];
-            let now = signal[i];
+        for (value, time) in signal[1..].iter_mut().zip(self.time.windows(2)) {
+            let (h, now) = (time[1] - time[0], *value);
             let (decay, slope) = ((-h / lag).exp(), (now - before) / h);
             // The lag follows a ramp at the distance slope * lag.
             slow = now - slope * lag + (slow - before + slope * lag) * decay;
             before = now;
-            signal[i] = slow;
+            *value = slow;
         }
     }
 
