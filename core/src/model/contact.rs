@@ -23,7 +23,7 @@ const SLIP_SHARE: f64 = 1e-3;
 const PIECE: f64 = 0.12;
 
 /// Longest piece in units of `s`, and in radians of the contact's oscillation.
-const LONGEST_PIECE: f64 = 0.5;
+const LONGEST_PIECE: f64 = 0.3;
 const PIECE_RADIANS: f64 = 0.35;
 
 /// The contact of one body.
