@@ -55,7 +55,7 @@ impl Options {
         }
     }
 
-    fn check(&self, order: usize) -> Result<(), SimulateError> {
+    pub(crate) fn check(&self, order: usize) -> Result<(), SimulateError> {
         let fits = |name, value: f64, least: bool, range| {
             if value.is_finite() && least {
                 Ok(())
