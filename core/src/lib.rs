@@ -10,6 +10,7 @@
 //! | [`plant`] | what does it act on? |
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
+//! | [`scenario`] | a loop in a file |
 //! | [`explore`] | everything about one loop at once |
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
@@ -25,4 +26,5 @@ pub mod measurement;
 pub mod model;
 pub mod plant;
 pub mod relay;
+pub mod scenario;
 pub mod simulate;

@@ -4,6 +4,8 @@
 //! cannot be written. A reader that closes the pipe early, such as `head`, is a success.
 
 mod diagnose;
+mod limit_cycle;
+mod simulate;
 mod text;
 
 use std::ffi::OsString;
@@ -26,11 +28,17 @@ struct Arguments {
 enum Command {
     /// Say where a model of a measured system fails and which physical effect is missing.
     Diagnose(diagnose::Arguments),
+    /// Run a relay loop from a file.
+    Simulate(simulate::Arguments),
+    /// Predict a loop's oscillation: describing function, exact, simulated.
+    LimitCycle(limit_cycle::Arguments),
 }
 
 fn dispatch(command: &Command) -> Result<String, String> {
     match command {
         Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Simulate(arguments) => simulate::run(arguments),
+        Command::LimitCycle(arguments) => limit_cycle::run(arguments),
     }
 }
 

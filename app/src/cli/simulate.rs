@@ -1,0 +1,105 @@
+//! `hysteron simulate SCENARIO.toml`
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use hysteron_core::scenario::Scenario;
+use hysteron_core::simulate::Trajectory;
+
+/// Share by which the last two cycles may differ and still count as settled.
+const SETTLED: f64 = 1e-3;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// Loop to run: tables [plant], [relay] and [run]
+    #[arg(value_name = "SCENARIO.toml")]
+    file: PathBuf,
+    /// Where to write time, input and output
+    #[arg(long, value_name = "OUT.csv")]
+    csv: Option<PathBuf>,
+}
+
+/// What happened in words, or one line that says what is wrong with the input.
+pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
+    let scenario = read(&arguments.file)?;
+    let shown = arguments.file.display();
+    let trajectory = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
+    let mut text = summary(&trajectory);
+    if let Some(path) = &arguments.csv {
+        std::fs::write(path, table(&trajectory))
+            .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
+        let _ = writeln!(
+            text,
+            "{} samples written to {}.",
+            trajectory.time.len(),
+            path.display()
+        );
+    }
+    Ok(text)
+}
+
+/// Reads a scenario file.
+pub(super) fn read(path: &Path) -> Result<Scenario, String> {
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(format!("{shown} is a directory; expected a TOML file"));
+    }
+    let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let text = std::str::from_utf8(&bytes).map_err(|e| {
+        let line = bytes[..e.valid_up_to()]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count()
+            + 1;
+        format!("{shown}, line {line}: not UTF-8 text; expected a TOML file")
+    })?;
+    Scenario::from_toml(text).map_err(|e| format!("{shown}: {e}"))
+}
+
+fn summary(run: &Trajectory) -> String {
+    let mut text = String::new();
+    let end = run.time.last().copied().unwrap_or(0.0);
+    let switches = run.rises.len() + run.falls.len();
+    let _ = writeln!(text, "{switches} switches up to {end:.6} s.");
+    if run.chattering {
+        let _ = writeln!(
+            text,
+            "The relay chatters: it switches without end, and the run was cut there."
+        );
+    }
+    if !run.sliding.is_empty() {
+        let total: f64 = run.sliding.iter().map(|s| s[1] - s[0]).sum();
+        let _ = writeln!(
+            text,
+            "The output slides along the threshold {} times, {total:.6} s in all.",
+            run.sliding.len()
+        );
+    }
+    match run.settled(SETTLED) {
+        Some((period, amplitude)) => {
+            let _ = writeln!(
+                text,
+                "It oscillates: period {period:.9} s, amplitude {amplitude:.9} (half of peak to peak)."
+            );
+        }
+        None if !run.chattering => {
+            let _ = writeln!(text, "It has not settled into an oscillation.");
+        }
+        None => {}
+    }
+    text
+}
+
+/// Input and output at the sampling instants, in the columns that `hysteron diagnose` reads.
+fn table(run: &Trajectory) -> String {
+    let mut text = String::from("t [s],u [1],y [1]\n");
+    let mut inputs = run.input.iter().peekable();
+    let mut u = 0.0;
+    for (t, y) in run.time.iter().zip(&run.output) {
+        while let Some(change) = inputs.next_if(|i| i[0] <= *t) {
+            u = change[1];
+        }
+        let _ = writeln!(text, "{t},{u},{y}");
+    }
+    text
+}

@@ -1,0 +1,195 @@
+//! `hysteron simulate` and `hysteron limit-cycle` on scenario files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn scenario(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../assets/scenarios")
+        .join(name)
+}
+
+fn hysteron(command: &str, file: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hysteron"))
+        .arg(command)
+        .arg(file)
+        .args(more)
+        .output()
+        .unwrap()
+}
+
+#[track_caller]
+fn text(output: &Output) -> String {
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn limit_cycle(name: &str) -> Value {
+    let output = hysteron("limit-cycle", &scenario(name), &["--format", "json"]);
+    serde_json::from_str(&text(&output)).unwrap()
+}
+
+#[track_caller]
+fn close(value: &Value, exact: f64, tolerance: f64) {
+    let value = value.as_f64().unwrap();
+    assert!(
+        (value / exact - 1.0).abs() < tolerance,
+        "{value}, exact {exact}"
+    );
+}
+
+#[test]
+fn every_scenario_in_the_assets_runs_and_is_predicted() {
+    let folder = std::fs::read_dir(scenario("")).unwrap();
+    let mut count = 0;
+    for entry in folder {
+        let path = entry.unwrap().path();
+        let said = text(&hysteron("simulate", &path, &[]));
+        assert!(said.contains("switches"), "{path:?}: {said}");
+        let said = text(&hysteron("limit-cycle", &path, &[]));
+        assert!(said.contains("half of peak to peak"), "{path:?}: {said}");
+        count += 1;
+    }
+    assert!(count >= 6, "{count}");
+}
+
+#[test]
+fn fig_3_in_json_as_the_contract_says() {
+    let found = limit_cycle("fig-3-third-order-lag.toml");
+    assert_eq!(found["schema"], 1);
+    // The reference table's row, and w = sqrt(3), P = -1/8 by hand.
+    for cycle in [&found["exact"][0], &found["simulated"]] {
+        close(&cycle["period"], 3.679_750_670_864_8, 1e-9);
+        close(&cycle["amplitude"], 0.163_061_483_430_071, 1e-9);
+    }
+    close(
+        &found["exact"][0]["half_periods"][0],
+        0.5 * 3.679_750_670_864_8,
+        1e-9,
+    );
+    close(
+        &found["describing_function"][0]["omega"],
+        3.0_f64.sqrt(),
+        1e-9,
+    );
+    close(&found["ultimate"]["gain_true"], 8.0, 1e-9);
+    close(
+        &found["ultimate"]["period_true"],
+        2.0 * std::f64::consts::PI / 3.0_f64.sqrt(),
+        1e-9,
+    );
+    let relay = 4.0 / (std::f64::consts::PI * 0.163_061_483_430_071);
+    close(&found["ultimate"]["gain_relay"], relay, 1e-9);
+    assert_eq!(found["exists"], true);
+    assert_eq!(found["exact"][0]["stable"], true);
+}
+
+#[test]
+fn fig_5_more_hysteresis_is_larger_slower_and_a_smaller_ultimate_gain() {
+    let [less, more] = ["fig-4-noise.toml", "fig-5-more-hysteresis.toml"].map(limit_cycle);
+    let of = |v: &Value, part: &str| v["exact"][0][part].as_f64().unwrap();
+    assert!(of(&more, "amplitude") > of(&less, "amplitude"));
+    assert!(of(&more, "period") > of(&less, "period"));
+    let gain = |v: &Value| v["ultimate"]["gain_relay"].as_f64().unwrap();
+    assert!(gain(&more) < gain(&less));
+}
+
+#[test]
+fn a_describing_function_that_fails_is_called_so() {
+    let found = limit_cycle("describing-function-fails.toml");
+    assert!(
+        found["text"].as_str().unwrap().contains("Do not trust"),
+        "{found}"
+    );
+}
+
+#[test]
+fn simulate_writes_what_diagnose_reads() {
+    let csv = Path::new(env!("CARGO_TARGET_TMPDIR")).join("simulated.csv");
+    let said = text(&hysteron(
+        "simulate",
+        &scenario("asymmetric-first-order.toml"),
+        &["--csv", csv.to_str().unwrap()],
+    ));
+    assert!(said.contains("2000 samples"), "{said}");
+    let written = std::fs::read(&csv).unwrap();
+    let measurement =
+        hysteron_core::measurement::import_csv("simulated.csv", &written, None).unwrap();
+    assert_eq!(measurement.kind, hysteron_core::measurement::Kind::Process);
+    assert_eq!(String::from_utf8(written).unwrap().lines().count(), 2001);
+}
+
+#[test]
+fn what_is_no_scenario_is_one_line_with_its_place() {
+    let relay = "[relay]\ngain = 1.0\n";
+    for (name, content, parts) in [
+        ("empty.toml", String::new(), vec!["plant"]),
+        ("broken.toml", "[plant\n".to_owned(), vec!["line 1"]),
+        (
+            "no-plant.toml",
+            format!("[plant]\n{relay}"),
+            vec!["[plant]", "numerator and denominator"],
+        ),
+        (
+            "both.toml",
+            format!("[plant]\nformula = \"1/s\"\na = [[1.0]]\n{relay}"),
+            vec!["several ways"],
+        ),
+        (
+            "formula.toml",
+            format!("[plant]\nformula = \"1/(s+\"\n{relay}"),
+            vec!["formula", "column"],
+        ),
+        (
+            "proper.toml",
+            format!("[plant]\nnumerator = [1.0, 1.0]\ndenominator = [1.0, 1.0]\n{relay}"),
+            vec!["numerator's must be lower"],
+        ),
+        (
+            "typo.toml",
+            format!("[plant]\nformula = \"1/s\"\n{relay}hysterisis = 0.1\n"),
+            vec!["line 5", "hysterisis", "hysteresis"],
+        ),
+        (
+            "negative.toml",
+            "[plant]\nformula = \"1/s\"\n[relay]\ngain = -1.0\n".to_owned(),
+            vec!["[relay]", "gain is -1", "above 0"],
+        ),
+        (
+            "state.toml",
+            format!(
+                "[plant]\nformula = \"1/s\"\n{relay}[run]\nduration = 1.0\ninitial = [1.0, 2.0]\n"
+            ),
+            vec!["[run]", "initial state has 2"],
+        ),
+        (
+            "long.toml",
+            format!("[plant]\nformula = \"1/s\"\n{relay}[run]\nduration = 1e9\nstep = 1e-3\n"),
+            vec!["[run]", "number of samples"],
+        ),
+    ] {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::write(&path, content).unwrap();
+        for command in ["simulate", "limit-cycle"] {
+            let output = hysteron(command, &path, &[]);
+            let line = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{name}: {line}");
+            assert_eq!(line.lines().count(), 1, "{line}");
+            assert!(line.contains(name), "{line}");
+            for part in &parts {
+                assert!(line.contains(part), "{name}: expected '{part}' in: {line}");
+            }
+        }
+    }
+    for command in ["simulate", "limit-cycle"] {
+        let output = hysteron(command, Path::new("no-such.toml"), &[]);
+        assert_eq!(output.status.code(), Some(2));
+    }
+}
