@@ -291,3 +291,35 @@ fn finer_steps_give_the_same_record() {
         assert!(apart(0) < 3e-5, "{name}: position {}", apart(0));
     }
 }
+
+/// Writes one seed of the bench as files for a blind trial: `blind-01.csv`, ... in an order that says
+/// nothing, and `truth.json`.
+///
+/// ```text
+/// HYSTERON_BLIND=/tmp/blind HYSTERON_BENCH_SEEDS=7 cargo test -p hysteron-core --test blind_bench -- --ignored
+/// ```
+#[test]
+#[ignore = "writes files into the folder that HYSTERON_BLIND names"]
+fn write_blind_files() {
+    let folder = std::env::var("HYSTERON_BLIND").expect("HYSTERON_BLIND names the folder");
+    let folder = std::path::Path::new(&folder);
+    std::fs::create_dir_all(folder).unwrap();
+    let mut truths = serde_json::Map::new();
+    for seed in seeds() {
+        let mut all = cases(seed);
+        let mut random = Random::new(seed ^ 0xb11d);
+        all.sort_by_cached_key(|_| random.seed());
+        for (_, case) in &all {
+            let file = format!("blind-{:02}.csv", truths.len() + 1);
+            let measured = case.measure();
+            std::fs::write(folder.join(&file), measured.to_csv()).unwrap();
+            let mut truth = case.truth_json();
+            truth["samples"] = measured.len().into();
+            truth["seed"] = seed.into();
+            truths.insert(file, truth);
+        }
+    }
+    let text = serde_json::to_string_pretty(&truths).unwrap();
+    std::fs::write(folder.join("truth.json"), text + "\n").unwrap();
+    println!("{} files in {}", truths.len(), folder.display());
+}

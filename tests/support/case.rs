@@ -29,6 +29,16 @@ impl Truth {
         }
     }
 
+    /// The effect with its fair companions and its main parameter in SI.
+    fn json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "effect": self.effect,
+            "same": self.same,
+            "alike": self.alike,
+            "value": self.value.map(|(_, value)| value),
+        })
+    }
+
     /// The truth where others act exactly the same.
     pub fn same(self, others: &'static [&'static str]) -> Self {
         Self {
@@ -139,5 +149,24 @@ impl Case {
             Bench::Drive(rig) => [("J1", rig.inertia), ("d1", rig.viscous)],
             Bench::Process(rig) => [("K", rig.gain), ("T", rig.time_constant)],
         }
+    }
+
+    /// All that is known about the case, for a file beside its record. `missing` has for each hidden
+    /// effect the ids that a fair class may hold; null where the library does not have it.
+    pub fn truth_json(&self) -> serde_json::Value {
+        let (missing, or) = match &self.hidden {
+            Hidden::Unknown => (serde_json::Value::Null, &[][..]),
+            Hidden::Known { truths, or } => {
+                (truths.iter().map(Truth::json).collect(), or.as_slice())
+            }
+        };
+        let [first, second] = self.baseline();
+        serde_json::json!({
+            "name": self.name,
+            "unknown": matches!(self.hidden, Hidden::Unknown),
+            "missing": missing,
+            "or": or,
+            "baseline": { first.0: first.1, second.0: second.1 },
+        })
     }
 }
