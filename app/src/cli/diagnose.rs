@@ -6,16 +6,27 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
-use hysteron_core::measurement::{self, Measurement, import_csv};
+use hysteron_core::measurement::{
+    self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
+};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Measurement with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s]; many files: one result each
+    /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file; many files: one
+    /// result each
     #[arg(value_name = "FILE.csv", required = true)]
     pub files: Vec<PathBuf>,
     /// Kind of system; guessed from the columns if not given
     #[arg(long, value_enum)]
     kind: Option<Kind>,
+    /// Which column is what: t, u, x1, v1, x2, v2 or y, its name in the file (- before it turns the sign), its
+    /// unit; such as "t=time [ms],u=-current [A],x1=enc [counts:4096]"
+    #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
+    map: Option<Mapping>,
+    /// What a current or voltage as input becomes, such as "0.05 N m/A"; without it all torques stand in
+    /// multiples of it
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    torque_constant: Option<TorqueConstant>,
     /// For a person or for a program; of many files one block or one line of JSON each
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
@@ -143,7 +154,7 @@ pub(super) fn one(
     mut show: impl FnMut(f64, &str),
 ) -> Result<Report, String> {
     let started = Instant::now();
-    let measurement = read(file, arguments.kind)?;
+    let measurement = read(file, arguments)?;
     let name = measurement.name.clone();
     let mut job = DiagnosisJob::new(&measurement).map_err(|e| format!("{name}: {e}"))?;
     loop {
@@ -161,21 +172,28 @@ pub(super) fn one(
     }
 }
 
-fn read(path: &Path, kind: Option<Kind>) -> Result<Measurement, String> {
+fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy();
     let shown = path.display();
     if path.is_dir() {
-        return Err(format!("{shown} is a directory; expected a CSV file"));
+        return Err(format!(
+            "{shown} is a directory; expected a CSV or MATLAB file"
+        ));
     }
     let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
-    let kind = kind.map(|k| match k {
+    let kind = arguments.kind.map(|k| match k {
         Kind::Drive => measurement::Kind::Drive,
         Kind::Process => measurement::Kind::Process,
     });
-    import_csv(&name, &bytes, kind).map_err(|e| e.to_string())
+    let options = ImportOptions {
+        kind,
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: arguments.torque_constant,
+    };
+    import(&name, &bytes, &options).map_err(|e| e.to_string())
 }
 
 /// One line on stderr that is written over again and again; nothing where stderr is no terminal.
