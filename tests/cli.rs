@@ -203,7 +203,7 @@ fn by_hand() -> Diagnosis {
 
 #[test]
 fn the_text_tells_the_story_in_80_columns() {
-    let text = render(&by_hand(), "rig.csv");
+    let text = render(&by_hand(), "rig.csv", &[]);
     let mut rest = text.as_str();
     for part in [
         "rig.csv: 10000 samples of a drive",
@@ -233,7 +233,7 @@ fn the_text_tells_the_story_in_80_columns() {
 
 #[test]
 fn the_bars_fall_with_the_error() {
-    let text = render(&by_hand(), "rig.csv");
+    let text = render(&by_hand(), "rig.csv", &[]);
     let bars: Vec<usize> = text
         .lines()
         .map(|l| l.chars().filter(|c| *c == '█').count())
@@ -250,10 +250,10 @@ fn the_bars_fall_with_the_error() {
 fn an_unfinished_diagnosis_can_be_shown() {
     let mut diagnosis = by_hand();
     diagnosis.steps.clear();
-    assert!(render(&diagnosis, "a\nb").starts_with("a b: "));
+    assert!(render(&diagnosis, "a\nb", &[]).starts_with("a b: "));
     let mut diagnosis = by_hand();
     diagnosis.steps[0].error = f64::NAN;
     diagnosis.steps[1].error = 0.0;
     diagnosis.noise_floor = f64::INFINITY;
-    assert!(render(&diagnosis, "rig.csv").contains("unknown"));
+    assert!(render(&diagnosis, "rig.csv", &[]).contains("unknown"));
 }

@@ -1,23 +1,41 @@
-//! `hysteron diagnose FILE.csv`
+//! `hysteron diagnose FILE.csv`; many files are a batch.
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::Instant;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
-use hysteron_core::measurement::{self, Measurement, import_csv};
+use hysteron_core::measurement::{
+    self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
+};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Measurement with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s]
-    #[arg(value_name = "FILE.csv")]
-    file: PathBuf,
+    /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file; many files: one
+    /// result each
+    #[arg(value_name = "FILE.csv", required = true)]
+    pub files: Vec<PathBuf>,
     /// Kind of system; guessed from the columns if not given
     #[arg(long, value_enum)]
     kind: Option<Kind>,
-    /// For a person or for a program
+    /// Which column is what: t, u, x1, v1, x2, v2 or y, its name in the file (- before it turns the sign), its
+    /// unit; such as "t=time [ms],u=-current [A],x1=enc [counts:4096]"
+    #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
+    map: Option<Mapping>,
+    /// What a current or voltage as input becomes, such as "0.05 N m/A"; without it all torques stand in
+    /// multiples of it
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    torque_constant: Option<TorqueConstant>,
+    /// For a person or for a program; of many files one block or one line of JSON each
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    pub format: Format,
+    /// Add each result to this file as a line of JSON, and skip files whose result is there
+    #[arg(long, value_name = "OUT")]
+    pub resume: Option<PathBuf>,
+    /// Of many files, how many at a time; as many as there are processors if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -29,63 +47,153 @@ enum Kind {
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Format {
+pub(super) enum Format {
     /// A report in words and tables
     Text,
-    /// One JSON object
+    /// One JSON object; of many files one line each
     Json,
 }
 
-/// The report, or one line that says what is wrong with the input.
-pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
-    let started = Instant::now();
-    let measurement = read(&arguments.file, arguments.kind)?;
-    let mut diagnosis = diagnose(&measurement).map_err(|e| format!("{}: {e}", measurement.name))?;
-    diagnosis.seconds = started.elapsed().as_secs_f64();
-    match arguments.format {
-        Format::Text => Ok(super::text::render(&diagnosis, &measurement.name)),
-        Format::Json => serde_json::to_string_pretty(&diagnosis)
-            .map(|json| json + "\n")
-            .map_err(|e| {
-                format!(
-                    "{}: the diagnosis cannot be written as JSON: {e}",
-                    measurement.name
-                )
-            }),
+/// One file by the contract of a single one; many files, or a file to resume from, as a batch.
+pub(super) fn run(arguments: &Arguments) -> ExitCode {
+    match (arguments.files.as_slice(), &arguments.resume) {
+        ([file], None) => super::finish(single(file, arguments)),
+        _ => super::batch::run(arguments),
     }
 }
 
-fn read(path: &Path, kind: Option<Kind>) -> Result<Measurement, String> {
+/// The report, or one line that says what is wrong with the input.
+fn single(file: &Path, arguments: &Arguments) -> Result<String, String> {
+    let mut line = ProgressLine::new();
+    let report = one(file, arguments, |fraction, text| line.show(fraction, text));
+    line.clear();
+    let report = report?;
+    match arguments.format {
+        Format::Text => Ok(report.text(&report.name)),
+        Format::Json => report.json().map_err(|e| {
+            format!(
+                "{}: the diagnosis cannot be written as JSON: {e}",
+                report.name
+            )
+        }),
+    }
+}
+
+/// A finished diagnosis of one file.
+pub(super) struct Report {
+    name: String,
+    /// What the import had to assume or leave out.
+    notes: Vec<String>,
+    diagnosis: Diagnosis,
+}
+
+/// A diagnosis as JSON, with what belongs to the file and not to it.
+#[derive(serde::Serialize)]
+struct Line<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<&'a str>,
+    #[serde(flatten)]
+    diagnosis: &'a Diagnosis,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    notes: &'a [String],
+}
+
+impl Report {
+    /// For a person, under this title.
+    pub fn text(&self, title: &str) -> String {
+        super::text::render(&self.diagnosis, title, &self.notes)
+    }
+
+    /// One object on many lines, as a single file prints it.
+    fn json(&self) -> serde_json::Result<String> {
+        serde_json::to_string_pretty(&self.line(None)).map(|json| json + "\n")
+    }
+
+    /// The same object with the name of its file, on one line.
+    pub fn json_line(&self, file: &str) -> serde_json::Result<String> {
+        serde_json::to_string(&self.line(Some(file)))
+    }
+
+    fn line<'a>(&'a self, file: Option<&'a str>) -> Line<'a> {
+        Line {
+            file,
+            diagnosis: &self.diagnosis,
+            notes: &self.notes,
+        }
+    }
+
+    /// The verdict in a few words, for a log.
+    pub fn summary(&self) -> String {
+        let verdict = &self.diagnosis.verdict;
+        let classes: Vec<String> = verdict
+            .missing
+            .iter()
+            .map(|class| {
+                let ids: Vec<&str> = class.iter().map(|id| id.as_str()).collect();
+                ids.join(" or ")
+            })
+            .collect();
+        let found = if classes.is_empty() {
+            "nothing found".to_owned()
+        } else {
+            classes.join(" + ")
+        };
+        let rest = if verdict.unknown {
+            ", and something unknown"
+        } else {
+            ""
+        };
+        format!("{found}{rest} ({:.1} s)", self.diagnosis.seconds)
+    }
+}
+
+/// Diagnoses one file; `show` hears of progress.
+pub(super) fn one(
+    file: &Path,
+    arguments: &Arguments,
+    mut show: impl FnMut(f64, &str),
+) -> Result<Report, String> {
+    let started = Instant::now();
+    let measurement = read(file, arguments)?;
+    let name = measurement.name.clone();
+    let mut job = DiagnosisJob::new(&measurement).map_err(|e| format!("{name}: {e}"))?;
+    loop {
+        match job.advance() {
+            Progress::Running { fraction, text } => show(fraction, &text),
+            Progress::Done(mut diagnosis) => {
+                diagnosis.seconds = started.elapsed().as_secs_f64();
+                return Ok(Report {
+                    name,
+                    notes: measurement.warnings,
+                    diagnosis,
+                });
+            }
+        }
+    }
+}
+
+fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy();
     let shown = path.display();
     if path.is_dir() {
-        return Err(format!("{shown} is a directory; expected a CSV file"));
+        return Err(format!(
+            "{shown} is a directory; expected a CSV or MATLAB file"
+        ));
     }
     let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
-    let kind = kind.map(|k| match k {
+    let kind = arguments.kind.map(|k| match k {
         Kind::Drive => measurement::Kind::Drive,
         Kind::Process => measurement::Kind::Process,
     });
-    import_csv(&name, &bytes, kind).map_err(|e| e.to_string())
-}
-
-fn diagnose(
-    measurement: &Measurement,
-) -> Result<Diagnosis, hysteron_core::criticism::CriticismError> {
-    let mut job = DiagnosisJob::new(measurement)?;
-    let mut line = ProgressLine::new();
-    loop {
-        match job.advance() {
-            Progress::Running { fraction, text } => line.show(fraction, &text),
-            Progress::Done(diagnosis) => {
-                line.clear();
-                return Ok(diagnosis);
-            }
-        }
-    }
+    let options = ImportOptions {
+        kind,
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: arguments.torque_constant,
+    };
+    import(&name, &bytes, &options).map_err(|e| e.to_string())
 }
 
 /// One line on stderr that is written over again and again; nothing where stderr is no terminal.

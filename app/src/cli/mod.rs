@@ -1,8 +1,9 @@
 //! The command line: one file per subcommand, one line in [`Command`] and one in [`dispatch`].
 //!
-//! Exit code 0 on success, 2 for bad input with exactly one line on stderr, 1 where the output
-//! cannot be written. A reader that closes the pipe early, such as `head`, is a success.
+//! Exit code 0 on success, 2 for bad input with exactly one line on stderr (of many files: one for
+//! each), 1 where the output cannot be written. A reader that closes the pipe early, such as `head`, is a success.
 
+mod batch;
 mod diagnose;
 mod limit_cycle;
 mod simulate;
@@ -34,7 +35,7 @@ enum Command {
     LimitCycle(limit_cycle::Arguments),
 }
 
-fn dispatch(command: &Command) -> Result<String, String> {
+fn dispatch(command: &Command) -> ExitCode {
     match command {
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
@@ -45,19 +46,23 @@ fn dispatch(command: &Command) -> Result<String, String> {
 /// Runs the subcommand in `arguments` (the first of which is the program); `None` if there is
 /// none, so that the app should start.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Option<ExitCode> {
-    let result = match Arguments::try_parse_from(arguments) {
+    Some(match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command: None }) => return None,
         Ok(Arguments {
             command: Some(command),
         }) => dispatch(&command),
         // Help and version are asked for, not errors.
-        Err(error) if !error.use_stderr() => Ok(error.to_string()),
-        Err(error) => Err(usage_error(&error)),
-    };
-    Some(match result {
+        Err(error) if !error.use_stderr() => finish(Ok(error.to_string())),
+        Err(error) => finish(Err(usage_error(&error))),
+    })
+}
+
+/// Prints what a subcommand has to say, or the one line that says what is wrong with its input.
+fn finish(result: Result<String, String>) -> ExitCode {
+    match result {
         Ok(output) => print(&output),
         Err(line) => fail(&line, 2),
-    })
+    }
 }
 
 /// What was wrong with the arguments, without the usage text beneath it.
@@ -75,18 +80,30 @@ fn print(output: &str) -> ExitCode {
         .and_then(|()| stdout.flush())
     {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(error) => fail(&format!("the output cannot be written: {error}"), 1),
+        Err(error) => write_error(&error),
     }
 }
 
-/// Exactly one line, whatever a file name or an argument has in it.
+/// The exit code where stdout or a file of results cannot be written.
+fn write_error(error: &io::Error) -> ExitCode {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        ExitCode::SUCCESS
+    } else {
+        fail(&format!("the output cannot be written: {error}"), 1)
+    }
+}
+
 fn fail(message: &str, code: u8) -> ExitCode {
+    complain(message);
+    ExitCode::from(code)
+}
+
+/// Exactly one line on stderr, whatever a file name or an argument has in it.
+fn complain(message: &str) {
     let words: Vec<&str> = message
         .split(|c: char| c.is_control() || c == ' ')
         .filter(|w| !w.is_empty())
         .collect();
     // Where stderr is closed there is nobody left to tell.
     let _ = writeln!(io::stderr(), "hysteron: {}", words.join(" "));
-    ExitCode::from(code)
 }

@@ -14,8 +14,8 @@ const BAR: usize = 40;
 /// Above this ratio of largest to smallest a linear bar of the smallest would not be seen.
 const LOGARITHMIC_FROM: f64 = 40.0;
 
-/// The report on the measurement called `name`; ends with a newline.
-pub fn render(diagnosis: &Diagnosis, name: &str) -> String {
+/// The report on the measurement called `name`, with notes of its import; ends with a newline.
+pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     let mut out = String::new();
     let kind = match diagnosis.kind {
         Kind::Drive => "drive",
@@ -30,6 +30,9 @@ pub fn render(diagnosis: &Diagnosis, name: &str) -> String {
         "",
         &format!("{title}: {} samples of a {kind}", diagnosis.samples),
     );
+    for note in notes {
+        bullet(&mut out, note);
+    }
     for (i, step) in diagnosis.steps.iter().enumerate() {
         let before = i.checked_sub(1).and_then(|k| diagnosis.steps.get(k));
         describe_step(&mut out, step, before, diagnosis.noise_floor);

@@ -1,7 +1,8 @@
 //! Comma-separated files, as people have them.
 
 use super::error::{ImportError, Problem};
-use super::header::{Header, Role, shorten, understand};
+use super::header::{Field, Header, Role, map, name_and_unit, shorten, understand};
+use super::mapping::ImportOptions;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
 /// How the rows of a file are written.
@@ -28,6 +29,19 @@ pub fn import_csv(
     bytes: &[u8],
     kind: Option<Kind>,
 ) -> Result<Measurement, ImportError> {
+    let options = ImportOptions {
+        kind,
+        ..ImportOptions::default()
+    };
+    import_text(name, bytes, &options)
+}
+
+/// Reads a CSV file with a mapping and a torque constant.
+pub(super) fn import_text(
+    name: &str,
+    bytes: &[u8],
+    options: &ImportOptions,
+) -> Result<Measurement, ImportError> {
     let fail = |line: Option<usize>, column: Option<String>, problem| ImportError {
         file: name.to_owned(),
         line,
@@ -49,8 +63,13 @@ pub fn import_csv(
         return Err(fail(None, None, Problem::Empty));
     };
     let separator = separator_of(first);
-    let fields: Vec<String> = split_header(first, separator);
-    let header = understand(&fields, kind).map_err(|(column, problem)| {
+    let mut fields: Vec<Field> = split_header(first, separator)
+        .iter()
+        .map(|f| name_and_unit(f))
+        .map(|(name, unit)| Field::named(name, unit))
+        .collect();
+    map(&mut fields, &options.mapping).map_err(|p| fail(Some(header_line), None, p))?;
+    let header = understand(fields, options).map_err(|(column, problem)| {
         fail(
             Some(header_line),
             column.map(|(i, n)| format!("{i} ({n})")),
@@ -83,7 +102,7 @@ fn separator_of(header: &str) -> char {
 }
 
 /// Splits a header; a separator inside brackets belongs to the unit (`[counts, 4096/rev]`).
-fn split_header(header: &str, separator: char) -> Vec<String> {
+pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut depth = 0;
     for c in header.chars() {
@@ -210,7 +229,11 @@ fn number(text: &str, dialect: &mut Dialect) -> Option<f64> {
     }
 }
 
-fn assemble(name: &str, header: &Header, values: Vec<Vec<f64>>) -> Result<Measurement, Problem> {
+pub(super) fn assemble(
+    name: &str,
+    header: &Header,
+    values: Vec<Vec<f64>>,
+) -> Result<Measurement, Problem> {
     let mut time = Vec::new();
     let mut input = None;
     let (mut outputs, mut reference) = (Vec::new(), Vec::new());
@@ -246,6 +269,7 @@ fn assemble(name: &str, header: &Header, values: Vec<Vec<f64>>) -> Result<Measur
         .ignored
         .iter()
         .map(|n| ignored(n, header.kind))
+        .chain(header.notes.iter().cloned())
         .collect();
     Ok(Measurement {
         name: name.to_owned(),

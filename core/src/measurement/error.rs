@@ -55,6 +55,30 @@ pub enum Problem {
         wanted: &'static str,
         hint: &'static str,
     },
+    #[error("no column '{wanted}' to map; the file has {found}")]
+    NoSuchColumn { wanted: String, found: String },
+    #[error(
+        "a torque constant by {given} does not fit an input in {unit}; it makes torque of a current in A or a voltage in V"
+    )]
+    NeedlessTorqueConstant { unit: String, given: &'static str },
+    #[error(
+        "a MAT-file does not say which variable is what; map them, such as t=time [s], u=current [A], x1=angle [rad]; it has {found}"
+    )]
+    NotMapped { found: String },
+    #[error("no unit; a MAT-file has none, so say it in the mapping, such as {name} [s]")]
+    NoUnitInMat { name: String },
+    #[error("{found} values, but '{other}' has {expected}; all must have the same number")]
+    Lengths {
+        found: usize,
+        other: String,
+        expected: usize,
+    },
+    #[error("what begins at byte {byte} of the MAT-file is damaged; expected {expected} in it")]
+    MatDamaged { byte: usize, expected: &'static str },
+    #[error("the MAT-file unpacks to more than {mebibytes} MiB; save only the variables needed")]
+    MatTooLarge { mebibytes: usize },
+    #[error("a file in HDF5, as MATLAB's save -v7.3 writes it; save it with -v7")]
+    Hdf5,
     #[error("the column '{name}' stands there twice; each may come once")]
     Twice { name: String },
     #[error(

@@ -1,8 +1,32 @@
 //! The header: which column is what, in which unit.
 
 use super::error::Problem;
+use super::mapping::{ImportOptions, Mapping};
 use super::unit::{self, ACCEPTED, Measures};
 use super::{Kind, Quantity};
+
+/// A column before it is understood.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    pub name: String,
+    pub unit: Option<String>,
+    pub role: Option<Role>,
+    /// -1 where its direction is the other one, else 1.
+    pub sign: f64,
+}
+
+impl Field {
+    /// A column that is known by its name.
+    pub fn named(name: String, unit: Option<String>) -> Self {
+        let role = role(&name);
+        Self {
+            name,
+            unit: unit.filter(|u| !u.is_empty()),
+            role,
+            sign: 1.0,
+        }
+    }
+}
 
 /// A column that is read.
 #[derive(Clone, Debug)]
@@ -29,6 +53,8 @@ pub(super) struct Header {
     pub kind: Kind,
     pub columns: Vec<Column>,
     pub ignored: Vec<String>,
+    /// What had to be assumed, for the user.
+    pub notes: Vec<String>,
     pub width: usize,
 }
 
@@ -58,7 +84,7 @@ pub(super) fn shorten(text: &str) -> String {
 }
 
 /// Splits `x1 [rad]` into name and unit; parentheses serve as well.
-fn name_and_unit(field: &str) -> (String, Option<String>) {
+pub(super) fn name_and_unit(field: &str) -> (String, Option<String>) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some(start) = field.find(open)
             && let Some(end) = field.rfind(close)
@@ -71,16 +97,43 @@ fn name_and_unit(field: &str) -> (String, Option<String>) {
     (field.trim().to_owned(), None)
 }
 
+/// Gives the columns that a mapping names their meaning; what it takes, no other column can be.
+pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem> {
+    for field in fields.iter_mut() {
+        if mapping.entries.iter().any(|e| field.role == Some(e.role)) {
+            field.role = None;
+        }
+    }
+    for entry in &mapping.entries {
+        let Some(i) = fields.iter().position(|f| f.name == entry.source) else {
+            let names: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
+            return Err(Problem::NoSuchColumn {
+                wanted: shorten(&entry.source),
+                found: names.join(", ").chars().take(200).collect(),
+            });
+        };
+        if let Some(field) = fields.get_mut(i) {
+            field.role = Some(entry.role);
+            field.sign = if entry.negative { -1.0 } else { 1.0 };
+            if entry.unit.is_some() {
+                field.unit.clone_from(&entry.unit);
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Understands the fields of a header.
-pub(super) fn understand(fields: &[String], kind: Option<Kind>) -> Result<Header, Located> {
-    let parsed: Vec<(String, Option<String>)> = fields.iter().map(|f| name_and_unit(f)).collect();
-    let roles: Vec<Option<Role>> = parsed.iter().map(|(name, _)| role(name)).collect();
+pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<Header, Located> {
+    let width = fields.len();
+    let roles: Vec<Option<Role>> = fields.iter().map(|f| f.role).collect();
     if roles.iter().all(Option::is_none) {
-        let found = shorten(&fields.join(","));
+        let names: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
+        let found = shorten(&names.join(","));
         return Err((None, Problem::NoHeader { found }));
     }
     let has = |q: Quantity| roles.contains(&Some(Role::Measured(q)));
-    let kind = kind.unwrap_or(
+    let kind = options.kind.unwrap_or(
         if has(Quantity::Output) && !has(Quantity::Position) && !has(Quantity::Velocity) {
             Kind::Process
         } else {
@@ -89,16 +142,24 @@ pub(super) fn understand(fields: &[String], kind: Option<Kind>) -> Result<Header
     );
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
-    for (index, ((name, unit), role)) in parsed.into_iter().zip(roles).enumerate() {
+    for (index, field) in fields.into_iter().enumerate() {
+        let Field {
+            name,
+            unit,
+            role,
+            sign,
+        } = field;
         let here = || Some((index + 1, name.clone()));
         let Some(role) = role.filter(|r| belongs(*r, kind)) else {
-            ignored.push(shorten(&name));
+            if options.mapping.is_empty() {
+                ignored.push(shorten(&name));
+            }
             continue;
         };
         if columns.iter().any(|c| c.role == role) {
             return Err((here(), Problem::Twice { name }));
         }
-        let Some(unit) = unit.filter(|u| !u.is_empty()) else {
+        let Some(unit) = unit else {
             return Err((here(), Problem::NoUnit { name }));
         };
         let (measures, factor, unit) =
@@ -107,17 +168,19 @@ pub(super) fn understand(fields: &[String], kind: Option<Kind>) -> Result<Header
             index,
             role,
             name,
-            factor,
+            factor: factor * sign,
             measures,
             unit,
         });
     }
-    let header = Header {
+    let mut header = Header {
         kind,
         columns,
         ignored,
-        width: fields.len(),
+        notes: Vec::new(),
+        width,
     };
+    make_torque(&mut header, options)?;
     complete(&header)?;
     Ok(header)
 }
@@ -136,13 +199,14 @@ fn convert(
     name: &str,
     unit: &str,
 ) -> Result<(Measures, f64, String), Problem> {
-    use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
+    use Measures::{Angle, AngularVelocity, Current, Force, Length, Speed, Time, Torque, Voltage};
     let expected: (&[Measures], &str) = match (role, kind) {
         (Role::Time, _) => (&[Time], "a time: s, ms, us, min"),
         (_, Kind::Process) => return Ok((Measures::Other, 1.0, unit.to_owned())),
-        (Role::Measured(Quantity::Input), _) => {
-            (&[Torque, Force], "a torque or force: N m, mN m, N, kN")
-        }
+        (Role::Measured(Quantity::Input), _) => (
+            &[Torque, Force, Current, Voltage],
+            "a torque or force: N m, mN m, N, kN, or the current or voltage of the motor: A, V",
+        ),
         (Role::Measured(Quantity::Position | Quantity::LoadPosition), _) => (
             &[Angle, Length],
             "an angle or length: rad, deg, rev, m, mm, or counts with a resolution",
@@ -174,6 +238,53 @@ fn convert(
             expected: format!("{} ({ACCEPTED})", expected.1),
         }),
     }
+}
+
+/// Turns a current or voltage into torque or force: by the constant that is given, or by one.
+fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Located> {
+    use Measures::{Current, Force, Length, Speed, Torque, Voltage};
+    let turns = !header
+        .columns
+        .iter()
+        .any(|c| matches!(c.measures, Length | Speed));
+    let input = Role::Measured(Quantity::Input);
+    let Some(column) = header.columns.iter_mut().find(|c| c.role == input) else {
+        return Ok(());
+    };
+    let before = column.measures;
+    let electric = matches!(before, Current | Voltage);
+    let wrong = |given: Measures| {
+        let problem = Problem::NeedlessTorqueConstant {
+            unit: column.unit.clone(),
+            given: given.si(),
+        };
+        Err((Some((column.index + 1, column.name.clone())), problem))
+    };
+    let (factor, gives) = match options.torque_constant {
+        Some(constant) if !electric || constant.per != before => return wrong(constant.per),
+        Some(constant) => (constant.value(), constant.gives),
+        None if !electric => return Ok(()),
+        None => (1.0, if turns { Torque } else { Force }),
+    };
+    column.factor *= factor;
+    column.measures = gives;
+    gives.si().clone_into(&mut column.unit);
+    if options.torque_constant.is_none() {
+        header.notes.push(format!(
+            "The torque constant is not known: 1 {gives}/{per} is taken. Inertias, frictions and loads below \
+             therefore stand in multiples of it: multiply them by the true one. Times, gaps and which effects \
+             are found do not depend on it.",
+            gives = gives.si(),
+            per = before.si(),
+        ));
+    }
+    if before == Voltage {
+        header.notes.push(
+            "The input is a voltage: the back-EMF acts as viscous friction and is part of it here."
+                .to_owned(),
+        );
+    }
+    Ok(())
 }
 
 /// Checks that what a measurement needs is there, and that the units belong together.

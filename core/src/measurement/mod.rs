@@ -7,12 +7,17 @@
 mod csv;
 mod error;
 mod header;
+mod mapping;
+mod mat;
+mod table;
 mod unit;
 
 use serde::{Deserialize, Serialize};
 
 pub use csv::import_csv;
 pub use error::{ImportError, Problem};
+pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
+pub use table::import;
 
 /// What kind of system was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -10,6 +10,8 @@ pub(super) enum Measures {
     Length,
     AngularVelocity,
     Speed,
+    Current,
+    Voltage,
     Other,
 }
 
@@ -24,21 +26,24 @@ impl Measures {
             Self::Length => "m",
             Self::AngularVelocity => "rad/s",
             Self::Speed => "m/s",
+            Self::Current => "A",
+            Self::Voltage => "V",
             Self::Other => "1",
         }
     }
 }
 
 /// What is accepted, for messages.
-pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force N, mN, kN; angle rad, mrad, deg, rev; \
+pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage V, mV; angle rad, mrad, deg, rev; \
     length m, mm, um; velocity rad/s, deg/s, rpm, m/s, mm/s; counts with their resolution, such as [counts, 4096/rev] \
     or [counts, 0.001 mm]";
 
 /// Quantity and factor to SI of a unit, or of counts with a resolution.
 ///
-/// Counts are written `counts, 4096/rev` (so many a turn) or `counts, 0.001 mm` (one count is so much).
+/// Counts are written `counts, 4096/rev` or `counts:4096` (so many a turn) or `counts, 0.001 mm` (one count is so
+/// much).
 pub(super) fn parse(text: &str) -> Option<(Measures, f64)> {
-    if let Some((name, resolution)) = text.split_once(',').or_else(|| text.split_once(';'))
+    if let Some((name, resolution)) = text.split_once([',', ';', ':'])
         && matches!(
             name.trim().to_lowercase().as_str(),
             "count" | "counts" | "cnt" | "inc" | "increments"
@@ -64,6 +69,10 @@ fn counts(resolution: &str) -> Option<(Measures, f64)> {
         let whole = matches!(what, Measures::Angle | Measures::Length);
         return (whole && number > 0.0 && number.is_finite()).then_some((what, factor / number));
     }
+    if let Ok(number) = resolution.parse::<f64>() {
+        let whole = number > 0.0 && number.is_finite();
+        return whole.then_some((Measures::Angle, std::f64::consts::TAU / number));
+    }
     let split = resolution.find(|c: char| c.is_ascii_whitespace())?;
     let number: f64 = resolution[..split].parse().ok()?;
     let (what, factor) = plain(&resolution[split..])?;
@@ -71,7 +80,7 @@ fn counts(resolution: &str) -> Option<(Measures, f64)> {
 }
 
 fn plain(text: &str) -> Option<(Measures, f64)> {
-    use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
+    use Measures::{Angle, AngularVelocity, Current, Force, Length, Speed, Time, Torque, Voltage};
     use std::f64::consts::{PI, TAU};
     let compact: String = text
         .trim()
@@ -83,6 +92,8 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "mNm" => Some((Torque, 1e-3)),
         "MNm" => Some((Torque, 1e6)),
         "mN" => Some((Force, 1e-3)),
+        "mA" => Some((Current, 1e-3)),
+        "mV" => Some((Voltage, 1e-3)),
         _ => None,
     };
     if exact.is_some() {
@@ -97,6 +108,8 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "nm" | "n.m" | "n-m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
         "knm" => (Torque, 1e3),
         "ncm" => (Torque, 1e-2),
+        "a" | "amp" | "ampere" => (Current, 1.0),
+        "v" | "volt" => (Voltage, 1.0),
         "n" | "newton" => (Force, 1.0),
         "kn" => (Force, 1e3),
         "rad" | "radian" | "radians" => (Angle, 1.0),
@@ -149,10 +162,17 @@ mod tests {
             std::f64::consts::TAU / 4096.0,
         );
         check("counts, 0.001 mm", Measures::Length, 1e-6);
+        check(
+            "counts:4096",
+            Measures::Angle,
+            std::f64::consts::TAU / 4096.0,
+        );
+        check("mA", Measures::Current, 1e-3);
         assert!(
             parse("furlong").is_none()
                 && parse("counts, 0/rev").is_none()
                 && parse("counts").is_none()
+                && parse("counts:-4").is_none()
         );
     }
 }

@@ -1,0 +1,172 @@
+//! What the columns of a file mean, where the file does not say it.
+
+use std::str::FromStr;
+
+use super::csv::split_header;
+use super::header::{Role, role, shorten};
+use super::unit::{self, Measures};
+
+/// How to read a file; the default asks the file itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImportOptions {
+    /// Drive or process; guessed from the columns if `None`.
+    pub kind: Option<super::Kind>,
+    /// Which column is what, in which unit.
+    pub mapping: Mapping,
+    /// What a current or voltage as input of a drive becomes; see [`TorqueConstant`].
+    pub torque_constant: Option<TorqueConstant>,
+}
+
+/// Which column is what, as in `t=time [ms], u=-current [A], x1=enc [counts:4096]`.
+///
+/// On the left stands what it is (`t`, `u`, `x1`, `v1`, `x2`, `v2`, `y`), on the right the name in the
+/// file, a minus before it where its direction is the other one, and its unit in brackets (needed where
+/// the file has none).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mapping {
+    pub(super) entries: Vec<Entry>,
+}
+
+impl Mapping {
+    /// Whether it says nothing.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+}
+
+/// One column.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Entry {
+    pub role: Role,
+    /// Name in the file.
+    pub source: String,
+    pub negative: bool,
+    pub unit: Option<String>,
+}
+
+/// Torque or force by current or voltage, such as `0.05 N m/A`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueConstant {
+    /// In SI units.
+    value: f64,
+    /// Torque or force.
+    pub(super) gives: Measures,
+    /// Current or voltage.
+    pub(super) per: Measures,
+}
+
+impl TorqueConstant {
+    /// N m/A, N/A, N m/V or N/V.
+    pub fn value(self) -> f64 {
+        self.value
+    }
+}
+
+/// Why a mapping or a torque constant cannot be understood.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MappingError {
+    /// A part without `=`, or with nothing on one side.
+    #[error("'{part}' is not a mapping; expected what=column [unit], such as x1=enc [counts:4096]")]
+    NotAMapping {
+        /// What was found.
+        part: String,
+    },
+    /// Left of `=` stands no known quantity.
+    #[error("'{name}' is nothing that can be measured; expected t, u, x1, v1, x2, v2 or y")]
+    UnknownQuantity {
+        /// What was found.
+        name: String,
+    },
+    /// A quantity or a column is mapped twice.
+    #[error("'{name}' stands in the mapping twice; each may come once")]
+    Twice {
+        /// Which.
+        name: String,
+    },
+    /// Not a number with a unit of torque or force by current or voltage.
+    #[error(
+        "'{text}' is not a torque constant; expected a number but zero and its unit, such as 0.05 N m/A, 2 N/A or 0.1 N m/V"
+    )]
+    NotATorqueConstant {
+        /// What was found.
+        text: String,
+    },
+}
+
+impl FromStr for Mapping {
+    type Err = MappingError;
+
+    fn from_str(text: &str) -> Result<Self, MappingError> {
+        let mut entries: Vec<Entry> = Vec::new();
+        for part in split_header(text, ',') {
+            let entry = entry(&part)?;
+            let again = entries.iter().find_map(|e| {
+                if e.role == entry.role {
+                    Some(part.split('=').next().unwrap_or_default().trim())
+                } else {
+                    (e.source == entry.source).then_some(e.source.as_str())
+                }
+            });
+            if let Some(name) = again {
+                return Err(MappingError::Twice {
+                    name: shorten(name),
+                });
+            }
+            entries.push(entry);
+        }
+        Ok(Self { entries })
+    }
+}
+
+fn entry(part: &str) -> Result<Entry, MappingError> {
+    let wrong = || MappingError::NotAMapping {
+        part: shorten(part),
+    };
+    let (what, column) = part.split_once('=').ok_or_else(wrong)?;
+    let (what, column) = (what.trim(), column.trim());
+    let (name, unit) = match column.split_once('[') {
+        Some((name, rest)) => {
+            let unit = rest.strip_suffix(']').ok_or_else(wrong)?.trim();
+            (name.trim(), Some(unit.to_owned()).filter(|u| !u.is_empty()))
+        }
+        None => (column, None),
+    };
+    let (source, negative) = match name.strip_prefix('-') {
+        Some(rest) => (rest.trim(), true),
+        None => (name, false),
+    };
+    if what.is_empty() || source.is_empty() {
+        return Err(wrong());
+    }
+    let role = role(what).ok_or_else(|| MappingError::UnknownQuantity {
+        name: shorten(what),
+    })?;
+    Ok(Entry {
+        role,
+        source: source.to_owned(),
+        negative,
+        unit,
+    })
+}
+
+impl FromStr for TorqueConstant {
+    type Err = MappingError;
+
+    fn from_str(text: &str) -> Result<Self, MappingError> {
+        let wrong = || MappingError::NotATorqueConstant {
+            text: shorten(text),
+        };
+        let (number, unit) = text.trim().split_once(' ').ok_or_else(wrong)?;
+        let (gives, per) = unit.rsplit_once('/').ok_or_else(wrong)?;
+        let number: f64 = number.parse().map_err(|_| wrong())?;
+        let (gives, up) = unit::parse(gives).ok_or_else(wrong)?;
+        let (per, down) = unit::parse(per).ok_or_else(wrong)?;
+        let value = number * up / down;
+        let fits = matches!(gives, Measures::Torque | Measures::Force)
+            && matches!(per, Measures::Current | Measures::Voltage);
+        if !fits || !value.is_finite() || value == 0.0 {
+            return Err(wrong());
+        }
+        Ok(Self { value, gives, per })
+    }
+}

@@ -1,0 +1,326 @@
+//! MATLAB's level 5 MAT-files (`save -v6` and `-v7`), after the "MAT-File Format" of `MathWorks` (2024).
+//!
+//! Real numeric arrays are read, also within structures (`log.signals(2).values`); everything else is
+//! passed over. A matrix becomes one column for each of its shorter side: `data(:,2)`.
+
+use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_zlib_with_limit};
+
+use super::error::Problem;
+
+/// Length of the text and flags before the first element.
+const HEADER: usize = 128;
+
+/// Most bytes that all variables of a file may unpack to, so that a hostile one cannot fill the memory.
+const LARGEST: usize = 256 << 20;
+
+/// Deepest nesting of structures; logs have three or four levels.
+const DEEPEST: usize = 16;
+
+/// One series of numbers with the name by which it is addressed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Series {
+    pub name: String,
+    pub values: Vec<f64>,
+}
+
+/// What a file is, by its first bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    /// Level 5.
+    Mat5,
+    /// HDF5, as `save -v7.3` writes.
+    Hdf5,
+    /// None of these: text, as far as we know.
+    Other,
+}
+
+/// Looks at the first bytes.
+pub(super) fn format_of(bytes: &[u8]) -> Format {
+    if bytes.starts_with(b"MATLAB 7.3") || bytes.starts_with(b"\x89HDF") {
+        return Format::Hdf5;
+    }
+    match bytes.get(124..HEADER) {
+        Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I']) => Format::Mat5,
+        _ if bytes.starts_with(b"MATLAB 5.0") => Format::Mat5,
+        _ => Format::Other,
+    }
+}
+
+/// All series of numbers in a file.
+pub(super) fn read(bytes: &[u8]) -> Result<Vec<Series>, Problem> {
+    let big = match bytes.get(124..HEADER) {
+        Some([0, 1, b'I', b'M']) => false,
+        Some([1, 0, b'M', b'I']) => true,
+        _ => return Err(damaged(124, "the version and the byte order")),
+    };
+    let mut found = Vec::new();
+    let mut left = LARGEST;
+    let mut file = Reader {
+        bytes,
+        at: HEADER,
+        big,
+    };
+    while file.at < bytes.len() {
+        let place = file.at;
+        // Places within a variable mean nothing to a user, least of all where it is compressed.
+        let here = |problem| match problem {
+            Problem::MatDamaged { expected, .. } => damaged(place, expected),
+            other => other,
+        };
+        let element = file.element().map_err(here)?;
+        let unpacked;
+        let variable = if element.kind == COMPRESSED {
+            unpacked = unpack(element.data, left).map_err(here)?;
+            left = left.saturating_sub(unpacked.len());
+            let mut inner = Reader {
+                bytes: &unpacked,
+                at: 0,
+                big,
+            };
+            inner.element().map_err(here)?
+        } else {
+            element
+        };
+        // Anything else at this level is MATLAB's own business.
+        if variable.kind == MATRIX {
+            let content = variable.inside(big);
+            content.variable("", 0, &mut found).map_err(here)?;
+        }
+    }
+    Ok(found)
+}
+
+/// Unpacks a compressed variable to at most so many bytes.
+fn unpack(data: &[u8], most: usize) -> Result<Vec<u8>, Problem> {
+    decompress_to_vec_zlib_with_limit(data, most).map_err(|e| match e.status {
+        TINFLStatus::HasMoreOutput => Problem::MatTooLarge {
+            mebibytes: LARGEST >> 20,
+        },
+        _ => damaged(0, "a zlib stream"),
+    })
+}
+
+fn damaged(byte: usize, expected: &'static str) -> Problem {
+    Problem::MatDamaged { byte, expected }
+}
+
+// Types of data elements.
+const MATRIX: u32 = 14;
+const COMPRESSED: u32 = 15;
+
+// Classes of arrays.
+const STRUCT: u32 = 2;
+const NUMERIC: std::ops::RangeInclusive<u32> = 6..=15;
+/// Flag of an array with an imaginary part.
+const COMPLEX: u32 = 0x0800;
+
+/// A tagged piece of the file.
+struct Element<'a> {
+    kind: u32,
+    data: &'a [u8],
+}
+
+impl<'a> Element<'a> {
+    fn inside(&self, big: bool) -> Reader<'a> {
+        Reader {
+            bytes: self.data,
+            at: 0,
+            big,
+        }
+    }
+
+    /// Its numbers; `None` where they are none.
+    fn numbers(&self, big: bool) -> Option<Vec<f64>> {
+        macro_rules! all {
+            ($number:ty, $convert:expr) => {{
+                let (whole, rest) = self.data.as_chunks::<{ size_of::<$number>() }>();
+                let one = |b: &[u8; size_of::<$number>()]| {
+                    $convert(if big {
+                        <$number>::from_be_bytes(*b)
+                    } else {
+                        <$number>::from_le_bytes(*b)
+                    })
+                };
+                rest.is_empty().then(|| whole.iter().map(one).collect())
+            }};
+        }
+        match self.kind {
+            1 => all!(i8, f64::from),
+            2 => all!(u8, f64::from),
+            3 => all!(i16, f64::from),
+            4 => all!(u16, f64::from),
+            5 => all!(i32, f64::from),
+            6 => all!(u32, f64::from),
+            7 => all!(f32, f64::from),
+            9 => all!(f64, f64::from),
+            12 => all!(i64, |n| n as f64),
+            13 => all!(u64, |n| n as f64),
+            _ => None,
+        }
+    }
+}
+
+/// Walks over the elements of a file or of one of its arrays.
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    big: bool,
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, count: usize, expected: &'static str) -> Result<&'a [u8], Problem> {
+        let end = self.at.saturating_add(count);
+        let taken = self
+            .bytes
+            .get(self.at..end)
+            .ok_or_else(|| damaged(self.at, expected))?;
+        self.at = end;
+        Ok(taken)
+    }
+
+    fn word(&mut self, expected: &'static str) -> Result<u32, Problem> {
+        let bytes = self.take(4, expected)?;
+        let bytes = bytes.try_into().unwrap_or_default();
+        Ok(if self.big {
+            u32::from_be_bytes(bytes)
+        } else {
+            u32::from_le_bytes(bytes)
+        })
+    }
+
+    /// The next element, past its padding to 8 bytes. Up to four bytes stand within the tag itself.
+    fn element(&mut self) -> Result<Element<'a>, Problem> {
+        let start = self.at;
+        let first = self.word("a data element")?;
+        let (kind, small) = (first & 0xffff, (first >> 16) as usize);
+        if small > 0 {
+            let field = self.take(4, "a small data element")?;
+            let data = field
+                .get(..small)
+                .ok_or_else(|| damaged(start, "a small data element of at most 4 bytes"))?;
+            return Ok(Element { kind, data });
+        }
+        let size = self.word("the size of a data element")? as usize;
+        let data = self.take(size, "as many bytes as the data element says")?;
+        if kind != COMPRESSED {
+            // The last padding may be missing.
+            self.at = self
+                .at
+                .saturating_add(size.wrapping_neg() % 8)
+                .min(self.bytes.len());
+        }
+        Ok(Element { kind, data })
+    }
+
+    /// The content of an array: flags, size, name, and by its class numbers or fields.
+    fn variable(
+        mut self,
+        path: &str,
+        depth: usize,
+        found: &mut Vec<Series>,
+    ) -> Result<(), Problem> {
+        if self.bytes.is_empty() || depth > DEEPEST {
+            return Ok(());
+        }
+        let big = self.big;
+        let flags = self.element()?.inside(big).word("the flags of an array")?;
+        let class = flags & 0xff;
+        if class != STRUCT && !NUMERIC.contains(&class) {
+            return Ok(());
+        }
+        let sizes = self
+            .element()?
+            .numbers(big)
+            .ok_or_else(|| damaged(self.at, "the size of an array"))?;
+        let sizes: Vec<usize> = sizes.iter().map(|n| *n as usize).collect();
+        let name = self.element()?.data;
+        let name = if path.is_empty() {
+            text(name)
+        } else {
+            path.to_owned()
+        };
+        if class == STRUCT {
+            return self.fields(&name, &sizes, depth, found);
+        }
+        if flags & COMPLEX == 0 {
+            let values = self
+                .element()?
+                .numbers(big)
+                .ok_or_else(|| damaged(self.at, "the numbers of an array"))?;
+            columns(&name, &sizes, values, found);
+        }
+        Ok(())
+    }
+
+    /// The fields of each element of an array of structures.
+    fn fields(
+        mut self,
+        name: &str,
+        sizes: &[usize],
+        depth: usize,
+        found: &mut Vec<Series>,
+    ) -> Result<(), Problem> {
+        let big = self.big;
+        let length = self
+            .element()?
+            .inside(big)
+            .word("the length of a field name")? as usize;
+        let names = self.element()?.data;
+        if length == 0 || names.is_empty() {
+            return Ok(());
+        }
+        let fields: Vec<String> = names.chunks(length).map(text).collect();
+        let count = sizes
+            .iter()
+            .fold(1_usize, |n, size| n.saturating_mul(*size));
+        // Each turn takes bytes of the file, so a count that lies ends in an error, not in a hang.
+        for i in 1..=count {
+            for field in &fields {
+                let element = self.element()?;
+                let path = if count == 1 {
+                    format!("{name}.{field}")
+                } else {
+                    format!("{name}({i}).{field}")
+                };
+                if element.kind == MATRIX {
+                    element.inside(big).variable(&path, depth + 1, found)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Text up to the first zero.
+fn text(bytes: &[u8]) -> String {
+    let end = bytes.iter().position(|b| *b == 0).unwrap_or(bytes.len());
+    String::from_utf8_lossy(bytes.get(..end).unwrap_or_default()).into_owned()
+}
+
+/// A vector is one series; of a matrix each column, or each row where the rows are longer.
+fn columns(name: &str, sizes: &[usize], values: Vec<f64>, found: &mut Vec<Series>) {
+    if values.is_empty()
+        || sizes.iter().try_fold(1_usize, |n, s| n.checked_mul(*s)) != Some(values.len())
+    {
+        return;
+    }
+    let mut long = sizes.iter().filter(|n| **n > 1);
+    match (long.next(), long.next(), sizes) {
+        (_, None, _) => found.push(Series {
+            name: name.to_owned(),
+            values,
+        }),
+        (_, _, &[rows, columns]) if rows >= columns => {
+            let all = values.chunks(rows).enumerate();
+            found.extend(all.map(|(j, column)| Series {
+                name: format!("{name}(:,{})", j + 1),
+                values: column.to_vec(),
+            }));
+        }
+        (_, _, &[rows, _]) => found.extend((0..rows).map(|i| Series {
+            name: format!("{name}({},:)", i + 1),
+            values: values.iter().skip(i).step_by(rows).copied().collect(),
+        })),
+        _ => {}
+    }
+}

@@ -1,0 +1,401 @@
+//! Files of MATLAB and columns with a mapping go in; SI units, or one line that says what to correct,
+//! come out. The `.mat` files in `tests/data` were written by SciPy, and hold, for k = 0 to 59, the time
+//! k/2 ms, a current of 2 or -2 A that changes every 5 samples, k^2 encoder counts and 1.5 k rpm.
+
+use std::f64::consts::TAU;
+
+use hysteron_core::effect::Motion;
+use hysteron_core::measurement::{
+    ImportOptions, Kind, Mapping, Measurement, Quantity, TorqueConstant, import,
+};
+use proptest::prelude::*;
+
+const FLAT: &[u8] = include_bytes!("data/flat-v7.mat");
+const NESTED: &[u8] = include_bytes!("data/nested-v7.mat");
+const RIG: &str = "t=time [ms],u=current [A],x1=enc [counts:4096],v1=speed [rpm]";
+
+fn options(mapping: &str, constant: Option<&str>) -> ImportOptions {
+    ImportOptions {
+        kind: None,
+        mapping: if mapping.is_empty() {
+            Mapping::default()
+        } else {
+            mapping.parse().unwrap_or_else(|e| panic!("{e}"))
+        },
+        torque_constant: constant.map(|c| c.parse().unwrap_or_else(|e| panic!("{e}"))),
+    }
+}
+
+#[track_caller]
+fn read(bytes: &[u8], mapping: &str, constant: Option<&str>) -> Measurement {
+    import("rig.mat", bytes, &options(mapping, constant)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[track_caller]
+fn refused(bytes: &[u8], mapping: &str, constant: Option<&str>, parts: &[&str]) {
+    let line = import("rig.mat", bytes, &options(mapping, constant))
+        .expect_err("must be refused")
+        .to_string();
+    assert!(
+        line.starts_with("rig.mat") && !line.contains('\n'),
+        "{line}"
+    );
+    for part in parts {
+        assert!(line.contains(part), "expected '{part}' in: {line}");
+    }
+}
+
+/// The values of the rig, by formula.
+#[track_caller]
+fn is_the_rig(m: &Measurement, torque_by_current: f64) {
+    assert_eq!((m.kind, m.len()), (Kind::Drive, 60));
+    let close = |a: f64, b: f64| (a - b).abs() <= 1e-14 * b.abs();
+    let position = m.output(Quantity::Position).unwrap();
+    for k in 0..60_u32 {
+        let i = k as usize;
+        let current = if k % 10 < 5 { 2.0 } else { -2.0 };
+        assert!(close(m.time[i], f64::from(k) * 0.5e-3), "t {k}");
+        assert!(
+            close(m.input.values[i], current * torque_by_current),
+            "u {k}"
+        );
+        assert!(
+            close(position.values[i], f64::from(k * k) * TAU / 4096.0),
+            "x1 {k}"
+        );
+        if let Some(v) = m.output(Quantity::Velocity) {
+            assert!(
+                close(v.values[i], f64::from(k) * 1.5 * TAU / 60.0),
+                "v1 {k}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_compressed_file_is_read_in_si_units() {
+    let m = read(FLAT, RIG, Some("0.05 N m/A"));
+    is_the_rig(&m, 0.05);
+    assert_eq!(
+        (m.motion(), m.input.unit.as_str()),
+        (Motion::Rotational, "N m")
+    );
+    assert!(m.output(Quantity::Velocity).is_some() && m.warnings.is_empty());
+}
+
+#[test]
+fn structures_and_columns_of_matrices_are_addressed_as_in_matlab() {
+    for mapping in [
+        "t=log.time [ms], u=log.signals(1).values [A], x1=log.signals(2).values [counts:4096]",
+        "t=data(:,1) [ms], u=data(:,2) [A], x1=data(:,3) [counts, 4096/rev], v1=data(:,4) [rpm]",
+        "t=wide(1,:) [ms], u=wide(2,:) [A], x1=data(:,3) [counts; 4096/rev]",
+    ] {
+        is_the_rig(&read(NESTED, mapping, Some("50 mN m/A")), 0.05);
+    }
+}
+
+#[test]
+fn a_minus_turns_the_direction() {
+    let mapping = RIG.replace("=current", "=-current");
+    is_the_rig(&read(FLAT, &mapping, Some("0.05 N m/A")), -0.05);
+}
+
+#[test]
+fn a_torque_constant_that_is_not_known_is_one_and_that_is_said() {
+    let m = read(FLAT, RIG, None);
+    is_the_rig(&m, 1.0);
+    assert_eq!(m.warnings.len(), 1);
+    assert!(m.warnings[0].contains("1 N m/A is taken") && m.warnings[0].contains("multiples"));
+    // A linear motor: what moves in metres is pushed by a force.
+    let slide = "t=time [ms],u=current [A],x1=enc [counts, 0.001 mm]";
+    let m = read(FLAT, slide, None);
+    assert_eq!(
+        (m.motion(), m.input.unit.as_str()),
+        (Motion::Translational, "N")
+    );
+    assert!(m.warnings[0].contains("1 N/A is taken"));
+    // A voltage brings the back-EMF, known constant or not.
+    let voltage = RIG.replace("[A]", "[V]");
+    assert_eq!(read(FLAT, &voltage, None).warnings.len(), 2);
+    let known = read(FLAT, &voltage, Some("0.1 N m/V"));
+    assert!(known.warnings.len() == 1 && known.warnings[0].contains("back-EMF"));
+    assert_eq!(known.input.values[0], 0.2);
+}
+
+#[test]
+fn a_process_keeps_its_units() {
+    let m = read(FLAT, "t=time [s],u=current [%],y=speed [degC]", None);
+    assert_eq!((m.kind, m.input.unit.as_str()), (Kind::Process, "%"));
+    assert_eq!(m.output(Quantity::Output).unwrap().values[2], 3.0);
+}
+
+#[test]
+fn a_mapping_serves_text_as_well() {
+    let mut text = String::from("no,zeit,strom [mA],enc,x1 [rad]\n");
+    for k in 0..60 {
+        let current = if k % 10 < 5 { 2000 } else { -2000 };
+        text += &format!("7,{},{current},{},9\n", f64::from(k) * 0.5, k * k);
+    }
+    // The unit in the file holds where the mapping has none; the file's own x1 makes way.
+    let mapping = "t=zeit [ms],u=strom,x1=enc [counts:4096]";
+    let m = read(text.as_bytes(), mapping, Some("0.05 N m/A"));
+    is_the_rig(&m, 0.05);
+    assert!(m.warnings.is_empty());
+    let again = import("back.csv", m.to_csv().as_bytes(), &ImportOptions::default()).unwrap();
+    assert_eq!((again.time, again.input.values), (m.time, m.input.values));
+    refused(
+        text.as_bytes(),
+        "t=zeit [ms],u=power [A]",
+        None,
+        &["line 1", "no column 'power'", "strom"],
+    );
+}
+
+#[test]
+fn what_is_wrong_is_said_with_what_would_be_right() {
+    refused(
+        FLAT,
+        "",
+        None,
+        &["map them", "time, current, enc, speed, Ts"],
+    );
+    refused(
+        FLAT,
+        "t=Time [s],u=current [A]",
+        None,
+        &["no column 'Time'", "time, current"],
+    );
+    refused(
+        FLAT,
+        "t=time,u=current [A],x1=enc [rad]",
+        None,
+        &["column time", "no unit", "time [s]"],
+    );
+    refused(FLAT, "t=time [s],u=current [A]", None, &["no column 'x1'"]);
+    refused(
+        FLAT,
+        "t=time [s],u=current [A],x1=Ts [rad]",
+        None,
+        &["column Ts", "1 values", "60"],
+    );
+    refused(
+        FLAT,
+        "t=time [s],u=current [A],x1=enc [counts]",
+        None,
+        &["resolution"],
+    );
+    refused(
+        FLAT,
+        "t=current [s],u=time [A],x1=enc [rad]",
+        None,
+        &["column current, sample 2", "increase"],
+    );
+    refused(
+        FLAT,
+        &RIG.replace("[A]", "[N m]"),
+        Some("1 N m/A"),
+        &["torque constant", "N m"],
+    );
+    refused(FLAT, RIG, Some("1 N m/V"), &["torque constant", "A"]);
+    // A force constant, but the position turns.
+    refused(FLAT, RIG, Some("1 N/A"), &["mixed"]);
+    refused(
+        b"MATLAB 7.3 MAT-file, Platform: GLNXA64",
+        RIG,
+        None,
+        &["-v7.3", "-v7"],
+    );
+    refused(&FLAT[..200], RIG, None, &["at byte", "damaged"]);
+}
+
+#[test]
+fn a_mapping_or_constant_that_makes_no_sense_is_refused() {
+    let mapping = |text: &str| text.parse::<Mapping>().unwrap_err().to_string();
+    assert!(mapping("x1 enc").contains("'x1 enc' is not a mapping"));
+    assert!(mapping("x1=").contains("not a mapping"));
+    assert!(mapping("x1=enc [rad").contains("not a mapping"));
+    assert!(mapping("what=enc [rad]").contains("'what' is nothing that can be measured"));
+    assert!(mapping("x1=a [rad],x1=b [rad]").contains("'x1' stands in the mapping twice"));
+    assert!(mapping("x1=a [rad],v1=a [rpm]").contains("'a' stands in the mapping twice"));
+    for wrong in [
+        "",
+        "5",
+        "5 N m",
+        "x N m/A",
+        "0 N m/A",
+        "1 rad/s",
+        "1 A/N m",
+        "inf N m/A",
+    ] {
+        let constant = wrong.parse::<TorqueConstant>();
+        assert!(constant.is_err(), "{wrong}: {constant:?}");
+    }
+    assert_eq!("-2 N/A".parse::<TorqueConstant>().unwrap().value(), -2.0);
+    assert_eq!(
+        "0.05 N·m/mA".parse::<TorqueConstant>().unwrap().value(),
+        50.0
+    );
+}
+
+/// A writer of its own, after the format's description: one element, padded to 8 bytes.
+fn element(big: bool, kind: u32, data: &[u8]) -> Vec<u8> {
+    let word = |n: u32| {
+        if big {
+            n.to_be_bytes()
+        } else {
+            n.to_le_bytes()
+        }
+    };
+    let mut bytes = [word(kind), word(data.len() as u32)].concat();
+    bytes.extend(data);
+    bytes.resize(bytes.len().next_multiple_of(8), 0);
+    bytes
+}
+
+/// A file with one array of this class, whose numbers are stored as this type.
+fn file(
+    big: bool,
+    name: &str,
+    class: u32,
+    sizes: [i32; 2],
+    stored: u32,
+    numbers: &[u8],
+) -> Vec<u8> {
+    let word = |n: u32| {
+        if big {
+            n.to_be_bytes()
+        } else {
+            n.to_le_bytes()
+        }
+    };
+    let sizes = sizes.map(|n| word(n as u32)).concat();
+    let array = [
+        element(big, 6, &[word(class), word(0)].concat()),
+        element(big, 5, &sizes),
+        element(big, 1, name.as_bytes()),
+        element(big, stored, numbers),
+    ]
+    .concat();
+    let mut bytes = vec![b' '; 124];
+    bytes.extend(if big { *b"\x01\x00MI" } else { *b"\x00\x01IM" });
+    bytes.extend(element(big, 14, &array));
+    bytes
+}
+
+#[test]
+fn every_type_of_number_and_both_byte_orders_are_read() {
+    macro_rules! check {
+        ($($kind:literal $number:ty),*) => {$(
+            for big in [false, true] {
+                let value = |n: u8| {
+                    let n = n as $number;
+                    if big { n.to_be_bytes().to_vec() } else { n.to_le_bytes().to_vec() }
+                };
+                // Three columns of 30: 0.., 30.., 60...
+                let numbers: Vec<u8> = (0..90).flat_map(value).collect();
+                let bytes = file(big, "d", 6, [30, 3], $kind, &numbers);
+                let m = read(&bytes, "t=d(:,1) [s],u=d(:,2) [N m],x1=-d(:,3) [rad]", None);
+                assert_eq!((m.time[29], m.input.values[0]), (29.0, 30.0), "type {}", $kind);
+                assert_eq!(m.outputs[0].values[29], -89.0);
+            }
+        )*};
+    }
+    check!(1 i8, 2 u8, 3 i16, 4 u16, 5 i32, 6 u32, 7 f32, 9 f64, 12 i64, 13 u64);
+}
+
+#[test]
+fn sizes_that_lie_end_in_one_line() {
+    let numbers: Vec<u8> = (0..90_u8).collect();
+    // Fewer numbers than the sizes say: no such column.
+    for sizes in [[30, 4], [i32::MAX, i32::MAX], [-30, -3], [0, 0]] {
+        let bytes = file(false, "d", 6, sizes, 2, &numbers);
+        refused(
+            &bytes,
+            "t=d(:,1) [s],u=d(:,2) [N m],x1=d(:,3) [rad]",
+            None,
+            &["no column 'd(:,1)'"],
+        );
+    }
+    // An array of 2^62 structures in a hundred bytes.
+    let word = |n: i32| n.to_le_bytes();
+    let array = [
+        element(false, 6, &[word(2), word(0)].concat()),
+        element(false, 5, &[word(i32::MAX), word(i32::MAX)].concat()),
+        element(false, 1, b"s"),
+        element(false, 5, &word(8)),
+        element(false, 1, b"field\0\0\0"),
+    ]
+    .concat();
+    let mut bytes = FLAT[..128].to_vec();
+    bytes.extend(element(false, 14, &array));
+    refused(&bytes, RIG, None, &["at byte", "damaged"]);
+}
+
+#[test]
+fn a_bomb_does_not_fill_the_memory() {
+    // 1 MiB of zeros in 1 kB, 300 times, is more than a file may unpack to.
+    let zeros = element(false, 2, &vec![0; 1 << 20]);
+    let packed = miniz_oxide::deflate::compress_to_vec_zlib(&zeros, 6);
+    let word = |n: u32| n.to_le_bytes();
+    let mut bytes = FLAT[..128].to_vec();
+    for _ in 0..300 {
+        bytes.extend([word(15), word(packed.len() as u32)].concat());
+        bytes.extend(&packed);
+    }
+    assert!(bytes.len() < 1 << 20);
+    refused(&bytes, RIG, None, &["more than 256 MiB"]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn a_damaged_file_is_read_or_refused_in_one_line(
+        nested in any::<bool>(),
+        changes in prop::collection::vec((128_usize..3000, any::<u8>()), 1..6),
+        length in 128_usize..4000,
+    ) {
+        let mut bytes = if nested { NESTED } else { FLAT }.to_vec();
+        for (at, value) in changes {
+            let at = at % bytes.len();
+            bytes[at] = value;
+        }
+        bytes.truncate(length);
+        match import("rig.mat", &bytes, &options(RIG, None)) {
+            Ok(m) => prop_assert!(m.len() >= 20 && m.time.windows(2).all(|w| w[0] < w[1])),
+            Err(e) => prop_assert!(!e.to_string().contains('\n')),
+        }
+    }
+
+    #[test]
+    fn damage_inside_what_was_compressed_is_no_panic(
+        numbers in prop::collection::vec(any::<u8>(), 0..600),
+        class in 0_u32..20,
+        kind in 0_u32..20,
+        sizes in any::<[i32; 2]>(),
+        cut in 128_usize..900,
+    ) {
+        let whole = file(false, "d", class, sizes, kind, &numbers);
+        let packed = miniz_oxide::deflate::compress_to_vec_zlib(&whole[128..cut.min(whole.len())], 6);
+        let mut bytes = whole[..128].to_vec();
+        bytes.extend([15_u32.to_le_bytes(), (packed.len() as u32).to_le_bytes()].concat());
+        bytes.extend(&packed);
+        prop_assert!(import("rig.mat", &bytes, &options(RIG, None)).is_err());
+    }
+
+    #[test]
+    fn any_text_is_a_mapping_or_is_refused(text in "[tuxvy1=,\\[\\]: a-z(-]{0,40}") {
+        if let Err(error) = text.parse::<Mapping>() {
+            prop_assert!(!error.to_string().contains('\n'));
+        }
+        let _ = text.parse::<TorqueConstant>();
+    }
+
+    #[test]
+    fn any_text_with_any_mapping_is_read_or_refused(rows in "[0-9,.;\\n\\-e]{0,400}") {
+        let text = format!("time,current,enc\n{rows}");
+        if let Err(error) = import("rig.csv", text.as_bytes(), &options("t=time [s],u=current [A],x1=enc [rad]", None)) {
+            prop_assert!(!error.to_string().contains('\n'));
+        }
+    }
+}

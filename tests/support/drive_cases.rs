@@ -1,0 +1,588 @@
+//! What is hidden in the drives. Strengths are drawn about values that a rig owner would call clearly
+//! visible: they raise the error of the baseline to a few times the noise, seldom beyond twenty times.
+
+use super::case::{Bench, Case, Truth};
+use super::drive_rig::{DriveRig, Excitation, Friction, Load, Recorded, Stranger, drifting, relay};
+use super::random::Random;
+
+/// With two levels of input, any static map of it is a gain and an offset, and the gain goes into the
+/// inertia: so asymmetry and constant torque are one class.
+const OFFSET: &[&str] = &["gain_asymmetry", "constant_load"];
+/// A lag commutes with a linear drive that starts at rest: whether it acts on the input or on the
+/// outputs cannot be seen.
+const LAG: &[&str] = &["actuator_lag", "sensor_lag"];
+
+const MULTISINE: Excitation = Excitation::Multisine { amplitude: 0.08 };
+const STAIRS: Excitation = Excitation::Staircase { top: 0.3 };
+
+fn coulomb(c: f64) -> Truth {
+    Truth::new("coulomb_friction", &["c"], c)
+}
+fn delay(tau: f64) -> Truth {
+    Truth::new("input_delay", &["tau"], tau)
+}
+fn lag(time: f64) -> Truth {
+    Truth::new("actuator_lag", &["T_a"], time)
+}
+fn asymmetry(a: f64) -> Truth {
+    Truth::new("gain_asymmetry", &["a"], a)
+}
+fn load(torque: f64) -> Truth {
+    Truth::new("constant_load", &["F0"], torque)
+}
+fn cogging(amplitude: f64) -> Truth {
+    Truth::new("cogging", &["A", "a", "F_c", "amplitude"], amplitude)
+}
+fn drag(q: f64) -> Truth {
+    Truth::new("quadratic_drag", &["q", "d_q", "b"], q)
+}
+fn backlash(beta: f64) -> Truth {
+    Truth::new("backlash", &["beta"], beta)
+}
+fn compliance(stiffness: f64) -> Truth {
+    Truth::new("joint_compliance", &["K", "k", "K_j"], stiffness)
+}
+fn saturation(limit: f64) -> Truth {
+    Truth::new("saturation", &["u_max", "limit", "U"], limit)
+}
+fn dead_zone(width: f64) -> Truth {
+    Truth::new("dead_zone", &["w", "u_0", "delta"], width)
+}
+
+/// A delay that the rig's steps of 10 microseconds meet exactly.
+fn whole_steps(delay: f64) -> f64 {
+    (delay / 1e-5).round() * 1e-5
+}
+
+/// A load like the motor behind a gap with the contact of hardened teeth.
+fn play(half_gap: f64, coulomb: f64) -> Load {
+    Load {
+        half_gap,
+        stiffness: 800.0,
+        damping: 0.15,
+        inertia: 8.8e-4,
+        viscous: 2e-3,
+        coulomb,
+    }
+}
+
+/// A load behind a shaft.
+fn shaft(stiffness: f64, damping: f64) -> Load {
+    Load {
+        half_gap: 0.0,
+        stiffness,
+        damping,
+        inertia: 8.8e-4,
+        viscous: 2e-3,
+        coulomb: 0.0,
+    }
+}
+
+/// A drive with its own inertia and viscous friction.
+pub fn bare(random: &mut Random, excitation: Excitation) -> DriveRig {
+    DriveRig {
+        seed: random.seed(),
+        excitation,
+        inertia: 8.8e-4 * random.between(0.9, 1.1),
+        viscous: 2e-3 * random.between(0.8, 1.2),
+        ..DriveRig::default()
+    }
+}
+
+/// The same with the first asymmetry of the relay that makes the motor cross the gap, as one would try
+/// them at the bench: a sampled relay locks to its clock at some inertias, and then nothing drifts.
+fn crossing(rig: DriveRig, half_gap: f64, flip: f64) -> DriveRig {
+    let tries = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4].map(|asymmetry| DriveRig {
+        excitation: Excitation::Relay {
+            gain: 0.5,
+            asymmetry,
+            hysteresis: 0.5,
+            flip: Some(flip),
+        },
+        ..rig
+    });
+    let crosses = |rig: &DriveRig| {
+        let shorter = DriveRig {
+            samples: 8000,
+            ..*rig
+        };
+        let record = shorter.measure();
+        let x = &record.outputs[0].values;
+        let (low, high) = x
+            .iter()
+            .fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(*x), h.max(*x)));
+        high - low > 3.0 * half_gap
+    };
+    tries.into_iter().find(crosses).unwrap_or(rig)
+}
+
+/// Excitations in which a clean drive must stay clean.
+pub fn excitations() -> [Excitation; 4] {
+    [relay(0.1), relay(0.0), MULTISINE, STAIRS]
+}
+
+/// All drive cases of one seed.
+pub fn drive_cases(seed: u64) -> Vec<Case> {
+    let mut random = Random::new(seed.wrapping_mul(1000));
+    let mut cases = clean(&mut random);
+    cases.extend(friction(&mut random));
+    cases.extend(input_path(&mut random));
+    cases.extend(mechanics(&mut random));
+    cases.extend(pairs(&mut random));
+    cases.extend(strangers(&mut random));
+    cases
+}
+
+fn clean(r: &mut Random) -> Vec<Case> {
+    let names = [
+        "clean, relay",
+        "clean, symmetric relay",
+        "clean, multisine",
+        "clean, staircase",
+    ];
+    names
+        .into_iter()
+        .zip(excitations())
+        .map(|(name, excitation)| Case::drive(name, vec![], bare(r, excitation)))
+        .collect()
+}
+
+fn friction(r: &mut Random) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (name, excitation, recorded) in [
+        ("Coulomb, relay", relay(0.1), Recorded::Both),
+        ("Coulomb, multisine", MULTISINE, Recorded::Both),
+        (
+            "Coulomb, staircase, position only",
+            STAIRS,
+            Recorded::PositionOnly,
+        ),
+        (
+            "Coulomb, relay, velocity only",
+            relay(0.1),
+            Recorded::VelocityOnly,
+        ),
+    ] {
+        let c = r.between(0.02, 0.05);
+        let friction = Friction::dry(c);
+        let rig = bare(r, excitation);
+        cases.push(Case::drive(
+            name,
+            vec![coulomb(c)],
+            DriveRig {
+                recorded,
+                friction,
+                ..rig
+            },
+        ));
+    }
+    for (name, ratio) in [("Stribeck, multisine", 2.0), ("Stribeck, strong", 2.6)] {
+        let c = r.between(0.02, 0.035);
+        let friction = Friction {
+            coulomb: c,
+            standing: ratio * c,
+            stribeck_velocity: r.between(0.6, 1.5),
+            displacement: 2e-5,
+        };
+        let truth = Truth::new("stribeck_friction", &["c"], c);
+        let rig = bare(r, MULTISINE);
+        cases.push(Case::drive(name, vec![truth], DriveRig { friction, ..rig }));
+    }
+    for (name, excitation) in [
+        ("presliding, multisine", MULTISINE),
+        ("presliding, staircase", STAIRS),
+    ] {
+        // The bristle yields over milliradians, as in a preloaded bearing.
+        let c = r.between(0.04, 0.06);
+        let friction = Friction {
+            displacement: r.between(2e-3, 5e-3),
+            ..Friction::dry(c)
+        };
+        let truth = Truth::new("presliding_friction", &["c", "F_c"], c);
+        let rig = bare(r, excitation);
+        cases.push(Case::drive(name, vec![truth], DriveRig { friction, ..rig }));
+    }
+    for (name, excitation) in [
+        ("quadratic drag, multisine", MULTISINE),
+        ("quadratic drag, staircase", STAIRS),
+    ] {
+        let q = r.between(4e-5, 8e-5);
+        let rig = bare(r, excitation);
+        cases.push(Case::drive(
+            name,
+            vec![drag(q)],
+            DriveRig {
+                quadratic_drag: q,
+                ..rig
+            },
+        ));
+    }
+    cases
+}
+
+fn input_path(r: &mut Random) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (name, excitation) in [
+        ("delay, relay", relay(0.1)),
+        ("delay, multisine", MULTISINE),
+    ] {
+        let tau = whole_steps(r.between(0.4e-3, 1.1e-3));
+        let rig = bare(r, excitation);
+        cases.push(Case::drive(
+            name,
+            vec![delay(tau)],
+            DriveRig { delay: tau, ..rig },
+        ));
+    }
+    for (name, excitation) in [("lag, relay", relay(0.1)), ("lag, staircase", STAIRS)] {
+        let time = r.between(0.5e-3, 1.2e-3);
+        let rig = bare(r, excitation);
+        let rig = DriveRig {
+            actuator_lag: time,
+            ..rig
+        };
+        cases.push(Case::drive(name, vec![lag(time).same(LAG)], rig));
+    }
+    let a = r.between(0.03, 0.08);
+    let rig = DriveRig {
+        gain_asymmetry: a,
+        ..bare(r, STAIRS)
+    };
+    cases.push(Case::drive("asymmetry, staircase", vec![asymmetry(a)], rig));
+    let rig = DriveRig {
+        gain_asymmetry: a,
+        ..bare(r, relay(0.0))
+    };
+    cases.push(Case::drive(
+        "asymmetry, symmetric relay",
+        vec![asymmetry(a).same(OFFSET)],
+        rig,
+    ));
+    let torque = r.sign() * r.between(0.01, 0.03);
+    let rig = DriveRig {
+        constant_load: torque,
+        ..bare(r, STAIRS)
+    };
+    cases.push(Case::drive("load, staircase", vec![load(torque)], rig));
+    let rig = DriveRig {
+        constant_load: torque,
+        ..bare(r, MULTISINE)
+    };
+    cases.push(Case::drive("load, multisine", vec![load(torque)], rig));
+    let rig = DriveRig {
+        constant_load: torque,
+        ..bare(r, relay(0.1))
+    };
+    cases.push(Case::drive(
+        "load, relay",
+        vec![load(torque).same(OFFSET)],
+        rig,
+    ));
+    let limit = r.between(0.22, 0.27);
+    let rig = DriveRig {
+        saturation: limit,
+        ..bare(r, STAIRS)
+    };
+    cases.push(Case::drive(
+        "saturation, staircase",
+        vec![saturation(limit)],
+        rig,
+    ));
+    let limit = r.between(0.3, 0.4);
+    let rig = DriveRig {
+        saturation: limit,
+        ..bare(r, MULTISINE)
+    };
+    cases.push(Case::drive(
+        "saturation, multisine",
+        vec![saturation(limit)],
+        rig,
+    ));
+    for (name, excitation) in [
+        ("dead zone, multisine", MULTISINE),
+        ("dead zone, staircase", STAIRS),
+    ] {
+        let width = r.between(0.015, 0.03);
+        let rig = DriveRig {
+            dead_zone: width,
+            ..bare(r, excitation)
+        };
+        cases.push(Case::drive(name, vec![dead_zone(width)], rig));
+    }
+    let time = r.between(0.5e-3, 1.1e-3);
+    let truth = Truth::new("sensor_lag", &["T_s", "T_m"], time);
+    let rig = DriveRig {
+        sensor_lag: time,
+        ..bare(r, MULTISINE)
+    };
+    cases.push(Case::drive(
+        "sensor lag, multisine",
+        vec![truth.clone().same(LAG)],
+        rig,
+    ));
+    // Dry friction is not linear: behind it the two lags differ.
+    let c = r.between(0.03, 0.05);
+    let friction = Friction::dry(c);
+    let rig = DriveRig {
+        sensor_lag: time,
+        friction,
+        ..bare(r, MULTISINE)
+    };
+    cases.push(Case::drive(
+        "sensor lag and Coulomb",
+        vec![truth.alike(LAG), coulomb(c)],
+        rig,
+    ));
+    cases
+}
+
+fn mechanics(r: &mut Random) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (name, excitation) in [
+        ("cogging, multisine", MULTISINE),
+        ("cogging, staircase", STAIRS),
+    ] {
+        let amplitude = r.between(0.02, 0.05);
+        let periods = r.between(3.0, 12.0).round();
+        let force = (amplitude, periods, r.between(-3.0, 3.0));
+        let rig = DriveRig {
+            cogging: force,
+            ..bare(r, excitation)
+        };
+        cases.push(Case::drive(name, vec![cogging(amplitude)], rig));
+    }
+    for (name, flip, friction) in [
+        ("backlash, drifting relay", 1.5, 0.01),
+        ("backlash, dry load", 2.0, 0.03),
+    ] {
+        let beta = r.between(0.002, 0.004);
+        let rig = DriveRig {
+            load: Some(play(beta, friction)),
+            samples: 25_000,
+            ..bare(r, drifting(flip))
+        };
+        let rig = crossing(rig, beta, flip);
+        cases.push(Case::drive(name, vec![backlash(beta)], rig));
+    }
+    for (name, damping) in [("compliance, multisine", 0.0), ("compliance, damped", 2e-3)] {
+        let stiffness = r.between(10.0, 30.0);
+        let rig = DriveRig {
+            load: Some(shaft(stiffness, damping)),
+            ..bare(r, MULTISINE)
+        };
+        cases.push(Case::drive(name, vec![compliance(stiffness)], rig));
+    }
+    cases
+}
+
+fn pairs(r: &mut Random) -> Vec<Case> {
+    let c = r.between(0.03, 0.05);
+    let tau = whole_steps(r.between(0.4e-3, 0.9e-3));
+    let time = r.between(0.5e-3, 1e-3);
+    let friction = Friction::dry(c);
+    let mut make = |name, truths, excitation, change: &dyn Fn(DriveRig) -> DriveRig| {
+        Case::drive(name, truths, change(bare(r, excitation)))
+    };
+    vec![
+        make(
+            "Coulomb and delay",
+            vec![coulomb(c), delay(tau)],
+            relay(0.1),
+            &|rig| DriveRig {
+                friction,
+                delay: tau,
+                ..rig
+            },
+        ),
+        make(
+            "Coulomb and lag",
+            vec![coulomb(c), lag(time).alike(LAG)],
+            relay(0.1),
+            &|rig| DriveRig {
+                friction,
+                actuator_lag: time,
+                ..rig
+            },
+        ),
+        make(
+            "Coulomb and load",
+            vec![coulomb(c), load(0.02)],
+            STAIRS,
+            &|rig| DriveRig {
+                friction,
+                constant_load: 0.02,
+                ..rig
+            },
+        ),
+        make(
+            "Coulomb and asymmetry",
+            vec![coulomb(c), asymmetry(0.06)],
+            STAIRS,
+            &|rig| DriveRig {
+                friction,
+                gain_asymmetry: 0.06,
+                ..rig
+            },
+        ),
+        make(
+            "delay and load, symmetric relay",
+            vec![delay(tau), load(0.02).alike(OFFSET)],
+            relay(0.0),
+            &|rig| DriveRig {
+                delay: tau,
+                constant_load: 0.02,
+                ..rig
+            },
+        ),
+        make(
+            "cogging and Coulomb",
+            vec![cogging(0.04), coulomb(c)],
+            MULTISINE,
+            &|rig| DriveRig {
+                cogging: (0.04, 6.0, 0.4),
+                friction,
+                ..rig
+            },
+        ),
+        make(
+            "cogging and load",
+            vec![cogging(0.03), load(0.02)],
+            MULTISINE,
+            &|rig| DriveRig {
+                cogging: (0.03, 8.0, 1.0),
+                constant_load: 0.02,
+                ..rig
+            },
+        ),
+        make(
+            "drag and Coulomb",
+            vec![drag(6e-5), coulomb(c)],
+            MULTISINE,
+            &|rig| DriveRig {
+                quadratic_drag: 6e-5,
+                friction,
+                ..rig
+            },
+        ),
+        make(
+            "drag and asymmetry",
+            vec![drag(6e-5), asymmetry(0.05)],
+            STAIRS,
+            &|rig| DriveRig {
+                quadratic_drag: 6e-5,
+                gain_asymmetry: 0.05,
+                ..rig
+            },
+        ),
+        make(
+            "compliance and delay",
+            vec![compliance(18.0), delay(tau)],
+            MULTISINE,
+            &|rig| DriveRig {
+                load: Some(shaft(18.0, 1e-3)),
+                delay: tau,
+                ..rig
+            },
+        ),
+        make(
+            "saturation and Coulomb",
+            vec![saturation(0.32), coulomb(c)],
+            MULTISINE,
+            &|rig| DriveRig {
+                saturation: 0.32,
+                friction,
+                ..rig
+            },
+        ),
+        make(
+            "dead zone and delay",
+            vec![dead_zone(0.025), delay(tau)],
+            MULTISINE,
+            &|rig| DriveRig {
+                dead_zone: 0.025,
+                delay: tau,
+                ..rig
+            },
+        ),
+        make(
+            "backlash and Coulomb",
+            vec![backlash(0.003), coulomb(c)],
+            drifting(1.5),
+            &|rig| {
+                let load = Some(play(0.003, 0.01));
+                let rig = DriveRig {
+                    load,
+                    friction,
+                    samples: 25_000,
+                    ..rig
+                };
+                crossing(rig, 0.003, 1.5)
+            },
+        ),
+    ]
+}
+
+fn strangers(r: &mut Random) -> Vec<Case> {
+    let strange = [
+        (
+            "unknown: one pulse",
+            STAIRS,
+            Stranger::Pulse {
+                torque: 0.05,
+                from: 0.9,
+                length: 0.08,
+            },
+        ),
+        (
+            "unknown: gain falls with speed",
+            MULTISINE,
+            Stranger::GainFallsWithSpeed { v0: 60.0 },
+        ),
+        (
+            "unknown: hysteresis of the torque",
+            MULTISINE,
+            Stranger::Hysteresis {
+                share: 0.3,
+                width: 0.08,
+            },
+        ),
+        (
+            "unknown: bump at one speed",
+            MULTISINE,
+            Stranger::SpeedBump {
+                torque: 0.05,
+                centre: 8.0,
+                width: 1.5,
+            },
+        ),
+        (
+            "unknown: spring",
+            STAIRS,
+            Stranger::Spring { stiffness: 0.05 },
+        ),
+        (
+            "unknown: warming",
+            STAIRS,
+            Stranger::Warming { factor: 0.5 },
+        ),
+        (
+            "unknown: hard spot",
+            STAIRS,
+            Stranger::HardSpot {
+                torque: 0.06,
+                at: 0.5,
+                width: 0.1,
+            },
+        ),
+    ];
+    strange
+        .into_iter()
+        .map(|(name, excitation, stranger)| {
+            let rig = DriveRig {
+                stranger: Some(stranger),
+                ..bare(r, excitation)
+            };
+            Case::unknown(name, Bench::Drive(rig))
+        })
+        .collect()
+}

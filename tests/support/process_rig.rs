@@ -1,0 +1,251 @@
+//! A self-regulating process with everything that a plant adds to a first-order lag.
+//!
+//! Runge-Kutta steps of 5 ms on a chain of lags with a transport delay line; the controller is sampled,
+//! the sensor is noisy.
+
+use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
+
+use super::random::Random;
+
+/// Sampling time of the controller and the record, s.
+pub const SAMPLING: f64 = 0.2;
+const SUBSTEPS: usize = 40;
+/// Standard deviation of the noise of y.
+const NOISE: f64 = 0.01;
+
+/// What drives the process.
+#[derive(Clone, Copy, Debug)]
+pub enum Excitation {
+    /// Relay of this gain on the measured output.
+    Relay { gain: f64, hysteresis: f64 },
+    /// Five levels up to this size, held 24 s each, in an irregular order.
+    Staircase { top: f64 },
+    /// Two levels, held for random multiples of 3 s.
+    Binary { level: f64 },
+}
+
+/// Physics that no library of the project knows.
+#[derive(Clone, Copy, Debug)]
+pub enum Stranger {
+    /// The gain changes by this factor in the middle of the record.
+    GainSteps { factor: f64 },
+    /// A disturbance of the input that swings: amplitude and period in s.
+    Swing { amplitude: f64, period: f64 },
+    /// The valve sticks: play of this width in the input.
+    StickyValve { width: f64 },
+    /// The output first goes the wrong way (right half-plane zero, time constant in s).
+    WrongWay { time: f64 },
+    /// The time constant depends on the direction: this factor when falling.
+    SlowFall { factor: f64 },
+}
+
+/// One experiment and everything that is hidden in it.
+#[derive(Clone, Copy, Debug)]
+pub struct ProcessRig {
+    pub seed: u64,
+    pub excitation: Excitation,
+    pub samples: usize,
+    /// Output unit per input unit; s.
+    pub gain: f64,
+    pub time_constant: f64,
+    pub second_lag: f64,
+    pub third_lag: f64,
+    pub dead_time: f64,
+    pub gain_asymmetry: f64,
+    /// Added to the input of the process; and its growth per s.
+    pub constant_load: f64,
+    pub load_ramp: f64,
+    /// The largest input that the valve passes.
+    pub saturation: f64,
+    /// The output is `y + curvature y^2`, 1/output unit.
+    pub curvature: f64,
+    pub sensor_lag: f64,
+    pub stranger: Option<Stranger>,
+}
+
+impl Default for ProcessRig {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            excitation: Excitation::Relay {
+                gain: 1.0,
+                hysteresis: 0.1,
+            },
+            samples: 2000,
+            gain: 2.0,
+            time_constant: 30.0,
+            second_lag: 0.0,
+            third_lag: 0.0,
+            dead_time: 0.0,
+            gain_asymmetry: 0.0,
+            constant_load: 0.0,
+            load_ramp: 0.0,
+            saturation: f64::INFINITY,
+            curvature: 0.0,
+            sensor_lag: 0.0,
+            stranger: None,
+        }
+    }
+}
+
+/// Process, second lag, third lag, sensor.
+type State = [f64; 4];
+
+impl ProcessRig {
+    /// Runs the experiment.
+    pub fn measure(&self) -> Measurement {
+        let mut random = Random::new(self.seed);
+        let mut controller = Controller {
+            high: false,
+            level: 1.0,
+            until: 0.0,
+        };
+        let h = SAMPLING / SUBSTEPS as f64;
+        let late = (self.dead_time / h).round() as usize;
+        let mut s: State = [0.0; 4];
+        let mut acting: Vec<f64> = Vec::with_capacity(self.samples);
+        let mut valve = 0.0;
+        let (mut time, mut input, mut output) = (vec![], vec![], vec![]);
+        for i in 0..self.samples {
+            let t = i as f64 * SAMPLING;
+            let measured = self.seen(s) + NOISE * random.normal();
+            let u = controller.command(self.excitation, t, measured, &mut random);
+            time.push(t);
+            input.push(u);
+            output.push(measured);
+            acting.push(self.passed(u, &mut valve));
+            for j in 0..SUBSTEPS {
+                let now = i * SUBSTEPS + j;
+                let u = now.checked_sub(late).map_or(0.0, |n| acting[n / SUBSTEPS]);
+                s = self.step(s, u, t + j as f64 * h, h);
+            }
+        }
+        self.record(time, input, output)
+    }
+
+    /// What the valve makes of a command.
+    fn passed(&self, u: f64, valve: &mut f64) -> f64 {
+        let cut = u.clamp(-self.saturation, self.saturation);
+        let sign = if cut > 0.0 { 1.0 } else { -1.0 };
+        let out = (1.0 + self.gain_asymmetry * sign) * cut;
+        if let Some(Stranger::StickyValve { width }) = self.stranger {
+            *valve = valve.clamp(out - width, out + width);
+            return *valve;
+        }
+        out
+    }
+
+    fn seen(&self, s: State) -> f64 {
+        if self.sensor_lag > 0.0 {
+            s[3]
+        } else {
+            self.output(s, s[0])
+        }
+    }
+
+    /// Output before the sensor; `y` is that of the first lag.
+    fn output(&self, s: State, y: f64) -> f64 {
+        let last = if self.third_lag > 0.0 {
+            s[2]
+        } else if self.second_lag > 0.0 {
+            s[1]
+        } else {
+            y
+        };
+        last + self.curvature * last * last
+    }
+
+    fn step(&self, s: State, u: f64, t: f64, h: f64) -> State {
+        let ahead = |k: State, h: f64| std::array::from_fn(|i| s[i] + h * k[i]);
+        let k1 = self.rates(s, u, t);
+        let k2 = self.rates(ahead(k1, h / 2.0), u, t + h / 2.0);
+        let k3 = self.rates(ahead(k2, h / 2.0), u, t + h / 2.0);
+        let k4 = self.rates(ahead(k3, h), u, t + h);
+        std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
+    }
+
+    fn rates(&self, s: State, u: f64, t: f64) -> State {
+        let mut push = u + self.constant_load + self.load_ramp * t;
+        let mut gain = self.gain;
+        match self.stranger {
+            Some(Stranger::Swing { amplitude, period }) => {
+                push += amplitude * (std::f64::consts::TAU * t / period).sin();
+            }
+            Some(Stranger::GainSteps { factor }) if t > 0.5 * self.samples as f64 * SAMPLING => {
+                gain *= factor;
+            }
+            _ => {}
+        }
+        let mut rate = (gain * push - s[0]) / self.time_constant;
+        if let Some(Stranger::SlowFall { factor }) = self.stranger
+            && rate < 0.0
+        {
+            rate /= factor;
+        }
+        // A zero in the right half-plane: the next lag sees y - T_z dy/dt.
+        let shown = match self.stranger {
+            Some(Stranger::WrongWay { time }) => s[0] - time * rate,
+            _ => s[0],
+        };
+        let lag = |from: f64, to: f64, time: f64| if time > 0.0 { (from - to) / time } else { 0.0 };
+        let second = lag(shown, s[1], self.second_lag);
+        let third = lag(s[1], s[2], self.third_lag);
+        [
+            rate,
+            second,
+            third,
+            lag(self.output(s, s[0]), s[3], self.sensor_lag),
+        ]
+    }
+
+    fn record(&self, time: Vec<f64>, input: Vec<f64>, output: Vec<f64>) -> Measurement {
+        let channel = |quantity, name: &str, values| Channel {
+            quantity,
+            name: name.to_owned(),
+            unit: "1".to_owned(),
+            values,
+        };
+        Measurement {
+            name: format!("process rig {}", self.seed),
+            kind: Kind::Process,
+            time,
+            input: channel(Quantity::Input, "u", input),
+            outputs: vec![channel(Quantity::Output, "y", output)],
+            reference: vec![],
+            warnings: vec![],
+        }
+    }
+}
+
+/// The sampled controller.
+struct Controller {
+    high: bool,
+    level: f64,
+    until: f64,
+}
+
+impl Controller {
+    fn command(&mut self, excitation: Excitation, t: f64, y: f64, random: &mut Random) -> f64 {
+        match excitation {
+            Excitation::Relay { gain, hysteresis } => {
+                if y > hysteresis {
+                    self.high = true;
+                } else if y < -hysteresis {
+                    self.high = false;
+                }
+                if self.high { -gain } else { gain }
+            }
+            Excitation::Staircase { top } => {
+                const SHARES: [f64; 8] = [0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0];
+                top * SHARES[(t / 24.0) as usize % SHARES.len()]
+            }
+            Excitation::Binary { level } => {
+                if t >= self.until {
+                    self.level = level * random.sign();
+                    self.until = t + 3.0 * (1.0 + (5.0 * random.uniform()).floor());
+                }
+                self.level
+            }
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Seeded random numbers of the rigs.
+
+/// Uniform and normal numbers (xorshift64*, Box and Muller).
+pub struct Random(u64);
+
+impl Random {
+    /// A generator; neighbouring seeds give unrelated numbers.
+    pub fn new(seed: u64) -> Self {
+        // One round of splitmix64 spreads small seeds over all bits.
+        let mut z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        Self((z ^ (z >> 31)) | 1)
+    }
+
+    /// Uniform in 0 to 1.
+    pub fn uniform(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Uniform in `low` to `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// A seed for another generator.
+    pub fn seed(&mut self) -> u64 {
+        (self.uniform() * (1_u64 << 53) as f64) as u64
+    }
+
+    /// Plus or minus one.
+    pub fn sign(&mut self) -> f64 {
+        if self.uniform() < 0.5 { -1.0 } else { 1.0 }
+    }
+
+    /// Standard normal.
+    pub fn normal(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+}
