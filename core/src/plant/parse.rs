@@ -45,7 +45,10 @@ pub enum ParseError {
 pub fn parse(text: &str) -> Result<TransferFunction, ParseError> {
     let all: Vec<char> = text.chars().take(MAX_TEXT + 1).collect();
     if all.len() > MAX_TEXT {
-        return fail(MAX_TEXT, format!("the text is too long: at most {MAX_TEXT} characters"));
+        return fail(
+            MAX_TEXT,
+            format!("the text is too long: at most {MAX_TEXT} characters"),
+        );
     }
     let at = all.iter().position(|c| *c == '=').map_or(0, |i| i + 1);
     let mut parser = Parser {
@@ -145,13 +148,20 @@ impl Value {
         Self {
             numerator,
             denominator,
-            delay: if self.numerator.is_empty() { other.delay } else { self.delay },
+            delay: if self.numerator.is_empty() {
+                other.delay
+            } else {
+                self.delay
+            },
         }
     }
 
     /// The highest order, for bounds on what is still computed.
     fn degree(&self) -> usize {
-        self.numerator.len().max(self.denominator.len()).saturating_sub(1)
+        self.numerator
+            .len()
+            .max(self.denominator.len())
+            .saturating_sub(1)
     }
 
     fn plant(mut self) -> Result<TransferFunction, ParseError> {
@@ -238,9 +248,17 @@ impl Parser<'_> {
 
     fn bounded(&self, at: usize, value: Value) -> Result<Value, ParseError> {
         if value.degree() > MAX_DEGREE {
-            return fail(at, format!("the order becomes too high: at most {MAX_ORDER}"));
+            return fail(
+                at,
+                format!("the order becomes too high: at most {MAX_ORDER}"),
+            );
         }
-        if value.numerator.iter().chain(&value.denominator).any(|c| !c.is_finite()) {
+        if value
+            .numerator
+            .iter()
+            .chain(&value.denominator)
+            .any(|c| !c.is_finite())
+        {
             return fail(at, "a coefficient becomes too large: choose other units");
         }
         Ok(value)
@@ -318,7 +336,9 @@ impl Parser<'_> {
             .collect();
         let exponent = digits.parse::<usize>().ok().filter(|e| *e <= MAX_DEGREE);
         let Some(exponent) = exponent else {
-            return self.error(format!("the exponent must be a whole number up to {MAX_DEGREE}"));
+            return self.error(format!(
+                "the exponent must be a whole number up to {MAX_DEGREE}"
+            ));
         };
         self.at += digits.len();
         if self.text.get(self.at).is_some_and(|c| c == &'.') {
@@ -330,7 +350,11 @@ impl Parser<'_> {
         if negative && base.numerator.is_empty() {
             return fail(at, "division by zero");
         }
-        let base = if negative { base.inverse() } else { base.clone() };
+        let base = if negative {
+            base.inverse()
+        } else {
+            base.clone()
+        };
         let mut value = Value::number(1.0);
         for _ in 0..exponent {
             value = self.bounded(at, value.times(&base))?;
@@ -346,7 +370,9 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() => self.name(),
-            Some(c) => self.error(format!("'{c}' is not understood: expected a number, s or (")),
+            Some(c) => self.error(format!(
+                "'{c}' is not understood: expected a number, s or ("
+            )),
             None => self.error("the text ends too early: expected a number, s or ("),
         }
     }
@@ -356,14 +382,21 @@ impl Parser<'_> {
         let open = self.at.saturating_sub(1);
         self.depth += 1;
         if self.depth > MAX_DEPTH {
-            return fail(open, format!("too many brackets inside each other: at most {MAX_DEPTH}"));
+            return fail(
+                open,
+                format!("too many brackets inside each other: at most {MAX_DEPTH}"),
+            );
         }
         let value = self.sum()?;
         self.depth -= 1;
         if !self.eat(&[close]) {
             return match self.peek() {
-                Some(',') => self.error("',' is not understood: write decimals with a point, such as 0.5"),
-                Some(c) => self.error(format!("'{c}' is not understood: expected an operator or '{close}'")),
+                Some(',') => {
+                    self.error("',' is not understood: write decimals with a point, such as 0.5")
+                }
+                Some(c) => self.error(format!(
+                    "'{c}' is not understood: expected an operator or '{close}'"
+                )),
                 None => fail(open, format!("this bracket is never closed: add '{close}'")),
             };
         }
@@ -408,7 +441,9 @@ impl Parser<'_> {
         let start = self.at;
         let word = self.word();
         // `ss` or `se^{-s}` is a product without a sign.
-        if word.starts_with(['s', 'S']) && (word.len() == 1 || word.starts_with("ss") || word.starts_with("se")) {
+        if word.starts_with(['s', 'S'])
+            && (word.len() == 1 || word.starts_with("ss") || word.starts_with("se"))
+        {
             self.at += 1;
             return Ok(Value {
                 numerator: vec![1.0, 0.0],
@@ -487,6 +522,9 @@ fn delay_of(at: usize, exponent: &Value) -> Result<Value, ParseError> {
                 ..Value::number(1.0)
             })
         }
-        _ => fail(at, "the exponent must be a number times -s, such as e^{-0.5s}"),
+        _ => fail(
+            at,
+            "the exponent must be a number times -s, such as e^{-0.5s}",
+        ),
     }
 }

@@ -55,7 +55,9 @@ fn simultaneous(p: &[f64]) -> Vec<Complex<f64>> {
     // Circle of the geometric mean about the centre of the roots, not symmetric to the real axis.
     let centre = -p[1] / (p[0] * n as f64);
     let radius = evaluate(p, Complex::new(centre, 0.0)).0.norm() / p[0].abs();
-    let radius = radius.powf(1.0 / n as f64).max(1e-3 * (p[n] / p[0]).abs().powf(1.0 / n as f64));
+    let radius = radius
+        .powf(1.0 / n as f64)
+        .max(1e-3 * (p[n] / p[0]).abs().powf(1.0 / n as f64));
     let mut z: Vec<Complex<f64>> = (0..n)
         .map(|i| {
             let angle = std::f64::consts::TAU * i as f64 / n as f64 + 0.7;
@@ -96,7 +98,8 @@ fn newton_step(p: &[f64], reversed: &[f64], z: Complex<f64>) -> Option<Complex<f
     let w = z.inv();
     let (value, slope, bound) = evaluate(reversed, w);
     let n = (p.len() - 1) as f64;
-    (value.norm() > 2.0 * f64::EPSILON * bound).then(|| z / (Complex::new(n, 0.0) - w * slope / value))
+    (value.norm() > 2.0 * f64::EPSILON * bound)
+        .then(|| z / (Complex::new(n, 0.0) - w * slope / value))
 }
 
 /// Makes conjugates exact: each root of the upper half plane with its nearest mirror image, the rest real.
@@ -108,7 +111,11 @@ fn pair(mut z: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
         let mirror = z
             .iter()
             .enumerate()
-            .min_by(|a, b| (a.1 - root.conj()).norm().total_cmp(&(b.1 - root.conj()).norm()))
+            .min_by(|a, b| {
+                (a.1 - root.conj())
+                    .norm()
+                    .total_cmp(&(b.1 - root.conj()).norm())
+            })
             .map(|(i, m)| (i, *m));
         match mirror {
             Some((i, m)) if (m - root.conj()).norm() < root.im.abs() => {
@@ -142,8 +149,16 @@ mod tests {
 
     #[test]
     fn roots_of_known_polynomials() {
-        check(&[1.0, 6.0, 11.0, 6.0], &[[-1.0, 0.0], [-2.0, 0.0], [-3.0, 0.0]], 1e-13);
-        check(&[1.0, 3.0, 2.0, 0.0], &[[0.0, 0.0], [-1.0, 0.0], [-2.0, 0.0]], 1e-14);
+        check(
+            &[1.0, 6.0, 11.0, 6.0],
+            &[[-1.0, 0.0], [-2.0, 0.0], [-3.0, 0.0]],
+            1e-13,
+        );
+        check(
+            &[1.0, 3.0, 2.0, 0.0],
+            &[[0.0, 0.0], [-1.0, 0.0], [-2.0, 0.0]],
+            1e-14,
+        );
         check(
             &[1.0, 0.0, 0.0, 0.0, -1.0],
             &[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]],

@@ -73,8 +73,16 @@ impl StateSpace {
         }
         let power = |k: usize| scale.powi(i32::try_from(k).unwrap_or(i32::MAX));
         let plant = TransferFunction {
-            numerator: numerator.iter().enumerate().map(|(k, c)| c * power(k + 1)).collect(),
-            denominator: monic.iter().enumerate().map(|(k, c)| c * power(k)).collect(),
+            numerator: numerator
+                .iter()
+                .enumerate()
+                .map(|(k, c)| c * power(k + 1))
+                .collect(),
+            denominator: monic
+                .iter()
+                .enumerate()
+                .map(|(k, c)| c * power(k))
+                .collect(),
             dead_time,
         };
         plant.validate()?;
@@ -144,7 +152,11 @@ fn check_finite<'a>(mut values: impl Iterator<Item = &'a f64>) -> Result<(), Pla
 /// Monic characteristic polynomial, highest power first, from the Hessenberg form.
 fn characteristic(a: &DMatrix<f64>) -> Vec<f64> {
     let n = a.nrows();
-    let h = if n > 1 { nalgebra::Hessenberg::new(a.clone()).unpack_h() } else { a.clone() };
+    let h = if n > 1 {
+        nalgebra::Hessenberg::new(a.clone()).unpack_h()
+    } else {
+        a.clone()
+    };
     // Polynomials of the leading blocks, lowest power first.
     let mut p: Vec<Vec<f64>> = vec![vec![1.0]];
     for i in 0..n {

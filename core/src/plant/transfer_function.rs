@@ -102,12 +102,20 @@ impl TransferFunction {
 
     /// Poles, 1/s, by rising distance from 0; empty for an invalid plant.
     pub fn poles(&self) -> Vec<Complex<f64>> {
-        if self.validate().is_err() { Vec::new() } else { roots(&self.denominator) }
+        if self.validate().is_err() {
+            Vec::new()
+        } else {
+            roots(&self.denominator)
+        }
     }
 
     /// Zeros, 1/s, by rising distance from 0; empty for an invalid plant.
     pub fn zeros(&self) -> Vec<Complex<f64>> {
-        if self.validate().is_err() { Vec::new() } else { roots(self.trimmed()) }
+        if self.validate().is_err() {
+            Vec::new()
+        } else {
+            roots(self.trimmed())
+        }
     }
 
     /// The same plant by poles and zeros.
@@ -175,7 +183,11 @@ fn horner(p: &[f64], omega: f64) -> Complex<f64> {
         let mut value = 0.0;
         let length = p.len();
         // Powers skip, skip + 2, ... counted from the end.
-        let mut k = if length > skip { (length - 1 - skip) / 2 * 2 + skip } else { return 0.0 };
+        let mut k = if length > skip {
+            (length - 1 - skip) / 2 * 2 + skip
+        } else {
+            return 0.0;
+        };
         loop {
             value = value * square + p[length - 1 - k];
             if k < 2 {

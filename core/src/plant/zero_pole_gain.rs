@@ -62,7 +62,11 @@ impl ZeroPoleGain {
                 } else {
                     let factor = Complex::new(1.0, 0.0) - Complex::new(0.0, omega) / r;
                     // A pole on the axis turns by -180 degrees, as a stable one beside it does.
-                    let angle = if r.re == 0.0 && factor.re < 0.0 { PI } else { factor.arg() };
+                    let angle = if r.re == 0.0 && factor.re < 0.0 {
+                        PI
+                    } else {
+                        factor.arg()
+                    };
                     phase += direction * angle;
                     if r.im == 0.0 {
                         sign *= -r.re.signum();
@@ -76,7 +80,8 @@ impl ZeroPoleGain {
     /// Modulus at `omega` rad/s.
     pub fn magnitude(&self, omega: f64) -> f64 {
         let s = Complex::new(0.0, omega);
-        let product = |roots: &[Complex<f64>]| roots.iter().map(|r| (s - r).norm()).product::<f64>();
+        let product =
+            |roots: &[Complex<f64>]| roots.iter().map(|r| (s - r).norm()).product::<f64>();
         self.gain.abs() * product(&self.zeros) / product(&self.poles)
     }
 }
@@ -86,7 +91,10 @@ fn expand(kind: &'static str, roots: &[Complex<f64>]) -> Result<Vec<f64>, PlantE
     if roots.len() > MAX_ORDER {
         return Err(PlantError::Order(roots.len()));
     }
-    if roots.iter().any(|r| !(r.re.is_finite() && r.im.is_finite())) {
+    if roots
+        .iter()
+        .any(|r| !(r.re.is_finite() && r.im.is_finite()))
+    {
         return Err(PlantError::NotFinite);
     }
     let mut p = vec![1.0];

@@ -383,13 +383,19 @@ impl<'a> Engine<'a> {
         };
         let relay = self.channels[0].relay;
         let slope = self.channels[0].noise.as_ref().map_or(0.0, |n| n.1.slope);
-        let step = sliding.step(&self.x, slope, limit - self.now, [
-            relay.output(true),
-            relay.output(false),
-        ]);
+        let step = sliding.step(
+            &self.x,
+            slope,
+            limit - self.now,
+            [relay.output(true), relay.output(false)],
+        );
         self.sample_slide(&sliding, self.now + step.time, slope);
         self.x = step.x;
-        self.now = if step.leaves.is_none() && step.to_limit { limit } else { self.now + step.time };
+        self.now = if step.leaves.is_none() && step.to_limit {
+            limit
+        } else {
+            self.now + step.time
+        };
         if let Some(high) = step.leaves {
             self.end_slide();
             self.channels[0].high = high;

@@ -62,7 +62,11 @@ struct Level {
 
 #[inline]
 fn add_scaled(sum: &mut State, column: &State, factor: f64, quads: usize) {
-    for (s, c) in sum.chunks_exact_mut(4).zip(column.chunks_exact(4)).take(quads) {
+    for (s, c) in sum
+        .chunks_exact_mut(4)
+        .zip(column.chunks_exact(4))
+        .take(quads)
+    {
         s[0] += c[0] * factor;
         s[1] += c[1] * factor;
         s[2] += c[2] * factor;
@@ -112,8 +116,14 @@ impl Flow {
         for _ in 0..BALANCE_SWEEPS {
             let mut settled = true;
             for i in 0..self.n {
-                let column: f64 = (0..self.n).filter(|j| *j != i).map(|j| self.a[i][j].abs()).sum();
-                let row: f64 = (0..self.n).filter(|j| *j != i).map(|j| self.a[j][i].abs()).sum();
+                let column: f64 = (0..self.n)
+                    .filter(|j| *j != i)
+                    .map(|j| self.a[i][j].abs())
+                    .sum();
+                let row: f64 = (0..self.n)
+                    .filter(|j| *j != i)
+                    .map(|j| self.a[j][i].abs())
+                    .sum();
                 if column == 0.0 || row == 0.0 || !(column + row).is_finite() {
                     continue;
                 }
@@ -153,8 +163,16 @@ impl Flow {
 
     fn build(&mut self, longest: f64) {
         let norm = self.norm();
-        let longest = if longest.is_finite() && longest > 0.0 { longest } else { 1.0 };
-        let h = if norm > 0.0 && norm.is_finite() { SHORTEST / norm } else { longest };
+        let longest = if longest.is_finite() && longest > 0.0 {
+            longest
+        } else {
+            1.0
+        };
+        let h = if norm > 0.0 && norm.is_finite() {
+            SHORTEST / norm
+        } else {
+            longest
+        };
         let mut level = self.shortest(h);
         while self.levels.len() < MAX_LEVELS {
             let h = level.h;
@@ -310,7 +328,11 @@ impl Flow {
                 x = level.apply(&x, u, self.n, self.quads);
             }
         }
-        if t > 0.0 { self.taylor(&x, Some(&self.force(u)), t) } else { x }
+        if t > 0.0 {
+            self.taylor(&x, Some(&self.force(u)), t)
+        } else {
+            x
+        }
     }
 
     /// Number of levels.
@@ -412,8 +434,16 @@ impl Level {
                 c
             })
             .collect();
-        let sizes = rows.iter().map(|r| r.iter().map(|v| v.abs()).sum()).collect();
-        Self { h, columns, rows, sizes }
+        let sizes = rows
+            .iter()
+            .map(|r| r.iter().map(|v| v.abs()).sum())
+            .collect();
+        Self {
+            h,
+            columns,
+            rows,
+            sizes,
+        }
     }
 
     fn size(&self) -> f64 {
@@ -422,7 +452,13 @@ impl Level {
             .iter()
             .flatten()
             .chain(&self.sizes)
-            .fold(0.0_f64, |m, v| if v.is_nan() { f64::INFINITY } else { m.max(v.abs()) })
+            .fold(0.0_f64, |m, v| {
+                if v.is_nan() {
+                    f64::INFINITY
+                } else {
+                    m.max(v.abs())
+                }
+            })
     }
 
     fn apply_transition(&self, x: &State, n: usize, quads: usize) -> State {

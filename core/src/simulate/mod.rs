@@ -74,8 +74,18 @@ impl Options {
             )?;
         }
         if let Some(noise) = self.noise {
-            fits("noise std_dev", noise.std_dev, noise.std_dev >= 0.0, "0 or more")?;
-            fits("noise interval", noise.interval, noise.interval > 0.0, "above 0 s")?;
+            fits(
+                "noise std_dev",
+                noise.std_dev,
+                noise.std_dev >= 0.0,
+                "0 or more",
+            )?;
+            fits(
+                "noise interval",
+                noise.interval,
+                noise.interval > 0.0,
+                "above 0 s",
+            )?;
             fits(
                 "number of noise values",
                 self.duration / noise.interval,
@@ -126,7 +136,9 @@ pub enum SimulateError {
         order: usize,
     },
     /// The number of relays is not that of the plant's channels.
-    #[error("there are {relays} relays and {lags} delays for a plant with {channels} inputs and outputs")]
+    #[error(
+        "there are {relays} relays and {lags} delays for a plant with {channels} inputs and outputs"
+    )]
     Relays {
         /// Relays given.
         relays: usize,

@@ -42,7 +42,8 @@ pub(crate) struct Source {
 impl Source {
     /// The noise of channel `channel`; each has its own.
     pub fn new(noise: Noise, channel: u64) -> Self {
-        let mut random = Pcg64::seed_from_u64(noise.seed ^ channel.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut random =
+            Pcg64::seed_from_u64(noise.seed ^ channel.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let next = noise.std_dev * gauss(&mut random);
         Self {
             noise,
@@ -59,7 +60,14 @@ impl Source {
         let end = self.pieces as f64 * self.noise.interval;
         self.next = self.noise.std_dev * gauss(&mut self.random);
         let slope = (self.next - value) / (end - start);
-        (Piece { start, value, slope }, end)
+        (
+            Piece {
+                start,
+                value,
+                slope,
+            },
+            end,
+        )
     }
 }
 

@@ -239,7 +239,11 @@ pub(crate) fn first_rise(m: &Series, turns: &[f64], low: f64, high: f64) -> Opti
         let fb = value(m, b);
         if fb > 0.0 {
             if fa <= 0.0 {
-                return Some(if fa == 0.0 { a } else { root(m, &d, a, b, fa, fb) });
+                return Some(if fa == 0.0 {
+                    a
+                } else {
+                    root(m, &d, a, b, fa, fb)
+                });
             }
             // Already beyond and going on: it switches at once.
             if fb > fa {

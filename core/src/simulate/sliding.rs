@@ -38,7 +38,12 @@ impl Sliding {
     /// The flow for `plant`, whose free flow is `free`; `None` where `C B <= 0`.
     pub fn new(plant: &StateSpace, free: &Flow, longest: f64) -> Option<Self> {
         let push = plant.c.dot(&plant.b);
-        let size: f64 = plant.c.iter().zip(&plant.b).map(|(c, b)| (c * b).abs()).sum();
+        let size: f64 = plant
+            .c
+            .iter()
+            .zip(&plant.b)
+            .map(|(c, b)| (c * b).abs())
+            .sum();
         if !(push.is_finite() && push > NO_PUSH * size) {
             return None;
         }
