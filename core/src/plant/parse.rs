@@ -242,11 +242,11 @@ impl Parser<'_> {
                     "both sides must have the same dead time: write it once as a factor of the whole, such as e^{-s} (s+2)/(s+1)^2",
                 );
             }
-            value = self.bounded(at, value.plus(&next, sign))?;
+            value = Self::bounded(at, value.plus(&next, sign))?;
         }
     }
 
-    fn bounded(&self, at: usize, value: Value) -> Result<Value, ParseError> {
+    fn bounded(at: usize, value: Value) -> Result<Value, ParseError> {
         if value.degree() > MAX_DEGREE {
             return fail(
                 at,
@@ -298,7 +298,7 @@ impl Parser<'_> {
             }
             divided = slash;
             let factor = if slash { factor.inverse() } else { factor };
-            value = self.bounded(at, value.times(&factor))?;
+            value = Self::bounded(at, value.times(&factor))?;
         }
     }
 
@@ -357,7 +357,7 @@ impl Parser<'_> {
         };
         let mut value = Value::number(1.0);
         for _ in 0..exponent {
-            value = self.bounded(at, value.times(&base))?;
+            value = Self::bounded(at, value.times(&base))?;
         }
         Ok(value)
     }

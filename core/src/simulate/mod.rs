@@ -243,7 +243,8 @@ pub fn simulate(
     steps: usize,
 ) -> Trajectory {
     let valid = plant.validate().is_ok() && relay.validate().is_ok();
-    if !valid || !(step.is_finite() && step > 0.0) || !(lag.is_finite() && lag >= 0.0) {
+    let times = step.is_finite() && step > 0.0 && lag.is_finite() && lag >= 0.0;
+    if !(valid && times) {
         return Trajectory::default();
     }
     let duration = step * steps as f64;
