@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Cycle, bisect, stability};
+use super::{Cycle, illinois, stability};
 use crate::plant::StateSpace;
 use crate::relay::Relay;
 use crate::simulate::{Change, Engine, Flow, State};
@@ -419,27 +419,4 @@ impl History {
             pending,
         })
     }
-}
-
-/// Root of `f` between two points of different sign (Illinois method, then bisection).
-fn illinois(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
-    let (mut a, mut b) = (low, high);
-    for _ in 0..60 {
-        let mut x = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
-        if !(x > a.0.min(b.0) && x < a.0.max(b.0)) {
-            x = 0.5 * (a.0 + b.0);
-        }
-        let value = f(x);
-        if value == 0.0 || (x - b.0).abs() <= 2.0 * f64::EPSILON * x {
-            return x;
-        }
-        if (value < 0.0) == (b.1 < 0.0) {
-            a.1 *= 0.5;
-        } else {
-            a = b;
-        }
-        b = (x, value);
-    }
-    let (low, high) = if a.0 < b.0 { (a, b) } else { (b, a) };
-    bisect(low.0, high.0, low.1, f)
 }
