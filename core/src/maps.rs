@@ -395,6 +395,24 @@ impl Map {
         self.cells.get(place[1] * self.size + place[0])?.as_ref()
     }
 
+    /// Values of a quantity at all cells that are known and have one, ascending.
+    pub fn values(&self, quantity: Quantity) -> Vec<f64> {
+        let mut values: Vec<f64> = self
+            .cells
+            .iter()
+            .flatten()
+            .filter_map(|o| quantity.value(o))
+            .collect();
+        values.sort_by(f64::total_cmp);
+        values
+    }
+
+    /// Share of the known cells without an exact cycle, 0 to 1.
+    pub fn silent_share(&self) -> f64 {
+        let silent = self.cells.iter().flatten().filter(|o| o.exact.is_none());
+        silent.count() as f64 / self.known.max(1) as f64
+    }
+
     /// A cell, or the coarser one that stands for it until it is computed.
     pub fn at(&self, place: [usize; 2]) -> Option<&Outcome> {
         let mut step = 1;
