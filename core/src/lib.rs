@@ -11,6 +11,7 @@
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
 //! | [`explore`] | everything about one loop at once |
+//! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
@@ -21,6 +22,7 @@
 pub mod criticism;
 pub mod effect;
 pub mod explore;
+pub mod figures;
 pub mod limit_cycle;
 pub mod maps;
 pub mod measurement;
