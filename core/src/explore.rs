@@ -144,11 +144,8 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     let last = (simulated.map_or(period, |c| c.period) / step).ceil() as usize + 1;
     let cycle = phase[phase.len().saturating_sub(last)..].to_vec();
     let end = run.time.last().copied().unwrap_or(0.0);
-    let switches_per_period = exact.map(|c| {
-        let later = |t: &&f64| **t > 0.5 * end;
-        let count = run.rises.iter().chain(&run.falls).filter(later).count();
-        count as f64 * c.cycle.period / (0.5 * end)
-    });
+    let switches_per_period =
+        exact.and_then(|c| Some(c.cycle.period * switch_rate(&run, 0.5 * end)?));
     Ok(ExploreData {
         nyquist: nyquist(
             plant,
@@ -226,6 +223,16 @@ fn mean_cycle(run: &Trajectory) -> Option<Cycle> {
         amplitude,
         stable: None,
     })
+}
+
+/// Switches per second after `from` s, counted from the first to the last of them, so that the ends of
+/// the run do not matter.
+fn switch_rate(run: &Trajectory, from: f64) -> Option<f64> {
+    let all = || run.rises.iter().chain(&run.falls).filter(|t| **t > from);
+    let first = all().copied().reduce(f64::min)?;
+    let last = all().copied().reduce(f64::max)?;
+    let rate = (all().count() - 1) as f64 / (last - first);
+    rate.is_finite().then_some(rate)
 }
 
 fn sentence(
