@@ -54,3 +54,12 @@ pub fn apply(ctx: &egui::Context) {
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
     ui.add(egui::Label::new(egui::RichText::new(text).size(24.0).strong()).wrap());
 }
+
+/// A curve's colour as text: darker on a light ground, where it would be too faint to read.
+pub fn readable(ui: &egui::Ui, color: Color32) -> Color32 {
+    if ui.visuals().dark_mode {
+        color
+    } else {
+        color.lerp_to_gamma(Color32::BLACK, 0.4)
+    }
+}

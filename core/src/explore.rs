@@ -1,14 +1,17 @@
 //! Everything about one relay loop, for drawing: prediction beside simulation.
 
+use std::f64::consts::PI;
+
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::limit_cycle::{
-    Cycle, Intersection, describing_function, exact_cycle, typical_frequency,
+    Cycle, ExactCycle, Harmonic, Intersection, Prediction, Trust, dominant, harmonics, predict,
+    typical_frequency,
 };
-use crate::plant::{PlantError, TransferFunction, presets};
+use crate::plant::{PlantError, StateSpace, TransferFunction, presets};
 use crate::relay::{Relay, RelayError};
-use crate::simulate::simulate;
+use crate::simulate::{Noise, Options, SimulateError, Trajectory, run, simulate};
 
 /// A relay loop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,6 +20,9 @@ pub struct ExploreInput {
     pub plant: TransferFunction,
     /// The relay.
     pub relay: Relay,
+    /// Noise on the output that the relay sees; only the simulation knows of it.
+    #[serde(default)]
+    pub noise: Option<Noise>,
 }
 
 impl Default for ExploreInput {
@@ -25,6 +31,7 @@ impl Default for ExploreInput {
         Self {
             plant: plant.unwrap_or_else(|| TransferFunction::new(&[1.0], &[1.0, 1.0], 0.0)),
             relay: Relay::default(),
+            noise: None,
         }
     }
 }
@@ -38,6 +45,9 @@ pub enum ExploreError {
     /// The relay.
     #[error(transparent)]
     Relay(#[from] RelayError),
+    /// The noise or the run.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
 }
 
 /// What there is to see.
@@ -49,12 +59,23 @@ pub struct ExploreData {
     pub inverse_df: Vec<[f64; 2]>,
     /// Where they meet.
     pub intersections: Vec<Intersection>,
-    /// The exact cycle nearest to the prediction.
+    /// The exact cycle to which the loop goes, or the first that there is.
     pub exact: Option<Cycle>,
-    /// The cycle into which the simulation settles.
+    /// The cycle into which the simulation settles; with noise, the mean of its later half.
     pub simulated: Option<Cycle>,
+    /// Switches of the relay per exact period in the later half of the simulation; 2 without noise.
+    pub switches_per_period: Option<f64>,
+    /// First harmonics of the output in the exact cycle.
+    pub harmonics: Vec<Harmonic>,
+    /// How far the describing function can be trusted here.
+    pub trust: Trust,
     /// The answer in a sentence.
     pub text: String,
+    /// Whether the oscillation lasts, in words.
+    pub stability: String,
+    /// Amplitude as it grows or fades in the simulation: `[t, a]`, half the distance of neighbouring
+    /// extrema of the output, at the later one.
+    pub swing: Vec<[f64; 2]>,
     /// Times of the simulation, s.
     pub time: Vec<f64>,
     /// Output.
@@ -77,32 +98,43 @@ const SAMPLES_PER_PERIOD: f64 = 128.0;
 /// Swings of the last cycles that may differ by this share and still count as settled.
 const SETTLED: f64 = 1e-3;
 
+/// Harmonics that are shown.
+const HARMONICS: usize = 9;
+
+impl ExploreData {
+    /// The describing function's main prediction: a stable one if there is, or else the first.
+    pub fn describing(&self) -> Option<&Intersection> {
+        dominant(&self.intersections)
+    }
+}
+
+/// Ultimate gain by equation (4), `K_u = 4k/(pi a)`; `amplitude` is half of peak to peak.
+pub fn ultimate_gain(relay: &Relay, amplitude: f64) -> f64 {
+    4.0 * relay.gain / (PI * amplitude)
+}
+
 /// Computes everything; the same input gives the same data.
 pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     input.plant.validate()?;
     input.relay.validate()?;
     let (plant, relay) = (&input.plant, &input.relay);
+    let prediction = predict(plant, relay).map_err(|e| match e {
+        crate::limit_cycle::PredictError::Plant(e) => ExploreError::Plant(e),
+        crate::limit_cycle::PredictError::Relay(e) => ExploreError::Relay(e),
+    })?;
+    let main = dominant(&prediction.describing_function);
     let lag = plant.dead_time + relay.delay;
-    let intersections = describing_function(plant, relay);
-    let dominant = intersections
-        .iter()
-        .find(|i| i.cycle.stable == Some(true))
-        .or(intersections.first());
-    let space = plant.state_space();
-    let guess = dominant.map_or(10.0 / typical_frequency(plant) + 2.0 * lag, |i| {
+    let guess = main.map_or(10.0 / typical_frequency(plant) + 2.0 * lag, |i| {
         i.cycle.period
     });
-    let exact = exact_cycle(&space, relay, lag, 0.5 * guess).map(|c| c.cycle);
-    let period = exact.map_or(guess, |c| c.period);
+    let exact = main_cycle(&prediction, guess);
+    let period = exact.map_or(guess, |c| c.cycle.period);
     let step = period / SAMPLES_PER_PERIOD;
-    let run = simulate(
-        &space,
-        relay,
-        lag,
-        step,
-        (PERIODS * SAMPLES_PER_PERIOD) as usize,
-    );
-    let simulated = settled(&run);
+    let run = trajectory(input, &plant.state_space(), lag, step)?;
+    let simulated = match input.noise {
+        None => settled(&run),
+        Some(_) => mean_cycle(&run),
+    };
     let phase: Vec<[f64; 2]> = run
         .output
         .iter()
@@ -112,18 +144,24 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     let last = (simulated.map_or(period, |c| c.period) / step).ceil() as usize + 1;
     let cycle = phase[phase.len().saturating_sub(last)..].to_vec();
     let end = run.time.last().copied().unwrap_or(0.0);
-    let text = sentence(simulated, exact, run.chattering);
+    let switches_per_period =
+        exact.and_then(|c| Some(c.cycle.period * switch_rate(&run, 0.5 * end)?));
     Ok(ExploreData {
         nyquist: nyquist(
             plant,
             relay.delay,
-            dominant.map_or(typical_frequency(plant), |i| i.omega),
+            main.map_or(typical_frequency(plant), |i| i.omega),
         ),
-        inverse_df: inverse_df(relay, dominant),
-        intersections,
-        exact,
+        inverse_df: inverse_df(relay, main),
+        exact: exact.map(|c| c.cycle),
         simulated,
-        text,
+        switches_per_period,
+        harmonics: exact.map_or_else(Vec::new, |c| harmonics(plant, relay, c, HARMONICS)),
+        text: sentence(simulated, exact, &run, input.noise.is_some()),
+        stability: stability(exact, &prediction),
+        swing: swing(&run.time, &run.output),
+        trust: prediction.trust,
+        intersections: prediction.describing_function,
         input: corners(&run.input, end),
         time: run.time,
         output: run.output,
@@ -132,43 +170,159 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     })
 }
 
+/// The stable exact cycle whose period is nearest to `period` in s, or else the nearest of all.
+fn main_cycle(prediction: &Prediction, period: f64) -> Option<&ExactCycle> {
+    let distance = |c: &&ExactCycle| (c.cycle.period / period).ln().abs();
+    let nearest = |a: &&ExactCycle, b: &&ExactCycle| distance(a).total_cmp(&distance(b));
+    let all = || prediction.exact.iter();
+    all()
+        .filter(|c| c.cycle.stable == Some(true))
+        .min_by(nearest)
+        .or_else(|| all().min_by(nearest))
+}
+
+fn trajectory(
+    input: &ExploreInput,
+    space: &StateSpace,
+    lag: f64,
+    step: f64,
+) -> Result<Trajectory, SimulateError> {
+    let steps = (PERIODS * SAMPLES_PER_PERIOD) as usize;
+    if input.noise.is_none() {
+        return Ok(simulate(space, &input.relay, lag, step, steps));
+    }
+    let options = Options {
+        noise: input.noise,
+        ..Options::new(step * steps as f64, step)
+    };
+    run(space, &input.relay, lag, &options)
+}
+
 /// Period and amplitude of the last cycle, if the run has settled into one.
-fn settled(run: &crate::simulate::Trajectory) -> Option<Cycle> {
-    let [.., a, b, c] = run.rises.as_slice() else {
-        return None;
-    };
-    let [.., before, last] = run.swings.as_slice() else {
-        return None;
-    };
-    let (period, amplitude) = (c - b, 0.5 * (last[1] - last[0]));
-    let calm = ((b - a) / period - 1.0).abs() < SETTLED
-        && ((before[1] - before[0]) / (2.0 * amplitude) - 1.0).abs() < SETTLED;
-    calm.then_some(Cycle {
+fn settled(run: &Trajectory) -> Option<Cycle> {
+    let (period, amplitude) = run.settled(SETTLED)?;
+    Some(Cycle {
         period,
         amplitude,
         stable: Some(true),
     })
 }
 
-fn sentence(simulated: Option<Cycle>, exact: Option<Cycle>, chattering: bool) -> String {
+/// Mean period and amplitude of the later half of a run. Noise may add switches; the periods are then
+/// shorter, and that is what there is to see.
+fn mean_cycle(run: &Trajectory) -> Option<Cycle> {
+    let rises = &run.rises[run.rises.len() / 2..];
+    let swings = &run.swings[run.swings.len() / 2..];
+    let [first, .., last] = rises else {
+        return None;
+    };
+    let sizes: f64 = swings.iter().map(|s| 0.5 * (s[1] - s[0])).sum();
+    let amplitude = sizes / swings.len() as f64;
+    amplitude.is_finite().then_some(Cycle {
+        period: (last - first) / (rises.len() - 1) as f64,
+        amplitude,
+        stable: None,
+    })
+}
+
+/// Switches per second after `from` s, counted from the first to the last of them, so that the ends of
+/// the run do not matter.
+fn switch_rate(run: &Trajectory, from: f64) -> Option<f64> {
+    let all = || run.rises.iter().chain(&run.falls).filter(|t| **t > from);
+    let first = all().copied().reduce(f64::min)?;
+    let last = all().copied().reduce(f64::max)?;
+    let rate = (all().count() - 1) as f64 / (last - first);
+    rate.is_finite().then_some(rate)
+}
+
+fn sentence(
+    simulated: Option<Cycle>,
+    exact: Option<&ExactCycle>,
+    run: &Trajectory,
+    noisy: bool,
+) -> String {
+    let values = |c: Cycle| format!("period {:.3} s, amplitude {:.4}", c.period, c.amplitude);
     match (simulated, exact) {
-        _ if chattering => {
+        _ if run.chattering => {
             "The relay chatters: it switches without end, the output slides along the threshold."
                 .to_owned()
         }
-        (Some(c), _) => format!(
-            "It oscillates: period {:.3} s, amplitude {:.4}.",
-            c.period, c.amplitude
-        ),
-        (None, Some(c)) => format!(
-            "It approaches an oscillation: period {:.3} s, amplitude {:.4}.",
-            c.period, c.amplitude
-        ),
-        (None, None) => {
+        (Some(c), _) if noisy => format!("It oscillates in the noise: mean {}.", values(c)),
+        (Some(c), _) => format!("It oscillates: {}.", values(c)),
+        (None, _) if !run.sliding.is_empty() => {
+            "The output slides along the threshold: the relay balances it there.".to_owned()
+        }
+        (None, Some(c)) if c.cycle.stable == Some(true) => {
+            format!("It approaches an oscillation: {}.", values(c.cycle))
+        }
+        (None, _) => {
             "It does not settle into an oscillation: the relay never comes back, or not regularly."
                 .to_owned()
         }
     }
+}
+
+fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> String {
+    let Some(cycle) = exact else {
+        let rests = prediction.existence.filter(|e| !e.holds);
+        return rests.map_or_else(
+            || "There is no exact cycle with two switches a period.".to_owned(),
+            |e| {
+                format!(
+                    "No cycle: with the relay held, the output goes to {:.3} or {:.3}, which is not beyond both thresholds.",
+                    e.equilibria[0], e.equilibria[1]
+                )
+            },
+        );
+    };
+    let rate = cycle.multiplier.map_or_else(String::new, |m| {
+        format!(
+            " of a small disturbance, {} is left after a period",
+            percent(m)
+        )
+    });
+    let verdict = match cycle.cycle.stable {
+        Some(true) => "Stable",
+        Some(false) => "Unstable",
+        None => "Its stability is not known",
+    };
+    let others = prediction.exact.len().saturating_sub(1);
+    let rest = match others {
+        0 => String::new(),
+        1 => " One more exact cycle exists.".to_owned(),
+        n => format!(" {n} more exact cycles exist."),
+    };
+    if rate.is_empty() {
+        format!("{verdict}.{rest}")
+    } else {
+        format!("{verdict}:{rate}.{rest}")
+    }
+}
+
+fn percent(share: f64) -> String {
+    let value = 100.0 * share;
+    if value < 0.01 {
+        "less than 0.01 %".to_owned()
+    } else if value < 1.0 {
+        format!("{value:.2} %")
+    } else {
+        format!("{value:.0} %")
+    }
+}
+
+/// Half the distance of neighbouring extrema of a sampled output, at the time of the later one.
+fn swing(time: &[f64], output: &[f64]) -> Vec<[f64; 2]> {
+    let mut found = Vec::new();
+    let mut before: Option<f64> = None;
+    for (y, t) in output.windows(3).zip(time.iter().skip(1)) {
+        if (y[1] - y[0]) * (y[2] - y[1]) < 0.0 || (y[1] != y[0] && y[2] == y[1]) {
+            if let Some(before) = before {
+                found.push([*t, 0.5 * (y[1] - before).abs()]);
+            }
+            before = Some(y[1]);
+        }
+    }
+    found
 }
 
 fn nyquist(plant: &TransferFunction, delay: f64, centre: f64) -> Vec<[f64; 2]> {

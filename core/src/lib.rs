@@ -12,6 +12,8 @@
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
 //! | [`scenario`] | a loop in a file |
 //! | [`explore`] | everything about one loop at once |
+//! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
+//! | [`maps`] | how does the oscillation change with two parameters? |
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
@@ -21,7 +23,9 @@
 pub mod criticism;
 pub mod effect;
 pub mod explore;
+pub mod figures;
 pub mod limit_cycle;
+pub mod maps;
 pub mod measurement;
 pub mod model;
 pub mod plant;

@@ -38,8 +38,8 @@ enum Command {
 fn dispatch(command: &Command) -> ExitCode {
     match command {
         Command::Diagnose(arguments) => diagnose::run(arguments),
-        Command::Simulate(arguments) => simulate::run(arguments),
-        Command::LimitCycle(arguments) => limit_cycle::run(arguments),
+        Command::Simulate(arguments) => finish(simulate::run(arguments)),
+        Command::LimitCycle(arguments) => finish(limit_cycle::run(arguments)),
     }
 }
 

@@ -1,0 +1,230 @@
+//! A relay loop, live: what is predicted beside what happens.
+
+mod controls;
+mod nyquist;
+mod plant_editor;
+mod plots;
+mod table;
+
+use hysteron_core::explore::{ExploreData, ExploreInput, compute};
+use hysteron_core::figures::{Check, checks};
+
+use super::{Desk, View};
+use crate::theme;
+use nyquist::Nyquist;
+use plant_editor::PlantEditor;
+
+/// Simulated periods that are played back in a second.
+const PERIODS_PER_SECOND: f64 = 0.6;
+
+/// Width below which everything stands in one column, points.
+const NARROW: f32 = 700.0;
+
+/// The page: what is set, and what follows from it.
+pub struct Explore {
+    input: ExploreInput,
+    editor: PlantEditor,
+    nyquist: Nyquist,
+    /// Number of the figure whose claim is checked.
+    figure: Option<u32>,
+    /// Whether the simulation is played back, and the time it has reached, s.
+    playing: bool,
+    clock: f64,
+    finished: Option<Finished>,
+}
+
+/// What was computed, and for what.
+struct Finished {
+    input: ExploreInput,
+    figure: Option<u32>,
+    data: Result<(ExploreData, Vec<Check>), String>,
+}
+
+impl Default for Explore {
+    fn default() -> Self {
+        Self {
+            input: ExploreInput::default(),
+            editor: PlantEditor::default(),
+            nyquist: Nyquist::default(),
+            figure: None,
+            playing: true,
+            clock: 0.0,
+            finished: None,
+        }
+    }
+}
+
+impl View for Explore {
+    fn id(&self) -> &'static str {
+        "explore"
+    }
+
+    fn title(&self) -> &'static str {
+        "Explore a relay loop"
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        self.input.clone_from(&desk.relay_loop);
+        self.compute();
+        self.play(ui);
+        if ui.available_width() < NARROW {
+            self.narrow_ui(ui);
+        } else {
+            self.wide_ui(ui);
+        }
+        if self.input != desk.relay_loop {
+            desk.relay_loop.clone_from(&self.input);
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        let data = self.data();
+        let cycle = |c: hysteron_core::limit_cycle::Cycle| serde_json::json!({"period": c.period, "amplitude": c.amplitude});
+        serde_json::json!({
+            "busy": false,
+            "loop": self.input,
+            "answer": data.map(|(d, _)| d.text.clone()),
+            "stability": data.map(|(d, _)| d.stability.clone()),
+            "trust": data.map(|(d, _)| d.trust.text.clone()),
+            "describing_function": data.and_then(|(d, _)| d.describing()).map(|i| cycle(i.cycle)),
+            "exact": data.and_then(|(d, _)| d.exact).map(cycle),
+            "simulated": data.and_then(|(d, _)| d.simulated).map(cycle),
+            "figure": self.figure,
+            "checks": data.map(|(_, all)| all.iter().map(|c| c.holds).collect::<Vec<_>>()),
+            "plant_error": self.editor.error(),
+        })
+    }
+}
+
+impl Explore {
+    /// Computes anew if something was changed.
+    fn compute(&mut self) {
+        let known = self
+            .finished
+            .as_ref()
+            .is_some_and(|f| f.input == self.input && f.figure == self.figure);
+        if known {
+            return;
+        }
+        let data = compute(&self.input).and_then(|data| {
+            let claims = match self.figure {
+                Some(number) => checks(number, &self.input, &data)?,
+                None => Vec::new(),
+            };
+            Ok((data, claims))
+        });
+        self.finished = Some(Finished {
+            input: self.input.clone(),
+            figure: self.figure,
+            data: data.map_err(|e| e.to_string()),
+        });
+    }
+
+    fn data(&self) -> Option<&(ExploreData, Vec<Check>)> {
+        self.finished.as_ref()?.data.as_ref().ok()
+    }
+
+    /// Moves the playback on; at its end it begins again.
+    fn play(&mut self, ui: &egui::Ui) {
+        let Some((data, _)) = self.data() else {
+            return;
+        };
+        let end = data.time.last().copied().unwrap_or(0.0);
+        let period = data
+            .exact
+            .or(data.simulated)
+            .map_or(0.1 * end, |c| c.period);
+        let seconds = f64::from(ui.input(|i| i.stable_dt).min(0.1));
+        if self.playing {
+            self.clock += seconds * PERIODS_PER_SECOND * period;
+            ui.ctx().request_repaint();
+        }
+        if self.clock > end {
+            self.clock = 0.0;
+        }
+    }
+
+    fn wide_ui(&mut self, ui: &mut egui::Ui) {
+        egui::Panel::left("loop")
+            .default_size(400.0)
+            .resizable(false)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.controls_ui(ui);
+                    self.numbers_ui(ui);
+                });
+            });
+        egui::CentralPanel::default().show(ui, |ui| {
+            self.answer_ui(ui);
+            let height = (0.5 * ui.available_height() - 34.0).max(150.0);
+            ui.columns(2, |columns| {
+                self.nyquist_ui(&mut columns[0], height);
+                self.phase_ui(&mut columns[1], height);
+            });
+            self.time_ui(ui, height);
+        });
+    }
+
+    fn narrow_ui(&mut self, ui: &mut egui::Ui) {
+        egui::CentralPanel::default().show(ui, |ui| {
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                self.answer_ui(ui);
+                self.nyquist_ui(ui, 260.0);
+                self.time_ui(ui, 220.0);
+                self.controls_ui(ui);
+                self.numbers_ui(ui);
+                self.phase_ui(ui, 260.0);
+            });
+        });
+    }
+
+    fn answer_ui(&mut self, ui: &mut egui::Ui) {
+        match self.finished.as_ref().map(|f| &f.data) {
+            Some(Ok((data, claims))) => {
+                theme::answer_ui(ui, &data.text);
+                ui.label(&data.stability);
+                if let Some(number) = self.figure {
+                    controls::claim_ui(ui, number, claims);
+                } else {
+                    ui.label(&data.trust.text);
+                }
+            }
+            Some(Err(error)) => {
+                ui.colored_label(ui.visuals().warn_fg_color, error);
+            }
+            None => {}
+        }
+    }
+
+    fn numbers_ui(&self, ui: &mut egui::Ui) {
+        if let Some((data, _)) = self.data() {
+            ui.separator();
+            table::predictions_ui(ui, &self.input.relay, data);
+            table::harmonics_ui(ui, data);
+        }
+        table::equations_ui(ui);
+    }
+
+    fn nyquist_ui(&mut self, ui: &mut egui::Ui, height: f32) {
+        let Some(Ok((data, _))) = self.finished.as_ref().map(|f| &f.data) else {
+            return;
+        };
+        let relay = &mut self.input.relay;
+        let amplitude = plots::swing_at(data, self.clock);
+        self.nyquist.ui(ui, relay, data, amplitude, height);
+    }
+
+    fn phase_ui(&self, ui: &mut egui::Ui, height: f32) {
+        if let Some((data, _)) = self.data() {
+            plots::phase_ui(ui, data, self.clock, height);
+        }
+    }
+
+    fn time_ui(&mut self, ui: &mut egui::Ui, height: f32) {
+        let Some((data, _)) = self.data() else {
+            return;
+        };
+        plots::time_ui(ui, &self.input.relay, data, self.clock, height);
+    }
+}

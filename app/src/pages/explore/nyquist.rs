@@ -1,0 +1,212 @@
+//! The Nyquist plot: plant, -1/N(a), where they meet; the line and the point S can be dragged.
+
+use std::f64::consts::PI;
+
+use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, PlotTransform, Points, Text};
+use hysteron_core::explore::ExploreData;
+use hysteron_core::relay::Relay;
+
+use super::plots::{caption_ui, curve, dot, still};
+use crate::theme;
+
+/// How near the pointer must come to take hold, points.
+const REACH: f32 = 9.0;
+
+/// Largest phase margin that S can be dragged to, rad.
+const LARGEST_MARGIN: f64 = 1.4;
+
+/// What is held by the pointer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Held {
+    #[default]
+    Nothing,
+    Line,
+    Margin,
+}
+
+/// The plot's own state.
+#[derive(Default)]
+pub struct Nyquist {
+    /// Whether the point S on the unit circle is shown.
+    pub margin: bool,
+    held: Held,
+    /// Half width of the view; stays while something is held, so that the ground does not move.
+    view: f64,
+}
+
+impl Nyquist {
+    /// Draws the plot; dragging sets the relay's hysteresis.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        relay: &mut Relay,
+        data: &ExploreData,
+        amplitude: Option<f64>,
+        height: f32,
+    ) {
+        caption_ui(
+            ui,
+            "Nyquist plot",
+            &[
+                ("P(jω)", theme::MEASURED),
+                ("-1/N(a), drag it", theme::DESCRIBING),
+            ],
+        );
+        if self.held == Held::Nothing || self.view == 0.0 {
+            self.view = rounded(reach(data, self.margin));
+        }
+        let view = self.view;
+        let shown_margin = self.margin.then(|| margin(relay)).flatten();
+        let plot = still("nyquist", "real part", "imaginary part", height)
+            .data_aspect(1.0)
+            .default_x_bounds(-1.6 * view, view)
+            .default_y_bounds(-1.1 * view, 0.5 * view);
+        let level = -PI * relay.hysteresis / (4.0 * relay.gain);
+        let marker = amplitude.map(|a| {
+            let a = a.max(relay.hysteresis);
+            (a, relay.inverse_describing_function(a))
+        });
+        let shown = plot.show(ui, |plot| {
+            plot.set_plot_bounds_y(-1.1 * view..=0.5 * view);
+            plot.set_plot_bounds_x(-1.6 * view..=view);
+            plot.line(
+                Line::new("plant P(jω)", curve(&data.nyquist))
+                    .color(theme::MEASURED)
+                    .width(2.5),
+            );
+            plot.line(
+                Line::new("-1/N(a)", vec![[0.0, level], [-4.0 * view, level]])
+                    .color(theme::DESCRIBING)
+                    .width(2.5)
+                    .style(LineStyle::dashed_loose()),
+            );
+            let marks: Vec<[f64; 2]> = data.intersections.iter().map(|i| i.point).collect();
+            plot.points(
+                Points::new("predicted oscillation", curve(&marks))
+                    .color(theme::EXACT)
+                    .radius(7.0)
+                    .shape(MarkerShape::Diamond),
+            );
+            if self.margin {
+                plot.line(
+                    Line::new("unit circle", unit_circle())
+                        .color(theme::RESIDUAL)
+                        .width(1.5),
+                );
+            }
+            if let Some(phi) = shown_margin {
+                let at = [-phi.cos(), -phi.sin()];
+                plot.points(
+                    Points::new("S", vec![at])
+                        .color(theme::RESIDUAL)
+                        .radius(8.0)
+                        .shape(MarkerShape::Square),
+                );
+                let text = format!("S: margin φ = {:.1}°", phi.to_degrees());
+                plot.text(label("S", text, [at[0], at[1] - 0.1 * view]));
+            }
+            if let Some((a, at)) = marker {
+                plot.points(dot("a", at));
+                let text = format!("a = {a:.3}");
+                plot.text(label("a", text, [at[0], at[1] - 0.09 * view]));
+            }
+        });
+        self.drag(&shown.response, &shown.transform, relay, shown_margin);
+    }
+
+    fn drag(
+        &mut self,
+        response: &egui::Response,
+        transform: &PlotTransform,
+        relay: &mut Relay,
+        shown: Option<f64>,
+    ) {
+        let level = -PI * relay.hysteresis / (4.0 * relay.gain);
+        let under = |at: egui::Pos2| {
+            let point = |x, y| transform.position_from_point(&PlotPoint::new(x, y));
+            let on_margin = shown
+                .is_some_and(|phi: f64| point(-phi.cos(), -phi.sin()).distance(at) < 1.5 * REACH);
+            if on_margin {
+                Held::Margin
+            } else if (point(0.0, level).y - at.y).abs() < REACH {
+                Held::Line
+            } else {
+                Held::Nothing
+            }
+        };
+        if response.drag_started() {
+            let origin = response.ctx.input(|i| i.pointer.press_origin());
+            self.held = origin.map_or(Held::Nothing, under);
+        }
+        if response.drag_stopped() || !response.dragged() {
+            self.held = Held::Nothing;
+        }
+        let hovered = response.hover_pos().map_or(Held::Nothing, under);
+        let icon = match (self.held, hovered) {
+            (Held::Line, _) | (Held::Nothing, Held::Line) => Some(egui::CursorIcon::ResizeVertical),
+            (Held::Margin, _) | (Held::Nothing, Held::Margin) => Some(egui::CursorIcon::Grab),
+            (Held::Nothing, Held::Nothing) => None,
+        };
+        if let Some(icon) = icon {
+            response.ctx.set_cursor_icon(icon);
+        }
+        let Some(pointer) = response.interact_pointer_pos() else {
+            return;
+        };
+        let at = transform.value_from_position(pointer);
+        let scale = 4.0 * relay.gain / PI;
+        match self.held {
+            Held::Line => relay.hysteresis = tidy((-at.y * scale).max(0.0)),
+            Held::Margin => {
+                let phi = (-at.y).atan2(-at.x).clamp(0.0, LARGEST_MARGIN);
+                relay.hysteresis = tidy(scale * phi.sin());
+            }
+            Held::Nothing => {}
+        }
+    }
+}
+
+/// The phase margin that the relay probes: its line meets the unit circle at `-180 degrees + phi`, equation (7);
+/// `None` where it lies beyond.
+fn margin(relay: &Relay) -> Option<f64> {
+    let sine = PI * relay.hysteresis / (4.0 * relay.gain);
+    (sine <= 1.0).then(|| sine.asin())
+}
+
+/// The third quadrant of the unit circle, where phase margins are.
+fn unit_circle() -> PlotPoints<'static> {
+    (0..=60)
+        .map(|i| {
+            let angle = PI + 0.5 * PI * f64::from(i) / 60.0;
+            [angle.cos(), angle.sin()]
+        })
+        .collect()
+}
+
+fn label(name: &'static str, text: String, at: [f64; 2]) -> Text {
+    let text = egui::RichText::new(text).size(15.0).strong();
+    Text::new(name, PlotPoint::new(at[0], at[1]), text)
+}
+
+/// As fine as the slider shows it.
+fn tidy(hysteresis: f64) -> f64 {
+    (hysteresis * 1000.0).round() / 1000.0
+}
+
+/// How far from the origin the things are that matter.
+fn reach(data: &ExploreData, margin: bool) -> f64 {
+    let least = if margin { 0.7 } else { 0.05 };
+    data.intersections
+        .iter()
+        .flat_map(|i| i.point)
+        .chain(data.inverse_df.iter().flatten().copied())
+        .fold(least, |m, v| m.max(v.abs()))
+}
+
+/// The next larger step of a coarse scale, so that the view does not tremble with the sliders.
+fn rounded(value: f64) -> f64 {
+    let decade = 10_f64.powf(value.log10().floor());
+    let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];
+    let fits = steps.iter().find(|s| **s * decade >= value);
+    fits.map_or(value, |s| s * decade)
+}

@@ -1,0 +1,121 @@
+//! The numbers: three ways to the same cycle, side by side.
+
+use hysteron_core::explore::{ExploreData, ultimate_gain};
+use hysteron_core::limit_cycle::Cycle;
+use hysteron_core::relay::Relay;
+
+use crate::theme;
+
+/// Describing function, exact and simulated values with their differences in per cent.
+pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
+    let reference = data.exact.or(data.simulated);
+    egui::Grid::new("predictions")
+        .num_columns(5)
+        .striped(true)
+        .spacing([12.0, 4.0])
+        .show(ui, |ui| {
+            for title in ["", "period [s]", "amplitude", "K_u", "stable"] {
+                ui.strong(title);
+            }
+            ui.end_row();
+            let rows = [
+                (
+                    "Describing\nfunction",
+                    data.describing().map(|i| i.cycle),
+                    theme::DESCRIBING,
+                ),
+                ("Exact", data.exact, theme::EXACT),
+                ("Simulated", data.simulated, theme::SIMULATED),
+            ];
+            for (name, cycle, color) in rows {
+                row_ui(ui, name, color, relay, cycle, reference);
+            }
+        });
+    ui.small("Amplitude a: half of peak to peak. K_u = 4k/(πa). Below each: difference from the exact value.");
+}
+
+fn row_ui(
+    ui: &mut egui::Ui,
+    name: &str,
+    color: egui::Color32,
+    relay: &Relay,
+    cycle: Option<Cycle>,
+    reference: Option<Cycle>,
+) {
+    ui.label(
+        egui::RichText::new(name)
+            .color(theme::readable(ui, color))
+            .strong(),
+    );
+    let Some(cycle) = cycle else {
+        ui.label("none");
+        ui.end_row();
+        return;
+    };
+    let gain = |c: Cycle| ultimate_gain(relay, c.amplitude);
+    let values: [(f64, Option<f64>); 3] = [
+        (cycle.period, reference.map(|r| r.period)),
+        (cycle.amplitude, reference.map(|r| r.amplitude)),
+        (gain(cycle), reference.map(gain)),
+    ];
+    for (value, exact) in values {
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            ui.label(format!("{value:.4}"));
+            if let Some(exact) = exact {
+                ui.small(difference(value, exact));
+            }
+        });
+    }
+    ui.label(cycle.stable.map_or("?", |s| if s { "yes" } else { "no" }));
+    ui.end_row();
+}
+
+fn difference(value: f64, exact: f64) -> String {
+    let percent = 100.0 * (value / exact - 1.0);
+    if percent == 0.0 {
+        String::new()
+    } else if percent.abs() < 0.001 {
+        format!("{percent:+.0e} %")
+    } else {
+        format!("{percent:+.2} %")
+    }
+}
+
+/// Harmonics of the output as bars.
+pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
+    /// Smaller shares of the first harmonic are not worth a bar.
+    const LEAST: f64 = 1e-5;
+    let Some(first) = data.harmonics.first() else {
+        return;
+    };
+    ui.strong("Harmonics of the output");
+    for harmonic in &data.harmonics {
+        let share = harmonic.amplitude / first.amplitude;
+        if share < LEAST {
+            continue;
+        }
+        ui.horizontal(|ui| {
+            ui.add_sized(
+                [24.0, 14.0],
+                egui::Label::new(format!("{}", harmonic.order)),
+            );
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(230.0, 10.0), egui::Sense::hover());
+            let mut bar = rect;
+            bar.set_width((rect.width() * share as f32).max(1.5));
+            ui.painter()
+                .rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+            ui.painter().rect_filled(bar, 2.0, theme::EXACT);
+            ui.label(format!("{:.3} %", 100.0 * share));
+        });
+    }
+    ui.small("The describing function sees the first only.");
+}
+
+/// The equations behind the page.
+pub fn equations_ui(ui: &mut egui::Ui) {
+    ui.collapsing("The equations", |ui| {
+        ui.monospace("relay      u = -k h(y)\nbalance    P(jω) = -1/N(a)\n-1/N(a) = -π/(4k) [√(a² - ε²) + jε]\nmargin S   sin φ = πε/(4k)\nexact      (I + e^(Ah)) x0 = k [G(h-L)\n             - e^(A(h-L)) G(L)],  C x0 = ε");
+        ui.small("h: half period, L: all delays, G(t): step response of the state.");
+    });
+}
