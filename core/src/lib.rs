@@ -10,6 +10,7 @@
 //! | [`plant`] | what does it act on? |
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
+//! | [`tuning`] | how do I tune a controller from it? |
 //! | [`explore`] | everything about one loop at once |
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
@@ -26,3 +27,4 @@ pub mod model;
 pub mod plant;
 pub mod relay;
 pub mod simulate;
+pub mod tuning;
