@@ -213,7 +213,7 @@ fn exact_gain(plant: &TransferFunction, design: &RelayDesign, near: f64) -> f64 
 
 #[test]
 fn equation_8_gain_adaptation_converges_quadratically_to_the_exact_gain() {
-    for (preset, first) in [(0, 0.5), (1, 0.6), (3, 2.0), (5, 0.5)] {
+    for (preset, first) in [(0, 0.5), (1, 0.6), (3, 2.0)] {
         let plant = &presets()[preset].plant;
         let design = RelayDesign::new(PI / 6.0, 0.4).unwrap();
         let first = first / design.gain;

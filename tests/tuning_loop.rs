@@ -134,7 +134,7 @@ fn a_tiny_dead_time_is_replaced_without_harm() {
         respond(&plant, &pid, Disturbance::Load, horizon, 0.01).unwrap()
     };
     // The same dead time, as a delay line over a short horizon and replaced over a long one.
-    let (line, replaced) = (run(4e-4, 10.0), run(4e-4, 40.0));
+    let (line, replaced) = (run(4e-4, 8.0), run(4e-4, 40.0));
     let mut compared = 0;
     for (t, y) in line.time.iter().zip(&line.output) {
         for (s, z) in replaced.time.iter().zip(&replaced.output) {
@@ -144,7 +144,7 @@ fn a_tiny_dead_time_is_replaced_without_harm() {
             }
         }
     }
-    assert!(compared > 10, "{compared}");
+    assert!(compared > 70, "{compared}");
 }
 
 #[test]
@@ -363,16 +363,6 @@ fn every_preset_is_tuned_and_the_responses_do_not_depend_on_the_step() {
         assert!(loops(&report).count() >= RULES.len() - 2, "{}", preset.name);
         for (id, l) in loops(&report) {
             let stable = l.unstable_poles == 0;
-            println!(
-                "{:22} {id:26} K {:8.4} stable {stable} Ms {:.2} IAE {:.3} load {:.3} over {:.2} settle {:?}",
-                preset.name,
-                l.pid.gain,
-                l.margins.map_or(f64::NAN, |m| m.max_sensitivity),
-                l.set_point.iae,
-                l.load.iae,
-                l.set_point.overshoot,
-                l.set_point.settling_time
-            );
             if !stable {
                 continue;
             }
@@ -407,10 +397,13 @@ fn the_chosen_rule_ends_the_experiment() {
     let before = report.before.set_point.output.last().unwrap();
     close("offset", *before, 0.5, 1e-3);
     close("end", *after.set_point.output.last().unwrap(), 1.0, 1e-3);
-    // The margin is what was asked for, but for the describing function's error.
+    // The true margin of K/(s + 1)^3 in closed form, from |P| = 1/K.
     let found = report.phase_margin.unwrap();
+    let omega = (found.adaptation.gain.powf(2.0 / 3.0) - 1.0).sqrt();
     let margin = found.true_phase_margin.unwrap();
-    assert!((margin - PI / 4.0).abs() < 0.1, "{margin}");
+    close("phase margin", margin, PI - 3.0 * omega.atan(), 1e-9);
+    // It is what was asked for, but for the describing function's error: here 6 degrees.
+    assert!((margin - PI / 4.0).abs() < 7_f64.to_radians(), "{margin}");
 }
 
 #[test]
@@ -459,9 +452,9 @@ fn reports_survive_json_and_repeat_to_the_bit() {
         assert_eq!(serde_json::from_str::<TuningInput>(&text).unwrap(), input);
         let report = tune(&input).unwrap();
         assert_eq!(report, tune(&input).unwrap());
-        let text = serde_json::to_string(&report).unwrap();
-        let back: TuningReport = serde_json::from_str(&text).unwrap();
-        assert_eq!(serde_json::to_string(&back).unwrap(), text);
+        let value = serde_json::to_value(&report).unwrap();
+        let back: TuningReport = serde_json::from_value(value).unwrap();
+        assert!(back == report);
     }
 }
 
