@@ -1,36 +1,8 @@
 //! The shell around the pages.
 
 use crate::hook::Targets;
-use crate::pages::{Compare, Explore};
+use crate::pages::{Command, Compare, Explore, Maps, Page};
 use crate::theme;
-
-/// The pages, in the order of their tabs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Page {
-    /// A relay loop, live.
-    #[default]
-    Explore,
-    /// A model against a measurement.
-    Compare,
-}
-
-impl Page {
-    const ALL: [Self; 2] = [Self::Explore, Self::Compare];
-
-    fn id(self) -> &'static str {
-        match self {
-            Self::Explore => "explore",
-            Self::Compare => "compare",
-        }
-    }
-
-    fn title(self) -> &'static str {
-        match self {
-            Self::Explore => "Explore a relay loop",
-            Self::Compare => "Compare a measurement",
-        }
-    }
-}
 
 /// The app: the pages and what is shown of them.
 #[derive(Default)]
@@ -38,6 +10,7 @@ pub struct HysteronApp {
     /// The page in front.
     pub page: Page,
     explore: Explore,
+    maps: Maps,
     /// The page that criticises a model.
     pub compare: Compare,
     targets: Targets,
@@ -55,19 +28,34 @@ impl HysteronApp {
         self.take_dropped_files(ui.ctx());
         self.compare.update(ui.ctx());
         egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui));
+        let mut commands = Vec::new();
         match self.page {
             Page::Explore => self.explore.ui(ui),
+            Page::Maps => self.maps.ui(ui, self.explore.input(), &mut commands),
             Page::Compare => self.compare.ui(ui, &mut self.targets),
+        }
+        for command in commands {
+            self.carry_out(command);
         }
         drop_hint_ui(ui.ctx());
         #[cfg(target_arch = "wasm32")]
         crate::hook::publish(&self.hook_state());
     }
 
+    fn carry_out(&mut self, command: Command) {
+        match command {
+            Command::Go(page) => self.page = page,
+            Command::SetLoop(input) => self.explore.set(*input),
+        }
+    }
+
     /// What is on the screen, for tests.
     pub fn hook_state(&self) -> serde_json::Value {
         let mut state = self.compare.hook_state();
         state["ready"] = true.into();
+        state["maps"] = self.maps.hook_state();
+        let mapping = state["maps"]["busy"] == true;
+        state["busy"] = (state["busy"] == true || mapping).into();
         state["page"] = self.page.id().into();
         state["frame"] = self.frame.into();
         state["targets"] = self.targets.to_json();

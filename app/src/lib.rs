@@ -3,15 +3,16 @@
 mod app;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
+mod colors;
 mod hook;
 mod jobs;
 mod pages;
 mod start;
+mod tasks;
 mod theme;
-#[cfg(target_arch = "wasm32")]
-mod worker_protocol;
 
-pub use app::{HysteronApp, Page};
+pub use app::HysteronApp;
+pub use pages::Page;
 #[cfg(not(target_arch = "wasm32"))]
 pub use start::run_native;
 #[cfg(target_arch = "wasm32")]

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::limit_cycle::{
-    Cycle, Intersection, describing_function, exact_symmetric, typical_frequency,
+    Cycle, Intersection, describing_function, exact_cycle, typical_frequency,
 };
 use crate::plant::{PlantError, TransferFunction, presets};
 use crate::relay::{Relay, RelayError};
@@ -49,7 +49,7 @@ pub struct ExploreData {
     pub inverse_df: Vec<[f64; 2]>,
     /// Where they meet.
     pub intersections: Vec<Intersection>,
-    /// The exact cycle; only for a symmetric relay.
+    /// The exact cycle nearest to the prediction.
     pub exact: Option<Cycle>,
     /// The cycle into which the simulation settles.
     pub simulated: Option<Cycle>,
@@ -92,11 +92,7 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     let guess = dominant.map_or(10.0 / typical_frequency(plant) + 2.0 * lag, |i| {
         i.cycle.period
     });
-    let exact = if relay.asymmetry == 0.0 {
-        exact_symmetric(&space, relay, lag, 0.5 * guess)
-    } else {
-        None
-    };
+    let exact = exact_cycle(&space, relay, lag, 0.5 * guess).map(|c| c.cycle);
     let period = exact.map_or(guess, |c| c.period);
     let step = period / SAMPLES_PER_PERIOD;
     let run = simulate(

@@ -12,6 +12,7 @@
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
 //! | [`tuning`] | how do I tune a controller from it? |
 //! | [`explore`] | everything about one loop at once |
+//! | [`maps`] | how does the oscillation change with two parameters? |
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
@@ -22,6 +23,7 @@ pub mod criticism;
 pub mod effect;
 pub mod explore;
 pub mod limit_cycle;
+pub mod maps;
 pub mod measurement;
 pub mod model;
 pub mod plant;

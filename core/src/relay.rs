@@ -1,4 +1,4 @@
-//! What does the relay do? Equation (2): gain `k`, hysteresis `eps`, asymmetry and delay.
+//! What does the relay do? Equation (2): gain `k`, hysteresis `eps`, asymmetry, bias and delay.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 ///
 /// `h` becomes +1 when `y` rises through `+eps` and -1 when it falls through `-eps`. With asymmetry
 /// `a` the output is `k (1 + a)` while `h = -1` and `-k (1 - a)` while `h = +1`; it acts `delay`
-/// seconds after the switch.
+/// seconds after the switch. A `bias` is added to the output in either state. Asymmetry and bias are the
+/// same thing in different units, `u = -k h + k a + bias`: an asymmetry `a` scales with the gain, a bias
+/// (a valve that does not quite close, a constant load at the plant's input) does not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Relay {
@@ -16,6 +18,8 @@ pub struct Relay {
     pub hysteresis: f64,
     /// Asymmetry `a`, -0.99 to 0.99.
     pub asymmetry: f64,
+    /// Added to the output, in the unit of the input.
+    pub bias: f64,
     /// Delay, s; at least 0.
     pub delay: f64,
 }
@@ -26,6 +30,7 @@ impl Default for Relay {
             gain: 1.0,
             hysteresis: 0.1,
             asymmetry: 0.0,
+            bias: 0.0,
             delay: 0.0,
         }
     }
@@ -63,16 +68,28 @@ impl Relay {
             self.asymmetry.abs() <= 0.99,
             "between -0.99 and 0.99",
         )?;
+        check("bias", self.bias, true, "a number")?;
         check("delay", self.delay, self.delay >= 0.0, "0 s or more")
     }
 
     /// Output for `h = +1` (`high`) or `h = -1`.
     pub fn output(&self, high: bool) -> f64 {
-        if high {
+        let level = if high {
             -self.gain * (1.0 - self.asymmetry)
         } else {
             self.gain * (1.0 + self.asymmetry)
-        }
+        };
+        level + self.bias
+    }
+
+    /// Mean of its two outputs, `k a + bias`.
+    pub fn mean_output(&self) -> f64 {
+        self.gain * self.asymmetry + self.bias
+    }
+
+    /// Whether both outputs have the same size.
+    pub fn is_symmetric(&self) -> bool {
+        self.mean_output() == 0.0
     }
 
     /// Real and imaginary part of `-1/N(a)`, equation (6), for the amplitude `a >= eps` of the output:

@@ -2,8 +2,8 @@
 //! that its module stays small.
 
 #[cfg(target_arch = "wasm32")]
-#[path = "../worker_protocol.rs"]
-mod protocol;
+#[path = "../tasks.rs"]
+mod tasks;
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() {
@@ -17,11 +17,10 @@ fn main() {
 
 #[cfg(target_arch = "wasm32")]
 mod web {
-    use hysteron_core::criticism::{Progress, StepJob};
     use wasm_bindgen::prelude::*;
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
-    use crate::protocol::{Reply, Request};
+    use crate::tasks::{MapTask, News, READY, StepTask, Task};
 
     /// Share of progress below which nothing new is said.
     const PROGRESS_STEP: f64 = 0.01;
@@ -33,54 +32,49 @@ mod web {
             let Some(text) = event.data().as_string() else {
                 return;
             };
-            let reply = match serde_json::from_str(&text) {
-                Ok(request) => work(&answer, request),
-                Err(error) => Reply::Error {
-                    text: error.to_string(),
-                },
-            };
-            send(&answer, &reply);
+            if let Err(error) = work(&answer, &text) {
+                send(&answer, &News::<()>::Failed(error.to_string()));
+            }
         });
         scope.set_onmessage(Some(handler.as_ref().unchecked_ref()));
         handler.forget();
-        send(&scope, &Reply::Ready);
+        let _ = scope.post_message(&JsValue::from_str(READY));
     }
 
-    fn send(scope: &DedicatedWorkerGlobalScope, reply: &Reply) {
-        if let Ok(text) = serde_json::to_string(reply) {
+    fn send<R: serde::Serialize>(scope: &DedicatedWorkerGlobalScope, news: &News<R>) {
+        if let Ok(text) = serde_json::to_string(news) {
             // A page that is gone needs no answer.
             let _ = scope.post_message(&JsValue::from_str(&text));
         }
     }
 
-    fn work(scope: &DedicatedWorkerGlobalScope, request: Request) -> Reply {
-        let Request::Step {
-            measurement,
-            effects,
-        } = request;
-        let mut job = match StepJob::new(&measurement, &effects) {
-            Ok(job) => job,
-            Err(error) => {
-                return Reply::Error {
-                    text: error.to_string(),
-                };
-            }
-        };
-        let mut said = -1.0;
-        loop {
-            match job.advance() {
-                Progress::Done(report) => {
-                    return Reply::Report {
-                        report: Box::new(report),
-                    };
-                }
-                Progress::Running { fraction, text } => {
-                    if (fraction - said).abs() > PROGRESS_STEP {
-                        said = fraction;
-                        send(scope, &Reply::Progress { fraction, text });
-                    }
-                }
-            }
+    /// A message is the task's name and the task; one line for each kind of task.
+    fn work(scope: &DedicatedWorkerGlobalScope, text: &str) -> Result<(), serde_json::Error> {
+        let (name, task): (String, serde_json::Value) = serde_json::from_str(text)?;
+        match name.as_str() {
+            StepTask::NAME => run::<StepTask>(scope, task),
+            MapTask::NAME => run::<MapTask>(scope, task),
+            _ => Err(serde::de::Error::custom(format!(
+                "no task is called {name}"
+            ))),
         }
+    }
+
+    fn run<T: Task>(
+        scope: &DedicatedWorkerGlobalScope,
+        task: serde_json::Value,
+    ) -> Result<(), serde_json::Error> {
+        let mut said = -1.0;
+        serde_json::from_value::<T>(task)?.run(&mut |news| {
+            if let News::Progress(fraction, _) = &news {
+                if (fraction - said).abs() <= PROGRESS_STEP {
+                    return true;
+                }
+                said = *fraction;
+            }
+            send(scope, &news);
+            true
+        });
+        Ok(())
     }
 }

@@ -18,6 +18,16 @@ pub struct Explore {
 }
 
 impl Explore {
+    /// The loop on screen.
+    pub fn input(&self) -> &ExploreInput {
+        &self.input
+    }
+
+    /// Shows another loop.
+    pub fn set(&mut self, input: ExploreInput) {
+        self.input = input;
+    }
+
     /// Computes anew if something was changed.
     fn update(&mut self) {
         if self
@@ -100,7 +110,7 @@ impl Explore {
         slider_ui(
             ui,
             &mut relay.hysteresis,
-            0.0..=0.5,
+            0.0..=1.0,
             normal.hysteresis,
             "hysteresis ε",
             "How far the output must pass zero before the relay switches",

@@ -14,7 +14,7 @@ mod load;
 mod replay;
 
 pub use engine::{Engine, State};
-pub(crate) use flow::{free_body, root};
+pub(crate) use flow::free_body;
 pub use load::{Coupling, Load, load_torque};
 pub use replay::{Excitation, Sensor, Start};
 

@@ -1,0 +1,240 @@
+//! How does the oscillation change with two parameters? A map of exact cycles.
+
+mod picture;
+mod side;
+
+use hysteron_core::explore::ExploreInput;
+use hysteron_core::maps::{Map, MapInput, Outcome, Parameter, Quantity};
+
+use super::{Command, Page};
+use crate::jobs::{Job, News};
+use crate::tasks::MapTask;
+use crate::theme;
+use picture::Picture;
+
+/// The page: what is asked for, what is known of it, and what is drawn.
+#[derive(Default)]
+pub struct Maps {
+    input: MapInput,
+    quantity: Quantity,
+    /// Values of the two parameters that are read out; clicked or typed.
+    point: Option<[f64; 2]>,
+    /// What the loop at that point does, for the loop beside it.
+    reading: Option<(ExploreInput, Outcome)>,
+    /// The loop that was last seen in *Explore*, and whether this page put it there.
+    seen: Option<ExploreInput>,
+    /// Input of the map below, finished or not.
+    started: Option<MapInput>,
+    map: Map,
+    job: Option<Job<MapTask>>,
+    message: Option<String>,
+    picture: Picture,
+}
+
+impl Maps {
+    /// Takes over the loop of *Explore*, unless it is the one that a click on this map has set.
+    fn follow(&mut self, explored: &ExploreInput) {
+        if self.seen.as_ref() == Some(explored) {
+            return;
+        }
+        self.seen = Some(explored.clone());
+        self.input.base = explored.clone();
+        self.point = None;
+    }
+
+    /// Starts anew if the input has changed, and takes what the job has found.
+    fn update(&mut self, ctx: &egui::Context) {
+        let mut wanted = self.input.clone();
+        // What the axes vary is not part of the loop around which they vary it.
+        for axis in [wanted.x, wanted.y] {
+            let factor = matches!(axis.parameter, Parameter::PlantGain | Parameter::TimeScale);
+            if !factor {
+                axis.parameter.write(&mut wanted.base, axis.to);
+            }
+        }
+        if self.started.as_ref() != Some(&wanted) {
+            self.started = Some(wanted.clone());
+            self.message = wanted.validate().err().map(|e| e.to_string());
+            self.job = None;
+            if self.message.is_none() {
+                self.map = Map::new(wanted.size);
+                self.job = Some(Job::run(ctx, MapTask(wanted)));
+            }
+        }
+        let mut finished = false;
+        for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
+            match news {
+                News::Report(tile) => {
+                    self.map.insert(&tile);
+                    finished |= self.map.share() >= 1.0;
+                    self.picture.outdated();
+                }
+                News::Failed(text) => {
+                    self.message = Some(text);
+                    finished = true;
+                }
+                News::Progress(..) => {}
+            }
+        }
+        if finished {
+            self.job = None;
+        }
+    }
+
+    /// Draws the page around the loop that *Explore* shows.
+    pub fn ui(&mut self, ui: &mut egui::Ui, explored: &ExploreInput, commands: &mut Vec<Command>) {
+        self.follow(explored);
+        let narrow = ui.available_width() < 700.0;
+        if narrow {
+            egui::CentralPanel::default().show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.choices_ui(ui);
+                    self.update(ui.ctx());
+                    self.answer_ui(ui);
+                    let height = ui.available_width() + 40.0;
+                    self.picture_ui(ui, height, commands);
+                    self.point_ui(ui, commands);
+                });
+            });
+            return;
+        }
+        egui::Panel::left("map choices")
+            .default_size(330.0)
+            .resizable(false)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.choices_ui(ui);
+                    self.update(ui.ctx());
+                    ui.separator();
+                    self.point_ui(ui, commands);
+                });
+            });
+        egui::CentralPanel::default().show(ui, |ui| {
+            self.answer_ui(ui);
+            let height = ui.available_height();
+            self.picture_ui(ui, height, commands);
+        });
+    }
+
+    /// The map in one sentence.
+    fn answer_ui(&self, ui: &mut egui::Ui) {
+        if let Some(message) = &self.message {
+            ui.colored_label(ui.visuals().warn_fg_color, message);
+        }
+        theme::answer_ui(ui, &self.answer());
+        ui.horizontal(|ui| {
+            ui.label("Click a point to set it in Explore. Try another quantity: where is the describing function worst?");
+            if self.job.is_some() {
+                ui.spinner();
+                ui.label(format!("{:.0} %", 100.0 * self.map.share()));
+            }
+        });
+    }
+
+    fn answer(&self) -> String {
+        let values = self.map.values(self.quantity);
+        let (Some(least), Some(most)) = (values.first(), values.last()) else {
+            return match self.map.share() {
+                0.0 => "Computing the first cycles ...".to_owned(),
+                _ => "None of these loops oscillates.".to_owned(),
+            };
+        };
+        let silent = self.map.silent_share();
+        let tail = if silent > 0.0 {
+            format!(" {:.0} % of these loops do not oscillate.", 100.0 * silent)
+        } else {
+            String::new()
+        };
+        if self.quantity == Quantity::Stability {
+            let stable = 100.0 * values.iter().sum::<f64>() / values.len() as f64;
+            return format!("{stable:.0} % of the cycles are stable.{tail}");
+        }
+        let label = self.quantity.label();
+        let initial = label[..1].to_uppercase();
+        format!(
+            "{initial}{} from {} to {}.{tail}",
+            &label[1..],
+            number(*least),
+            with_unit(*most, self.quantity.unit()),
+        )
+    }
+
+    fn picture_ui(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
+        let chosen = self.picture.ui(
+            ui,
+            &self.input,
+            &self.map,
+            self.quantity,
+            self.point,
+            height,
+        );
+        if let Some(point) = chosen {
+            self.choose(point, commands);
+        }
+    }
+
+    /// Reads a point out and sets it in *Explore*.
+    fn choose(&mut self, point: [f64; 2], commands: &mut Vec<Command>) {
+        self.point = Some(point);
+        let input = self.input.with(point);
+        self.seen = Some(input.clone());
+        commands.push(Command::SetLoop(Box::new(input)));
+    }
+
+    /// What the loop at a point does, computed for exactly that point.
+    fn read(&mut self, point: [f64; 2]) -> Option<Outcome> {
+        self.message.is_none().then(|| {
+            let input = self.input.with(point);
+            match &self.reading {
+                Some((read, outcome)) if *read == input => *outcome,
+                _ => {
+                    let outcome = Outcome::of(&input, None);
+                    self.reading = Some((input, outcome));
+                    outcome
+                }
+            }
+        })
+    }
+
+    /// What is on the screen, for tests.
+    pub fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "share": self.map.share(),
+            "point": self.point,
+            "message": self.message,
+            "answer": self.answer(),
+        })
+    }
+}
+
+/// Four digits that mean something.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if size >= 1000.0 {
+        format!("{value:.0}")
+    } else if size >= 100.0 {
+        format!("{value:.1}")
+    } else if size >= 10.0 {
+        format!("{value:.2}")
+    } else {
+        format!("{value:.3}")
+    }
+}
+
+fn with_unit(value: f64, unit: &str) -> String {
+    if unit.is_empty() {
+        number(value)
+    } else {
+        format!("{} {unit}", number(value))
+    }
+}
+
+/// Name with its unit, for axes.
+fn axis_title(label: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        label.to_owned()
+    } else {
+        format!("{label} [{unit}]")
+    }
+}

@@ -1,0 +1,273 @@
+//! The map as one textured image, with axes, colour bar, legend and reading.
+
+use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
+use egui_plot::{MarkerShape, Plot, PlotImage, PlotPoint, Points};
+use hysteron_core::maps::{Map, MapInput, Outcome, Quantity};
+
+use super::side::stability;
+use super::{axis_title, number, with_unit};
+use crate::colors::viridis;
+
+/// Pixels of the texture along a cell, so that hatching shows.
+const PIXELS: usize = 4;
+
+/// Share of the values at either end that the colours do not resolve: near the edge of oscillation the
+/// period grows without bound, and one such cell would leave all others the same colour.
+const CLIPPED: f64 = 0.01;
+
+/// Width of the colour bar with its numbers, points.
+const BAR_WIDTH: f32 = 92.0;
+
+/// The drawn map.
+#[derive(Default)]
+pub struct Picture {
+    texture: Option<TextureHandle>,
+    scale: [f64; 2],
+    outdated: bool,
+}
+
+impl Picture {
+    /// The map or what is shown of it has changed.
+    pub fn outdated(&mut self) {
+        self.outdated = true;
+    }
+
+    /// Draws the map; returns the values of the parameters where it was clicked.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        input: &MapInput,
+        map: &Map,
+        quantity: Quantity,
+        point: Option<[f64; 2]>,
+        height: f32,
+    ) -> Option<[f64; 2]> {
+        if map.size() == 0 {
+            return None;
+        }
+        self.paint(ui.ctx(), map, quantity);
+        let mut chosen = None;
+        ui.horizontal_top(|ui| {
+            let width = (ui.available_width() - BAR_WIDTH - 12.0).max(120.0);
+            ui.allocate_ui(egui::vec2(width, height), |ui| {
+                chosen = self.plot_ui(ui, input, map, point, height);
+            });
+            ui.vertical(|ui| legend_ui(ui, quantity, self.scale, height));
+        });
+        chosen
+    }
+
+    fn plot_ui(
+        &self,
+        ui: &mut egui::Ui,
+        input: &MapInput,
+        map: &Map,
+        point: Option<[f64; 2]>,
+        height: f32,
+    ) -> Option<[f64; 2]> {
+        let (x, y) = (input.x, input.y);
+        let title = |axis: hysteron_core::maps::Axis| {
+            axis_title(axis.parameter.label(), axis.parameter.unit())
+        };
+        let shown = Plot::new("map")
+            .height(height)
+            .x_axis_label(title(x))
+            .y_axis_label(title(y))
+            .show_grid(false)
+            .show_crosshair(true)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .allow_axis_zoom_drag(false)
+            .allow_double_click_reset(false)
+            .set_margin_fraction(egui::Vec2::ZERO)
+            .label_formatter(|_| None)
+            .show(ui, |plot| {
+                plot.set_plot_bounds_x(x.from..=x.to);
+                plot.set_plot_bounds_y(y.from..=y.to);
+                if let Some(texture) = &self.texture {
+                    let centre = PlotPoint::new(0.5 * (x.from + x.to), 0.5 * (y.from + y.to));
+                    let size = [(x.to - x.from) as f32, (y.to - y.from) as f32];
+                    plot.image(PlotImage::new("map", texture.id(), centre, size));
+                }
+                if let Some(point) = point {
+                    for (radius, color) in [(8.0, Color32::BLACK), (6.0, Color32::WHITE)] {
+                        plot.points(
+                            Points::new("set in Explore", vec![point])
+                                .shape(MarkerShape::Cross)
+                                .radius(radius)
+                                .color(color),
+                        );
+                    }
+                }
+                plot.pointer_coordinate().map(|p| [p.x, p.y])
+            });
+        let pointed = shown.inner?;
+        let place = [
+            x.index(pointed[0], map.size())?,
+            y.index(pointed[1], map.size())?,
+        ];
+        let clicked = shown.response.clicked();
+        if let Some(outcome) = map.at(place) {
+            let names = [x, y].map(|a| (a.parameter.label(), a.parameter.unit()));
+            shown
+                .response
+                .on_hover_ui_at_pointer(|ui| reading_ui(ui, names, pointed, outcome));
+        }
+        clicked.then_some(pointed)
+    }
+
+    fn paint(&mut self, ctx: &egui::Context, map: &Map, quantity: Quantity) {
+        if self.texture.is_some() && !self.outdated {
+            return;
+        }
+        self.outdated = false;
+        self.scale = scale(&map.values(quantity), quantity);
+        let side = map.size() * PIXELS;
+        let mut image = ColorImage::filled([side, side], Color32::TRANSPARENT);
+        for j in 0..map.size() {
+            for i in 0..map.size() {
+                let Some(outcome) = map.at([i, j]) else {
+                    continue;
+                };
+                let plain = quantity
+                    .value(outcome)
+                    .map(|v| viridis((v - self.scale[0]) / (self.scale[1] - self.scale[0])));
+                let (left, top) = (i * PIXELS, (map.size() - 1 - j) * PIXELS);
+                for row in top..top + PIXELS {
+                    for column in left..left + PIXELS {
+                        image.pixels[row * side + column] =
+                            plain.unwrap_or_else(|| hatched(row, column, outcome));
+                    }
+                }
+            }
+        }
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::NEAREST),
+            None => self.texture = Some(ctx.load_texture("map", image, TextureOptions::NEAREST)),
+        }
+    }
+}
+
+/// Lines where there is no cycle, dots where there is one but nothing to compare it with.
+fn hatched(row: usize, column: usize, outcome: &Outcome) -> Color32 {
+    let mark = if outcome.exact.is_none() {
+        (row + column) % 8 < 2
+    } else {
+        row % 8 < 2 && column % 8 < 2
+    };
+    Color32::from_gray(if mark { 150 } else { 95 })
+}
+
+/// Values at the ends of the colour bar.
+fn scale(values: &[f64], quantity: Quantity) -> [f64; 2] {
+    if quantity == Quantity::Stability || values.is_empty() {
+        return [0.0, 1.0];
+    }
+    let last = (values.len() - 1) as f64;
+    let at = |share: f64| values[(share * last).round() as usize];
+    let (low, high) = (at(CLIPPED), at(1.0 - CLIPPED));
+    let least = 1e-9 * low.abs().max(1e-9);
+    [low, high.max(low + least)]
+}
+
+/// All values of a loop, beside the pointer.
+fn reading_ui(ui: &mut egui::Ui, names: [(&str, &str); 2], values: [f64; 2], outcome: &Outcome) {
+    for ((label, unit), value) in names.iter().zip(values) {
+        ui.label(format!("{label} {}", with_unit(value, unit)));
+    }
+    ui.separator();
+    if outcome.exact.is_none() {
+        ui.label("no limit cycle");
+        return;
+    }
+    for quantity in Quantity::ALL {
+        match (quantity, quantity.value(outcome)) {
+            (Quantity::Stability, Some(v)) => {
+                ui.strong(stability(v));
+            }
+            (_, Some(v)) => {
+                ui.label(format!(
+                    "{} {}",
+                    quantity.label(),
+                    with_unit(v, quantity.unit())
+                ));
+            }
+            (_, None) => {}
+        }
+    }
+}
+
+/// Colour bar with its numbers, and what the hatching means.
+fn legend_ui(ui: &mut egui::Ui, quantity: Quantity, scale: [f64; 2], height: f32) {
+    ui.set_width(BAR_WIDTH);
+    let bar = (0.55 * height).min(320.0);
+    if quantity == Quantity::Stability {
+        for (value, text) in [(1.0, "stable"), (0.0, "unstable")] {
+            ui.horizontal(|ui| {
+                let (rect, _) =
+                    ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
+                ui.painter().rect_filled(rect, 2.0, viridis(value));
+                ui.label(text);
+            });
+        }
+    } else {
+        ui.label(axis_title(quantity.label(), quantity.unit()));
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(BAR_WIDTH, bar), egui::Sense::hover());
+        bar_ui(ui, rect, scale);
+    }
+    ui.add_space(8.0);
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
+    hatch_ui(ui, rect);
+    ui.small("no limit cycle");
+}
+
+fn bar_ui(ui: &egui::Ui, rect: egui::Rect, scale: [f64; 2]) {
+    const STRIPES: usize = 96;
+    const TICKS: usize = 4;
+    let painter = ui.painter();
+    let height = rect.height() / STRIPES as f32;
+    for i in 0..STRIPES {
+        let share = (i as f64 + 0.5) / STRIPES as f64;
+        let top = rect.bottom() - height * (i + 1) as f32;
+        let stripe =
+            egui::Rect::from_min_size(egui::pos2(rect.left(), top), egui::vec2(20.0, height + 0.5));
+        painter.rect_filled(stripe, 0.0, viridis(share));
+    }
+    for i in 0..=TICKS {
+        let share = i as f64 / TICKS as f64;
+        let value = scale[0] + share * (scale[1] - scale[0]);
+        let (anchor, mark) = match i {
+            0 => (egui::Align2::LEFT_BOTTOM, "≤ "),
+            TICKS => (egui::Align2::LEFT_TOP, "≥ "),
+            _ => (egui::Align2::LEFT_CENTER, ""),
+        };
+        painter.text(
+            egui::pos2(
+                rect.left() + 26.0,
+                rect.bottom() - share as f32 * rect.height(),
+            ),
+            anchor,
+            format!("{mark}{}", number(value)),
+            egui::FontId::proportional(13.0),
+            ui.visuals().text_color(),
+        );
+    }
+}
+
+fn hatch_ui(ui: &egui::Ui, rect: egui::Rect) {
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect_filled(rect, 0.0, Color32::from_gray(95));
+    let mut x = rect.left() - rect.height();
+    while x < rect.right() {
+        painter.line_segment(
+            [
+                egui::pos2(x, rect.bottom()),
+                egui::pos2(x + rect.height(), rect.top()),
+            ],
+            (1.5, Color32::from_gray(150)),
+        );
+        x += 6.0;
+    }
+}

@@ -1,0 +1,130 @@
+//! What to map, and what the map says at one point.
+
+use hysteron_core::maps::{Axis, Parameter, Quantity};
+
+use super::{Command, Maps, Page, with_unit};
+
+impl Maps {
+    /// Axes and quantity.
+    pub(super) fn choices_ui(&mut self, ui: &mut egui::Ui) {
+        ui.add_space(4.0);
+        ui.strong("Colour");
+        egui::ComboBox::from_id_salt("quantity")
+            .selected_text(self.quantity.label())
+            .width(280.0)
+            .show_ui(ui, |ui| {
+                for quantity in Quantity::ALL {
+                    let row = ui.selectable_value(&mut self.quantity, quantity, quantity.label());
+                    if row.clicked() {
+                        self.picture.outdated();
+                    }
+                }
+            });
+        ui.add_space(4.0);
+        ui.strong("Across");
+        let base = self.input.base.clone();
+        axis_ui(ui, "across", &mut self.input.x, &base);
+        ui.strong("Upwards");
+        axis_ui(ui, "upwards", &mut self.input.y, &base);
+        if ui.button("Swap the axes").clicked() {
+            std::mem::swap(&mut self.input.x, &mut self.input.y);
+            self.point = self.point.map(|[x, y]| [y, x]);
+        }
+        ui.add_space(4.0);
+        ui.small("Everything else is as set in Explore. Amplitude: half of peak to peak. K_u = 4k/(πa), with the exact amplitude a.");
+    }
+
+    /// Every quantity at the chosen point.
+    pub(super) fn point_ui(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        ui.strong("At one point");
+        let (x, y) = (self.input.x, self.input.y);
+        let old = self.point.unwrap_or_else(|| {
+            [x, y].map(|axis| {
+                axis.parameter
+                    .read(&self.input.base)
+                    .clamp(axis.from, axis.to)
+            })
+        });
+        let mut point = old;
+        for (value, axis) in point.iter_mut().zip([x, y]) {
+            ui.add(
+                egui::Slider::new(value, axis.from..=axis.to)
+                    .text(axis.parameter.label())
+                    .suffix(suffix(axis.parameter.unit()))
+                    .max_decimals(3),
+            );
+        }
+        if point != old {
+            self.choose(point, commands);
+        }
+        if let Some(outcome) = self.read(point) {
+            egui::Grid::new("point")
+                .num_columns(2)
+                .striped(true)
+                .show(ui, |ui| {
+                    for quantity in Quantity::ALL {
+                        let text = match (quantity, quantity.value(&outcome)) {
+                            (_, None) => "none".to_owned(),
+                            (Quantity::Stability, Some(v)) => stability(v).to_owned(),
+                            (_, Some(v)) => with_unit(v, quantity.unit()),
+                        };
+                        ui.label(quantity.label());
+                        ui.label(text);
+                        ui.end_row();
+                    }
+                });
+        }
+        if self.point.is_some() {
+            ui.label("Explore is set to this point.");
+        }
+        if ui.button("Show this loop in Explore").clicked() {
+            self.choose(point, commands);
+            commands.push(Command::Go(Page::Explore));
+        }
+    }
+}
+
+/// A verdict for the value of [`Quantity::Stability`].
+pub(super) fn stability(value: f64) -> &'static str {
+    if value > 0.5 { "stable" } else { "unstable" }
+}
+
+fn suffix(unit: &str) -> String {
+    if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
+}
+
+fn axis_ui(
+    ui: &mut egui::Ui,
+    name: &str,
+    axis: &mut Axis,
+    base: &hysteron_core::explore::ExploreInput,
+) {
+    egui::ComboBox::from_id_salt(name)
+        .selected_text(axis.parameter.label())
+        .width(280.0)
+        .show_ui(ui, |ui| {
+            for parameter in Parameter::ALL {
+                let chosen = axis.parameter == parameter;
+                if ui.selectable_label(chosen, parameter.label()).clicked() && !chosen {
+                    *axis = Axis::around(parameter, base);
+                }
+            }
+        });
+    ui.horizontal(|ui| {
+        let speed = 0.005 * (axis.to - axis.from).abs().max(1e-3);
+        for (label, value) in [("from", &mut axis.from), ("to", &mut axis.to)] {
+            ui.label(label);
+            ui.add(
+                egui::DragValue::new(value)
+                    .speed(speed)
+                    .range(0.0..=1e4)
+                    .max_decimals(3)
+                    .suffix(suffix(axis.parameter.unit())),
+            );
+        }
+    });
+}

@@ -1,0 +1,121 @@
+//! Long computations by name: what they need, what they do, what they say meanwhile. The same code runs
+//! on a thread natively and in the worker on the web, which gets its tasks as JSON text.
+
+use hysteron_core::criticism::{Progress, StepJob, StepReport};
+use hysteron_core::effect::EffectId;
+use hysteron_core::maps::{MapInput, MapJob, Tile};
+use hysteron_core::measurement::Measurement;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// What a task says while it runs.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(tag = "type", content = "value", rename_all = "lowercase")]
+pub enum News<R = StepReport> {
+    /// Share done, 0 to 1, and what it is doing.
+    Progress(f64, String),
+    /// The result; a task may hand it over in parts.
+    Report(Box<R>),
+    /// Why there is none.
+    Failed(String),
+}
+
+/// Where a task says its news; false when nobody listens any more and it should end.
+pub type Say<'a, R> = &'a mut dyn FnMut(News<R>) -> bool;
+
+/// A long computation.
+pub trait Task: Serialize + DeserializeOwned + Send + 'static {
+    /// Its name in messages.
+    #[cfg_attr(
+        not(target_arch = "wasm32"),
+        expect(dead_code, reason = "a thread needs no messages")
+    )]
+    const NAME: &'static str;
+    /// What it hands over.
+    type Report: Serialize + DeserializeOwned + Send + 'static;
+    /// Runs until it is finished or nobody listens.
+    fn run(self, say: Say<'_, Self::Report>);
+}
+
+/// Criticises the baseline with effects on a measurement.
+#[derive(Serialize, Deserialize)]
+pub struct StepTask {
+    /// The measurement.
+    pub measurement: Box<Measurement>,
+    /// Effects on top of the baseline.
+    pub effects: Vec<EffectId>,
+}
+
+impl Task for StepTask {
+    const NAME: &'static str = "step";
+    type Report = StepReport;
+
+    fn run(self, say: Say<'_, StepReport>) {
+        let mut job = match StepJob::new(&self.measurement, &self.effects) {
+            Ok(job) => job,
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        loop {
+            match job.advance() {
+                Progress::Running { fraction, text } => {
+                    if !say(News::Progress(fraction, text)) {
+                        return;
+                    }
+                }
+                Progress::Done(report) => {
+                    say(News::Report(Box::new(report)));
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// Computes a parameter map, handed over tile by tile.
+#[derive(Serialize, Deserialize)]
+pub struct MapTask(pub MapInput);
+
+impl Task for MapTask {
+    const NAME: &'static str = "map";
+    type Report = Tile;
+
+    fn run(self, say: Say<'_, Tile>) {
+        let mut job = match MapJob::new(self.0) {
+            Ok(job) => job,
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        loop {
+            let tile = advance(&mut job);
+            if tile.is_empty() || !say(News::Report(Box::new(tile))) {
+                return;
+            }
+        }
+    }
+}
+
+/// One batch on all cores.
+#[cfg(not(target_arch = "wasm32"))]
+fn advance(job: &mut MapJob) -> Tile {
+    use rayon::prelude::*;
+    let outcomes = job
+        .batch()
+        .par_iter()
+        .map(|place| job.outcome(*place))
+        .collect();
+    job.accept(outcomes)
+}
+
+#[cfg(target_arch = "wasm32")]
+fn advance(job: &mut MapJob) -> Tile {
+    job.advance()
+}
+
+/// What the worker says first, when it listens.
+#[cfg(target_arch = "wasm32")]
+pub const READY: &str = "ready";

@@ -1,0 +1,214 @@
+//! Everything that can be said about the oscillation of a loop without simulating it.
+
+use std::f64::consts::PI;
+
+use super::{
+    ExactCycle, Existence, Intersection, TRUSTED_DISTORTION, describing_function, exact_cycles,
+    existence, typical_frequency,
+};
+use crate::plant::{PlantError, TransferFunction};
+use crate::relay::{Relay, RelayError};
+
+/// What is predicted for a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// By the describing function, equations (5) and (6), by rising frequency.
+    pub describing_function: Vec<Intersection>,
+    /// Exactly, equation (3): cycles with two switches a period, shortest first.
+    pub exact: Vec<ExactCycle>,
+    /// Whether the relay must keep switching; `None` for an unstable plant.
+    pub existence: Option<Existence>,
+    /// How far the describing function can be trusted here.
+    pub trust: Trust,
+    /// The answer in words.
+    pub text: String,
+}
+
+/// How far the describing function can be trusted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trust {
+    /// It agrees with the exact cycle, and the plant filters the harmonics.
+    pub reliable: bool,
+    /// Period by the describing function per exact period, minus 1.
+    pub period_error: Option<f64>,
+    /// The same for the amplitude.
+    pub amplitude_error: Option<f64>,
+    /// Why, in words.
+    pub text: String,
+}
+
+/// Why there is no prediction.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PredictError {
+    /// The plant.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// The relay.
+    #[error(transparent)]
+    Relay(#[from] RelayError),
+}
+
+/// Share by which period or amplitude may be off for the describing function to be called reliable.
+const TRUSTED_ERROR: f64 = 0.05;
+
+/// Guesses closer than this ratio share a scan, which reaches a factor of five to either side.
+const SAME_SCAN: f64 = 4.0;
+
+/// Cycles whose periods differ by less are the same.
+const SAME_CYCLE: f64 = 1e-6;
+
+/// Predicts the oscillation of a relay loop.
+pub fn predict(plant: &TransferFunction, relay: &Relay) -> Result<Prediction, PredictError> {
+    plant.validate()?;
+    relay.validate()?;
+    let describing = describing_function(plant, relay);
+    let exact = all_exact(plant, relay, &describing);
+    let existence = existence(plant, relay);
+    let trust = trust(&describing, &exact);
+    let text = text(&exact, existence.as_ref(), &trust);
+    Ok(Prediction {
+        describing_function: describing,
+        exact,
+        existence,
+        trust,
+        text,
+    })
+}
+
+/// The intersection that the loop would go to: the first stable one, or else the first.
+pub fn dominant(intersections: &[Intersection]) -> Option<&Intersection> {
+    intersections
+        .iter()
+        .find(|i| i.cycle.stable == Some(true))
+        .or(intersections.first())
+}
+
+fn all_exact(
+    plant: &TransferFunction,
+    relay: &Relay,
+    describing: &[Intersection],
+) -> Vec<ExactCycle> {
+    let lag = plant.dead_time + relay.delay;
+    let mut guesses: Vec<f64> = dominant(describing)
+        .into_iter()
+        .chain(describing)
+        .map(|i| 0.5 * i.cycle.period)
+        .collect();
+    // Where the describing function sees nothing there may still be a cycle.
+    guesses.push(0.5 * PI / typical_frequency(plant) + lag);
+    let space = plant.state_space();
+    let mut scanned: Vec<f64> = Vec::new();
+    let mut found: Vec<ExactCycle> = Vec::new();
+    for guess in guesses {
+        let near = |s: &f64| (guess / s).max(s / guess) < SAME_SCAN;
+        if scanned.iter().any(near) {
+            continue;
+        }
+        scanned.push(guess);
+        found.extend(exact_cycles(&space, relay, lag, guess));
+    }
+    found.sort_by(|a, b| a.cycle.period.total_cmp(&b.cycle.period));
+    found.dedup_by(|a, b| (a.cycle.period / b.cycle.period - 1.0).abs() < SAME_CYCLE);
+    found
+}
+
+fn trust(describing: &[Intersection], exact: &[ExactCycle]) -> Trust {
+    let Some(main) = dominant(describing) else {
+        let text = match exact.first() {
+            Some(c) => format!(
+                "The describing function sees no oscillation; exactly there is one of period {:.4} s: do not trust it here.",
+                c.cycle.period
+            ),
+            None => "The describing function sees no oscillation, and there is none.".to_owned(),
+        };
+        return Trust {
+            reliable: exact.is_empty(),
+            text,
+            ..Trust::default()
+        };
+    };
+    let (period, amplitude) = (main.cycle.period, main.cycle.amplitude);
+    let distance = |c: &&ExactCycle| (c.cycle.period / period).ln().abs();
+    let nearest = exact
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let Some(nearest) = nearest else {
+        return Trust {
+            reliable: false,
+            text: format!(
+                "The describing function predicts a period of {period:.4} s, but there is no exact cycle with two \
+                 switches a period near it: do not trust it here."
+            ),
+            ..Trust::default()
+        };
+    };
+    let errors = [
+        period / nearest.cycle.period - 1.0,
+        amplitude / nearest.cycle.amplitude - 1.0,
+    ];
+    let accurate = errors.iter().all(|e| e.abs() <= TRUSTED_ERROR);
+    let smooth = main.distortion <= TRUSTED_DISTORTION;
+    let differences = format!(
+        "it is off by {:+.1} % in period and {:+.1} % in amplitude",
+        100.0 * errors[0],
+        100.0 * errors[1]
+    );
+    let harmonics = format!(
+        "harmonics {:.0} % as large as the first reach the output",
+        100.0 * main.distortion
+    );
+    let text = match (accurate, smooth) {
+        (true, true) => format!("The describing function is good here: {differences}."),
+        (true, false) => format!(
+            "Do not trust the describing function here, although {differences}: {harmonics}."
+        ),
+        (false, true) => format!("Do not trust the describing function here: {differences}."),
+        (false, false) => {
+            format!("Do not trust the describing function here: {differences}, since {harmonics}.")
+        }
+    };
+    Trust {
+        reliable: accurate && smooth,
+        period_error: Some(errors[0]),
+        amplitude_error: Some(errors[1]),
+        text,
+    }
+}
+
+fn text(exact: &[ExactCycle], existence: Option<&Existence>, trust: &Trust) -> String {
+    let cycle = exact
+        .iter()
+        .find(|c| c.cycle.stable == Some(true))
+        .or(exact.first());
+    let first = match (cycle, existence) {
+        (Some(c), _) => {
+            let stable = match c.cycle.stable {
+                Some(true) => "stable",
+                Some(false) => "unstable: the smallest disturbance leads away from it",
+                None => "its stability is not known",
+            };
+            format!(
+                "It can oscillate with period {:.4} s and amplitude {:.4} ({stable}).",
+                c.cycle.period, c.cycle.amplitude
+            )
+        }
+        (None, Some(e)) if e.holds => {
+            "The relay cannot come to rest, but no cycle with two switches a period was found: it slides, or \
+             moves in a longer pattern."
+                .to_owned()
+        }
+        (None, Some(e)) => format!(
+            "No oscillation: with the relay held, the output goes to {:.4} or {:.4}, which is not beyond both \
+             thresholds.",
+            e.equilibria[0], e.equilibria[1]
+        ),
+        (None, None) => "No cycle with two switches a period was found.".to_owned(),
+    };
+    let rest = match (cycle, existence) {
+        (Some(_), Some(e)) if !e.holds => {
+            " It can also come to rest: the relay's push does not reach beyond both thresholds."
+        }
+        _ => "",
+    };
+    format!("{first}{rest} {}", trust.text)
+}

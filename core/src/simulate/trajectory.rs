@@ -1,0 +1,43 @@
+//! What a run leaves behind.
+
+/// A simulated run of one relay and its output, sampled at equal steps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trajectory {
+    /// Times, s.
+    pub time: Vec<f64>,
+    /// Output `y`.
+    pub output: Vec<f64>,
+    /// Its derivative, 1/s.
+    pub slope: Vec<f64>,
+    /// Acting input as `[t, u]` at each change; while the output slides, at each sample.
+    pub input: Vec<[f64; 2]>,
+    /// Instants at which the relay switched up (`h` became +1), s.
+    pub rises: Vec<f64>,
+    /// Instants at which it switched down, s.
+    pub falls: Vec<f64>,
+    /// Smallest and largest output between each two rises, exact: from the extrema of the output and
+    /// its corners, not from samples.
+    pub swings: Vec<[f64; 2]>,
+    /// Intervals of time in which an ideal relay held the output on its threshold (Filippov sliding).
+    pub sliding: Vec<[f64; 2]>,
+    /// The run was cut because the relay switched without end.
+    pub chattering: bool,
+}
+
+impl Trajectory {
+    /// Period in s and amplitude (half of peak to peak) of the last whole cycle, if the run has settled:
+    /// the two last cycles differ by less than the share `tolerance` in both.
+    pub fn settled(&self, tolerance: f64) -> Option<(f64, f64)> {
+        let [.., a, b, c] = self.rises.as_slice() else {
+            return None;
+        };
+        let [.., before, last] = self.swings.as_slice() else {
+            return None;
+        };
+        let (period, amplitude) = (c - b, 0.5 * (last[1] - last[0]));
+        let earlier = 0.5 * (before[1] - before[0]);
+        let calm = ((b - a) - period).abs() < tolerance * period
+            && (earlier - amplitude).abs() < tolerance * amplitude;
+        (calm && !self.chattering).then_some((period, amplitude))
+    }
+}
