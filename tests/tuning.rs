@@ -373,7 +373,7 @@ fn berner_hagglund_astrom_2016_half_period_equations_agree_with_the_simulation()
                 gain: 1.5,
                 hysteresis,
                 asymmetry,
-                delay: 0.0,
+                ..Relay::default()
             };
             let test = RelayTest::run(&lag_with_dead_time(gain, t, l), &relay).unwrap();
             let model = Model::Lag {
@@ -414,7 +414,7 @@ fn berner_hagglund_astrom_2016_finds_lag_and_dead_time() {
             gain: 1.0,
             hysteresis: 0.02,
             asymmetry: 0.3,
-            delay: 0.0,
+            ..Relay::default()
         };
         let test = RelayTest::run(&lag_with_dead_time(2.0, 1.0, l), &relay).unwrap();
         let found = identify(test).unwrap();
@@ -441,7 +441,7 @@ fn shen_wu_yu_1996_recovers_a_first_order_lag_exactly() {
             gain: 1.0,
             hysteresis: 0.03,
             asymmetry: 0.4,
-            delay: 0.0,
+            ..Relay::default()
         };
         let found = identify(RelayTest::run(&lag_with_dead_time(gain, t, l), &relay).unwrap());
         let Ok(Model::Lag {
@@ -481,4 +481,25 @@ fn a_symmetric_relay_identifies_no_model() {
     let test = RelayTest::run(&lag_with_dead_time(1.0, 1.0, 0.5), &Relay::default()).unwrap();
     let error = identify(test).unwrap_err();
     assert!(matches!(error, TuningError::Symmetric { .. }), "{error}");
+}
+
+#[test]
+fn a_bias_of_the_relay_is_an_asymmetry_in_other_units() {
+    let plant = lag_with_dead_time(2.0, 1.0, 0.5);
+    let asymmetric = Relay {
+        gain: 2.0,
+        asymmetry: 0.3,
+        ..Relay::default()
+    };
+    let biased = Relay {
+        asymmetry: 0.0,
+        bias: 0.6,
+        ..asymmetric
+    };
+    let found = |relay| identify(RelayTest::run(&plant, relay).unwrap()).unwrap();
+    let (a, b) = (found(&asymmetric), found(&biased));
+    close("ratio of outputs", b.asymmetry_ratio, 1.3 / 0.7, 1e-14);
+    close("static gain", b.static_gain.unwrap(), 2.0, 1e-9);
+    close("period", b.test.period, a.test.period, 1e-12);
+    assert!(matches!(b.berner, Ok(Model::Lag { .. })), "{:?}", b.berner);
 }

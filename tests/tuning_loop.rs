@@ -110,7 +110,7 @@ fn step_response_without_dead_time_is_exact_at_any_step() {
 #[test]
 fn the_error_falls_with_the_fourth_power_of_the_step() {
     let plant = plant(&[1.0], &[1.0, 2.0, 1.0], 0.8);
-    let pid = Pid::pid(1.2, 1.6, 0.4, 5.0);
+    let pid = Pid::with_derivative(1.2, 1.6, 0.4, 5.0);
     let at = |step: f64| {
         let found = respond(&plant, &pid, Disturbance::SetPoint, 16.0, step).unwrap();
         (*found.time.last().unwrap(), *found.output.last().unwrap())
@@ -128,7 +128,7 @@ fn the_error_falls_with_the_fourth_power_of_the_step() {
 
 #[test]
 fn a_tiny_dead_time_is_replaced_without_harm() {
-    let pid = Pid::pid(1.2, 1.6, 0.4, 5.0);
+    let pid = Pid::with_derivative(1.2, 1.6, 0.4, 5.0);
     let run = |l: f64, horizon: f64| {
         let plant = plant(&[1.0], &[1.0, 2.0, 1.0], l);
         respond(&plant, &pid, Disturbance::Load, horizon, 0.01).unwrap()
@@ -236,7 +236,7 @@ fn stability_is_known_on_both_sides_of_its_limit() {
 
 #[test]
 fn forms_of_the_controller_are_the_same_controller() {
-    let pid = Pid::pid(2.0, 3.0, 0.5, 8.0);
+    let pid = Pid::with_derivative(2.0, 3.0, 0.5, 8.0);
     let back = Pid::from_parallel(&pid.parallel()).unwrap();
     for omega in [0.01, 1.0, 50.0] {
         assert!(
@@ -261,7 +261,7 @@ fn forms_of_the_controller_are_the_same_controller() {
             (1.0 / (s * form.integral_time) + 1.0) * (s * form.derivative_time + 1.0) * form.gain;
         assert!((unfiltered.response(omega) - series).norm() < 1e-9 * series.norm());
     }
-    assert!(Pid::pid(1.0, 1.0, 0.3, 10.0).series().is_none());
+    assert!(Pid::with_derivative(1.0, 1.0, 0.3, 10.0).series().is_none());
     assert!(
         Pid::from_parallel(&Parallel {
             proportional: 0.0,

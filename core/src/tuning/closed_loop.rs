@@ -290,7 +290,7 @@ impl Simulation {
                 piece.coefficients(if i >= self.delay { self.load } else { 0.0 })
             });
             let (u, y) = self.signals(&z, acting[0], &mut slope);
-            if !(y[0].abs() < RUNAWAY) {
+            if y[0].is_nan() || y[0].abs() >= RUNAWAY {
                 out.cut = true;
                 break;
             }

@@ -72,7 +72,12 @@ impl Pid {
     }
 
     /// A PID controller; times in s, the derivative's filter at `derivative_time / filter`.
-    pub fn pid(gain: f64, integral_time: f64, derivative_time: f64, filter: f64) -> Self {
+    pub fn with_derivative(
+        gain: f64,
+        integral_time: f64,
+        derivative_time: f64,
+        filter: f64,
+    ) -> Self {
         Self {
             derivative_time,
             filter_time: derivative_time / filter,

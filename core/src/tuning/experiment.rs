@@ -130,6 +130,7 @@ impl RelayTest {
 fn guess(plant: &TransferFunction, relay: &Relay) -> f64 {
     let symmetric = Relay {
         asymmetry: 0.0,
+        bias: 0.0,
         ..*relay
     };
     let found = describing_function(plant, &symmetric);

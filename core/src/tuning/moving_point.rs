@@ -95,7 +95,7 @@ pub fn pid(
     }
     let x = bisect(low, top, false, |x| angle(x) - turn);
     let derivative = x / from.omega;
-    Ok(Pid::pid(
+    Ok(Pid::with_derivative(
         size / c(x).norm(),
         ratio * derivative,
         derivative,

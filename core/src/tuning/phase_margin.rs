@@ -53,8 +53,7 @@ impl RelayDesign {
         Relay {
             gain: series * self.gain,
             hysteresis: self.hysteresis,
-            asymmetry: 0.0,
-            delay: 0.0,
+            ..Relay::default()
         }
     }
 }

@@ -24,8 +24,8 @@ use crate::relay::Relay;
 pub struct TuningInput {
     /// The plant.
     pub plant: TransferFunction,
-    /// The relay. Its asymmetry is used in the asymmetric test only; its delay counts as dead time of
-    /// the plant, in the loops as well.
+    /// The relay. Its asymmetry and bias are used in the asymmetric test only; its delay counts as dead
+    /// time of the plant, in the loops as well.
     pub relay: Relay,
     /// What is wanted.
     #[serde(default)]
@@ -215,6 +215,7 @@ pub fn tune(input: &TuningInput) -> Result<TuningReport, TuningError> {
     let (plant, relay) = input.parts();
     let symmetric = Relay {
         asymmetry: 0.0,
+        bias: 0.0,
         ..relay
     };
     let test = RelayTest::run(&plant, &symmetric)?;
@@ -316,7 +317,7 @@ fn asymmetric(
     symmetric: &RelayTest,
 ) -> Result<AsymmetricTest, TuningError> {
     // Without asymmetry the test would only repeat the first one.
-    if relay.asymmetry == 0.0 {
+    if relay.is_symmetric() {
         identify(symmetric.clone())
     } else {
         identify(RelayTest::run(plant, relay)?)

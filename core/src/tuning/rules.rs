@@ -71,7 +71,9 @@ pub struct Rule {
 
 impl std::fmt::Debug for Rule {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Rule").field("id", &self.id).finish()
+        f.debug_struct("Rule")
+            .field("id", &self.id)
+            .finish_non_exhaustive()
     }
 }
 
@@ -173,7 +175,7 @@ fn from_ultimate(
     let Ultimate { gain: ku, period } = p.ultimate;
     let pid = derivative.map_or_else(
         || Pid::pi(gain * ku, integral * period),
-        |d| Pid::pid(gain * ku, integral * period, d * period, p.wish.filter),
+        |d| Pid::with_derivative(gain * ku, integral * period, d * period, p.wish.filter),
     );
     pid.validate()?;
     Ok(pid)
@@ -243,7 +245,7 @@ fn amigo_pid(p: &Identified) -> Result<Pid, TuningError> {
             time_constant: t,
             dead_time: l,
         } => (
-            Pid::pid(
+            Pid::with_derivative(
                 (0.2 + 0.45 * t / l) / gain,
                 l * (0.4 * l + 0.8 * t) / (l + 0.1 * t),
                 0.5 * l * t / (0.3 * l + t),
@@ -251,9 +253,10 @@ fn amigo_pid(p: &Identified) -> Result<Pid, TuningError> {
             ),
             if l <= t { 0.0 } else { 1.0 },
         ),
-        Model::Integrating { gain, dead_time: l } => {
-            (Pid::pid(0.45 / (gain * l), 8.0 * l, 0.5 * l, filter), 0.0)
-        }
+        Model::Integrating { gain, dead_time: l } => (
+            Pid::with_derivative(0.45 / (gain * l), 8.0 * l, 0.5 * l, filter),
+            0.0,
+        ),
     };
     let pid = Pid {
         setpoint_weight,
