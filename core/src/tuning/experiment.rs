@@ -91,7 +91,10 @@ impl RelayTest {
         for (attempt, periods) in PERIODS.into_iter().enumerate() {
             let step = period / SAMPLES as f64;
             let run = simulate(&space, relay, lag, step, periods * SAMPLES);
-            if run.chattering {
+            // Sliding to the end is chattering without limit.
+            let end = step * (periods * SAMPLES - 1) as f64;
+            let slides = run.sliding.last().is_some_and(|s| s[1] >= end);
+            if run.chattering || slides {
                 return Err(TuningError::Chattering {
                     hysteresis: relay.hysteresis,
                 });
