@@ -4,16 +4,15 @@ use std::time::Duration;
 
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
-use hysteron::{HysteronApp, Page};
+use hysteron::HysteronApp;
 
 /// Rounds of waiting before a job counts as hung; each is [`WAIT`] long.
 const ROUNDS: usize = 6000;
 const WAIT: Duration = Duration::from_millis(20);
 
 /// The app in a window of 1280 x 800 points, on this page.
-fn app(page: Page) -> Harness<'static, HysteronApp> {
-    let mut app = HysteronApp::default();
-    app.page = page;
+fn app(page: &str) -> Harness<'static, HysteronApp> {
+    let app = HysteronApp::at(page);
     Harness::builder()
         .with_size(egui::vec2(1280.0, 800.0))
         .with_max_steps(16)
@@ -49,7 +48,7 @@ fn error(harness: &Harness<'static, HysteronApp>) -> f64 {
 
 #[test]
 fn the_welcome_of_compare_offers_three_measurements() {
-    let mut harness = app(Page::Compare);
+    let mut harness = app("compare");
     harness.step();
     for id in ["drive-02", "drive-12", "process-02"] {
         harness.get_by_label(&format!("Open {id}"));
@@ -59,7 +58,7 @@ fn the_welcome_of_compare_offers_three_measurements() {
 
 #[test]
 fn adding_coulomb_friction_to_drive_02_lowers_the_error_to_the_noise() {
-    let mut harness = app(Page::Compare);
+    let mut harness = app("compare");
     harness.step();
     harness.get_by_label("Open drive-02").click();
     harness.step();
@@ -102,14 +101,13 @@ fn adding_coulomb_friction_to_drive_02_lowers_the_error_to_the_noise() {
 
 #[test]
 fn a_bad_file_gives_one_sentence_and_loses_nothing() {
-    let mut harness = app(Page::Compare);
+    let mut harness = app("compare");
     harness.step();
     harness.get_by_label("Open drive-02").click();
     harness.step();
     let ctx = harness.ctx.clone();
     harness
         .state_mut()
-        .compare
         .open(&ctx, "notes.csv", b"this is no measurement\n");
     harness.step();
     let state = harness.state().hook_state();
@@ -120,9 +118,37 @@ fn a_bad_file_gives_one_sentence_and_loses_nothing() {
 
 #[test]
 fn explore_opens_on_an_oscillating_loop() {
-    let mut harness = app(Page::Explore);
+    let mut harness = app("explore");
     harness.step();
     harness.step();
     harness.get_by_label_contains("It oscillates: period 4.788 s");
     picture(&mut harness, "explore");
+}
+
+#[test]
+fn every_page_draws_itself_and_says_what_it_shows() {
+    for id in HysteronApp::default().page_ids() {
+        let mut harness = app(id);
+        harness.step();
+        harness.step();
+        let state = harness.state().hook_state();
+        assert_eq!(state["page"], id);
+        assert!(state[id]["busy"].is_boolean(), "{id}: {state}");
+    }
+}
+
+#[test]
+fn the_parameter_map_fills_and_a_click_sets_the_loop() {
+    let mut harness = app("maps");
+    harness.step();
+    wait_until_idle(&mut harness);
+    let state = harness.state().hook_state();
+    assert_eq!(state["share"], 1.0);
+    assert_eq!(state["message"], serde_json::Value::Null);
+    picture(&mut harness, "maps");
+    harness.get_by_label("Show this loop in Explore").click();
+    harness.step();
+    harness.step();
+    assert_eq!(harness.state().hook_state()["page"], "explore");
+    harness.get_by_label_contains("It oscillates: period 4.788 s");
 }

@@ -1,40 +1,63 @@
 //! The shell around the pages.
 
-use crate::hook::Targets;
-use crate::pages::{Command, Compare, Explore, Maps, Page};
+use crate::pages::{Command, Desk, View, registry};
 use crate::theme;
 
-/// The app: the pages and what is shown of them.
-#[derive(Default)]
+/// The app: the pages and what they share.
 pub struct HysteronApp {
-    /// The page in front.
-    pub page: Page,
-    explore: Explore,
-    maps: Maps,
-    /// The page that criticises a model.
-    pub compare: Compare,
-    targets: Targets,
+    pages: Vec<Box<dyn View>>,
+    front: usize,
+    desk: Desk,
     frame: u64,
 }
 
+impl Default for HysteronApp {
+    fn default() -> Self {
+        Self {
+            pages: registry(),
+            front: 0,
+            desk: Desk::default(),
+            frame: 0,
+        }
+    }
+}
+
 impl HysteronApp {
+    /// The app with the page of this id in front; an unknown id changes nothing.
+    pub fn at(id: &str) -> Self {
+        let mut app = Self::default();
+        app.go(id);
+        app
+    }
+
+    /// Ids of all pages, in the order of their tabs.
+    pub fn page_ids(&self) -> Vec<&'static str> {
+        self.pages.iter().map(|p| p.id()).collect()
+    }
+
+    /// Opens the bytes of a file on the page in front, or on the first one that takes files.
+    pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        if let Some(page) = self.go_to_files() {
+            page.open(ctx, name, bytes);
+        }
+    }
+
     /// One frame: takes what came in, draws the page, publishes the state.
     pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
         if self.frame == 0 {
             theme::apply(ui.ctx());
         }
         self.frame += 1;
-        self.targets.clear();
+        self.desk.targets.clear();
         self.take_dropped_files(ui.ctx());
-        self.compare.update(ui.ctx());
-        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui));
-        let mut commands = Vec::new();
-        match self.page {
-            Page::Explore => self.explore.ui(ui),
-            Page::Maps => self.maps.ui(ui, self.explore.input(), &mut commands),
-            Page::Compare => self.compare.ui(ui, &mut self.targets),
+        for page in &mut self.pages {
+            page.update(ui.ctx());
         }
-        for command in commands {
+        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui));
+        if let Some(page) = self.pages.get_mut(self.front) {
+            page.ui(ui, &mut self.desk);
+        }
+        for command in std::mem::take(&mut self.desk.commands) {
             self.carry_out(command);
         }
         drop_hint_ui(ui.ctx());
@@ -44,32 +67,45 @@ impl HysteronApp {
 
     fn carry_out(&mut self, command: Command) {
         match command {
-            Command::Go(page) => self.page = page,
-            Command::SetLoop(input) => self.explore.set(*input),
+            Command::Go(id) => self.go(id),
+            Command::SetLoop(input) => self.desk.relay_loop = *input,
         }
     }
 
-    /// What is on the screen, for tests.
+    fn go(&mut self, id: &str) {
+        if let Some(index) = self.pages.iter().position(|p| p.id() == id) {
+            self.front = index;
+        }
+    }
+
+    /// What is on the screen, for tests: the state of the page in front, that of every page by its id,
+    /// and what concerns all.
     pub fn hook_state(&self) -> serde_json::Value {
-        let mut state = self.compare.hook_state();
+        let front = self.pages.get(self.front);
+        let mut state = front.map_or_else(|| serde_json::json!({}), |p| p.hook_state());
+        let mut busy = false;
+        for page in &self.pages {
+            let own = page.hook_state();
+            busy |= own["busy"] == true;
+            state[page.id()] = own;
+        }
         state["ready"] = true.into();
-        state["maps"] = self.maps.hook_state();
-        let mapping = state["maps"]["busy"] == true;
-        state["busy"] = (state["busy"] == true || mapping).into();
-        state["page"] = self.page.id().into();
+        state["busy"] = busy.into();
+        state["page"] = front.map(|p| p.id()).into();
         state["frame"] = self.frame.into();
-        state["targets"] = self.targets.to_json();
+        state["targets"] = self.desk.targets.to_json();
         state
     }
 
     fn bar_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
             ui.heading("Hysteron");
-            for page in Page::ALL {
-                let tab = ui.selectable_label(self.page == page, page.title());
-                self.targets.note(format!("page:{}", page.id()), ui, &tab);
+            for (index, page) in self.pages.iter().enumerate() {
+                let tab = ui.selectable_label(self.front == index, page.title());
+                let name = format!("page:{}", page.id());
+                self.desk.targets.note(name, ui, &tab);
                 if tab.clicked() {
-                    self.page = page;
+                    self.front = index;
                 }
             }
             let dark = ui.visuals().dark_mode;
@@ -85,10 +121,20 @@ impl HysteronApp {
     }
 
     fn take_dropped_files(&mut self, ctx: &egui::Context) {
-        if let Some(file) = ctx.input(|i| i.raw.dropped_files.first().cloned()) {
-            self.page = Page::Compare;
-            self.compare.open_dropped(ctx, &file);
+        if let Some(file) = ctx.input(|i| i.raw.dropped_files.first().cloned())
+            && let Some(page) = self.go_to_files()
+        {
+            page.open_dropped(ctx, &file);
         }
+    }
+
+    /// Brings a page that takes files to the front, unless one is there.
+    fn go_to_files(&mut self) -> Option<&mut Box<dyn View>> {
+        let here = self.pages.get(self.front).is_some_and(|p| p.takes_files());
+        if !here {
+            self.front = self.pages.iter().position(|p| p.takes_files())?;
+        }
+        self.pages.get_mut(self.front)
     }
 }
 

@@ -12,7 +12,6 @@ mod tasks;
 mod theme;
 
 pub use app::HysteronApp;
-pub use pages::Page;
 #[cfg(not(target_arch = "wasm32"))]
 pub use start::run_native;
 #[cfg(target_arch = "wasm32")]

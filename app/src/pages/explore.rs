@@ -6,6 +6,7 @@ use hysteron_core::limit_cycle::Cycle;
 use hysteron_core::plant::presets;
 use hysteron_core::relay::Relay;
 
+use super::{Desk, View};
 use crate::theme;
 
 /// The page: what is set, and what follows from it.
@@ -18,16 +19,6 @@ pub struct Explore {
 }
 
 impl Explore {
-    /// The loop on screen.
-    pub fn input(&self) -> &ExploreInput {
-        &self.input
-    }
-
-    /// Shows another loop.
-    pub fn set(&mut self, input: ExploreInput) {
-        self.input = input;
-    }
-
     /// Computes anew if something was changed.
     fn update(&mut self) {
         if self
@@ -38,40 +29,6 @@ impl Explore {
             let result = compute(&self.input).map_err(|e| e.to_string());
             self.computed = Some((self.input.clone(), result));
         }
-    }
-
-    /// Draws the page.
-    pub fn ui(&mut self, ui: &mut egui::Ui) {
-        let narrow = ui.available_width() < 700.0;
-        if narrow {
-            egui::CentralPanel::default().show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
-                    self.controls_ui(ui);
-                    self.update();
-                    self.results_ui(ui, 260.0);
-                });
-            });
-            return;
-        }
-        egui::Panel::left("loop")
-            .default_size(350.0)
-            .resizable(false)
-            .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
-                    self.controls_ui(ui);
-                    self.update();
-                    if let Some((_, Ok(data))) = &self.computed {
-                        ui.separator();
-                        table_ui(ui, data);
-                    }
-                    equations_ui(ui);
-                });
-            });
-        egui::CentralPanel::default().show(ui, |ui| {
-            self.update();
-            let height = ((ui.available_height() - 60.0) / 2.0).max(160.0);
-            self.results_ui(ui, height);
-        });
     }
 
     fn controls_ui(&mut self, ui: &mut egui::Ui) {
@@ -158,6 +115,61 @@ impl Explore {
             }
             None => {}
         }
+    }
+}
+
+impl View for Explore {
+    fn id(&self) -> &'static str {
+        "explore"
+    }
+
+    fn title(&self) -> &'static str {
+        "Explore a relay loop"
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({"busy": false})
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        self.input.clone_from(&desk.relay_loop);
+        self.page_ui(ui);
+        desk.relay_loop.clone_from(&self.input);
+    }
+}
+
+impl Explore {
+    fn page_ui(&mut self, ui: &mut egui::Ui) {
+        let narrow = ui.available_width() < 700.0;
+        if narrow {
+            egui::CentralPanel::default().show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.controls_ui(ui);
+                    self.update();
+                    self.results_ui(ui, 260.0);
+                });
+            });
+            return;
+        }
+        egui::Panel::left("loop")
+            .default_size(350.0)
+            .resizable(false)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.controls_ui(ui);
+                    self.update();
+                    if let Some((_, Ok(data))) = &self.computed {
+                        ui.separator();
+                        table_ui(ui, data);
+                    }
+                    equations_ui(ui);
+                });
+            });
+        egui::CentralPanel::default().show(ui, |ui| {
+            self.update();
+            let height = ((ui.available_height() - 60.0) / 2.0).max(160.0);
+            self.results_ui(ui, height);
+        });
     }
 }
 

@@ -1,4 +1,5 @@
-//! One file (or folder) per page. A new page is its file, a line in [`Page`] and a line in the app's match.
+//! One file (or folder) per page. A new page is its file, its `mod` line and its line in [`registry`]:
+//! tabs, links, tests and the state for tests follow from there.
 
 mod compare;
 mod explore;
@@ -6,50 +7,55 @@ mod maps;
 
 use hysteron_core::explore::ExploreInput;
 
-pub use compare::Compare;
-pub use explore::Explore;
-pub use maps::Maps;
+use crate::hook::Targets;
 
-/// The pages.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Page {
-    /// A relay loop, live.
-    #[default]
-    Explore,
-    /// Its cycles over two parameters.
-    Maps,
-    /// A model against a measurement.
-    Compare,
+/// A page.
+pub trait View {
+    /// Its name in links and tests.
+    fn id(&self) -> &'static str;
+    /// What its tab says.
+    fn title(&self) -> &'static str;
+    /// Takes in what its jobs have found; also called while another page is in front.
+    fn update(&mut self, _ctx: &egui::Context) {}
+    /// Draws it.
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk);
+    /// What it shows, for tests: an object, with `busy` while a job runs.
+    fn hook_state(&self) -> serde_json::Value;
+    /// Whether files can be opened on it.
+    fn takes_files(&self) -> bool {
+        false
+    }
+    /// Opens the bytes of a file.
+    fn open(&mut self, _ctx: &egui::Context, _name: &str, _bytes: &[u8]) {}
+    /// Opens a file that was dropped on the window.
+    fn open_dropped(&mut self, _ctx: &egui::Context, _file: &egui::DroppedFileHandle) {}
 }
 
-impl Page {
-    /// All of them, in the order of their tabs.
-    pub const ALL: [Self; 3] = [Self::Explore, Self::Maps, Self::Compare];
+/// All pages, in the order of their tabs; the first is in front when the app starts.
+pub fn registry() -> Vec<Box<dyn View>> {
+    vec![
+        Box::<explore::Explore>::default(),
+        Box::<maps::Maps>::default(),
+        Box::<compare::Compare>::default(),
+    ]
+}
 
-    /// Its name in links and tests.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Explore => "explore",
-            Self::Maps => "maps",
-            Self::Compare => "compare",
-        }
-    }
-
-    /// What its tab says.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Explore => "Explore a relay loop",
-            Self::Maps => "Parameter maps",
-            Self::Compare => "Compare a measurement",
-        }
-    }
+/// What the pages share.
+#[derive(Default)]
+pub struct Desk {
+    /// The relay loop that they are about.
+    pub relay_loop: ExploreInput,
+    /// Where the buttons are.
+    pub targets: Targets,
+    /// What is to be done after this frame.
+    pub commands: Vec<Command>,
 }
 
 /// What a page asks of the app; carried out once, after drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Brings a page to the front.
-    Go(Page),
-    /// Sets the loop that *Explore* shows.
+    /// Brings the page with this id to the front.
+    Go(&'static str),
+    /// Sets the loop that the pages are about.
     SetLoop(Box<ExploreInput>),
 }

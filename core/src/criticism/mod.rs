@@ -6,8 +6,8 @@ mod fit;
 mod job;
 mod locate;
 mod noise;
-mod report;
 mod race;
+mod report;
 mod search;
 mod select;
 mod session;
@@ -16,9 +16,9 @@ mod structure;
 mod verdict;
 
 pub use job::{CriticismError, DiagnosisJob, Progress};
-pub use step::StepJob;
 pub use noise::noise_level;
 pub use report::{
     Candidate, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step, StepReport, Verdict,
 };
+pub use step::StepJob;
 pub use verdict::with_error;

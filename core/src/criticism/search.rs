@@ -68,7 +68,9 @@ impl Search {
             points.push((values.clone(), fit.starts.clone()));
             points.extend(Self::regressed(data, fit, &structure, values));
         }
-        points.extend(Self::other_valleys(data, fit, &rest, &kept, &structure, effect, probe));
+        points.extend(Self::other_valleys(
+            data, fit, &rest, &kept, &structure, effect, probe,
+        ));
         Self::from_points(structure, points, fit.cost)
     }
 

@@ -251,9 +251,7 @@ impl StepJob {
     fn progress(&self) -> (f64, String) {
         let wanted = self.wanted.len().max(1) as f64;
         match &self.stage {
-            Stage::Build { search, .. } => {
-                (0.1 * search.scanned(), "Fitting the model".to_owned())
-            }
+            Stage::Build { search, .. } => (0.1 * search.scanned(), "Fitting the model".to_owned()),
             Stage::Try(race) => {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))
@@ -371,12 +369,7 @@ impl StepJob {
 
 /// Whether two models leave the same error within noise.
 fn alike(a: &Scored, b: &Scored) -> bool {
-    same(
-        &a.score,
-        a.fit.values.len(),
-        &b.score,
-        b.fit.values.len(),
-    )
+    same(&a.score, a.fit.values.len(), &b.score, b.fit.values.len())
 }
 
 /// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how

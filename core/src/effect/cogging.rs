@@ -67,6 +67,8 @@ impl Effect for Cogging {
 
     fn apply(&self, values: &[f64], model: &mut Model) {
         let (a, n, phi) = (values[0], values[1], values[2]);
-        model.forces.push(Box::new(move |x, _| a * (n * x + phi).sin()));
+        model
+            .forces
+            .push(Box::new(move |x, _| a * (n * x + phi).sin()));
     }
 }

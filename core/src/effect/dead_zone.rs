@@ -32,14 +32,12 @@ impl Effect for DeadZone {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "z",
-                label: "half width of the dead zone",
-                dimension: Dimension::Force,
-                range: Range::NonNegative,
-            },
-        ]
+        &[ParameterSpec {
+            symbol: "z",
+            label: "half width of the dead zone",
+            dimension: Dimension::Force,
+            range: Range::NonNegative,
+        }]
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {

@@ -32,14 +32,12 @@ impl Effect for LoadRamp {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "r",
-                label: "rise of the load",
-                dimension: Dimension::Rise,
-                range: Range::Signed,
-            },
-        ]
+        &[ParameterSpec {
+            symbol: "r",
+            label: "rise of the load",
+            dimension: Dimension::Rise,
+            range: Range::Signed,
+        }]
     }
 
     fn starts(&self, _probe: &Probe) -> Vec<Vec<f64>> {

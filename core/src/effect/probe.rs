@@ -336,7 +336,9 @@ impl Probe {
     /// samples in a period.
     pub fn load_frequencies(&self) -> Vec<f64> {
         let (low, high) = (40.0 / self.scales.duration, 1.0 / self.scales.step);
-        let ratio = (high / low).max(1.0).powf(1.0 / f64::from(LOAD_FREQUENCIES - 1));
+        let ratio = (high / low)
+            .max(1.0)
+            .powf(1.0 / f64::from(LOAD_FREQUENCIES - 1));
         (0..LOAD_FREQUENCIES)
             .map(|i| low * ratio.powf(f64::from(i)))
             .collect()
@@ -381,10 +383,7 @@ impl Probe {
         let middle = |k: usize| n * 0.5 * (self.position[k] + self.position[k + 1]);
         let stride = spans_stride(&self.spans, SCANNED);
         let fit = self.regress_forces(
-            &[
-                Box::new(|k| middle(k).sin()),
-                Box::new(|k| middle(k).cos()),
-            ],
+            &[Box::new(|k| middle(k).sin()), Box::new(|k| middle(k).cos())],
             stride,
         )?;
         Some((n, fit.coefficients[0], fit.coefficients[1], fit.left))

@@ -32,19 +32,19 @@ impl Effect for QuadraticDrag {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "q",
-                label: "drag coefficient",
-                dimension: Dimension::Drag,
-                range: Range::NonNegative,
-            },
-        ]
+        &[ParameterSpec {
+            symbol: "q",
+            label: "drag coefficient",
+            dimension: Dimension::Drag,
+            range: Range::NonNegative,
+        }]
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         let drag = probe.signature(|_, v| v * v.abs());
-        let q = probe.regress(&[&drag]).map_or(0.0, |fit| -fit.coefficients[0]);
+        let q = probe
+            .regress(&[&drag])
+            .map_or(0.0, |fit| -fit.coefficients[0]);
         vec![vec![q.max(0.01 * probe.scales.of(Dimension::Drag))]]
     }
 

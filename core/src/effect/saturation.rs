@@ -32,14 +32,12 @@ impl Effect for Saturation {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "M",
-                label: "limit of the input",
-                dimension: Dimension::Force,
-                range: Range::Positive,
-            },
-        ]
+        &[ParameterSpec {
+            symbol: "M",
+            label: "limit of the input",
+            dimension: Dimension::Force,
+            range: Range::Positive,
+        }]
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {

@@ -35,14 +35,12 @@ impl Effect for SensorLag {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "T_s",
-                label: "sensor time constant",
-                dimension: Dimension::Time,
-                range: Range::Positive,
-            },
-        ]
+        &[ParameterSpec {
+            symbol: "T_s",
+            label: "sensor time constant",
+            dimension: Dimension::Time,
+            range: Range::Positive,
+        }]
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {

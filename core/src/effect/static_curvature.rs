@@ -59,6 +59,8 @@ impl Effect for StaticCurvature {
         // As a force on the body (T/K) w' = u - w/K - (q/K) w^2.
         let (balance, reading) = (values[0] * model.viscous, values[1]);
         model.forces.push(Box::new(move |_, w| -balance * w * w));
-        model.output_maps.push(Box::new(move |w| w + reading * w * w));
+        model
+            .output_maps
+            .push(Box::new(move |w| w + reading * w * w));
     }
 }

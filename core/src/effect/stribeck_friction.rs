@@ -72,7 +72,12 @@ impl Effect for StribeckFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const { &[EffectId::new("coulomb_friction"), EffectId::new("presliding_friction")] }
+        const {
+            &[
+                EffectId::new("coulomb_friction"),
+                EffectId::new("presliding_friction"),
+            ]
+        }
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {

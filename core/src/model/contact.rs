@@ -146,7 +146,9 @@ impl Contact {
         let moved = flow(&tangent, share, time).1;
         // The spring that joins the ends of the piece instead of the one at its start.
         let share = if moved.abs() > f64::MIN_POSITIVE {
-            ((bent(moved) - z) / moved).abs().clamp(SLIP_SHARE * 0.5, 2.0)
+            ((bent(moved) - z) / moved)
+                .abs()
+                .clamp(SLIP_SHARE * 0.5, 2.0)
         } else {
             share
         };
@@ -242,13 +244,26 @@ mod tests {
         let (h, level) = (2e-4, 0.05);
         let mut motion = Motion::default();
         let (mut z, mut exact) = (0.0, [0.0; 3]);
-        for (i, u) in [0.5, 0.5, -0.5, -0.5, -0.5, 0.03, 0.03, 0.3, 0.0, 0.0].into_iter().enumerate() {
+        for (i, u) in [0.5, 0.5, -0.5, -0.5, -0.5, 0.03, 0.03, 0.3, 0.0, 0.0]
+            .into_iter()
+            .enumerate()
+        {
             motion.z = u;
             contact.advance(&free, &mut motion, &mut z, 0.0, level, u, h);
             exact = integrate(&contact, level, u, h, exact);
             // Against the displacement of a sample under this input, and its velocity.
-            assert!((motion.x - exact[0]).abs() < 2e-3 * 2e-5, "{i}: {} {}", motion.x, exact[0]);
-            assert!((motion.v - exact[1]).abs() < 2e-3 * 0.1, "{i}: {} {}", motion.v, exact[1]);
+            assert!(
+                (motion.x - exact[0]).abs() < 2e-3 * 2e-5,
+                "{i}: {} {}",
+                motion.x,
+                exact[0]
+            );
+            assert!(
+                (motion.v - exact[1]).abs() < 2e-3 * 0.1,
+                "{i}: {} {}",
+                motion.v,
+                exact[1]
+            );
         }
     }
 }

@@ -178,10 +178,15 @@ impl<'m> Engine<'m> {
             self.advance_body(state, held, w, h);
             return;
         }
-        let touching = self.model.load.is_some_and(|load| {
-            load.may_touch(state.twist, state.motion.v - state.load.v, h)
-        });
-        let mut halvings = if touching { self.touching_halvings(h) } else { 0 };
+        let touching = self
+            .model
+            .load
+            .is_some_and(|load| load.may_touch(state.twist, state.motion.v - state.load.v, h));
+        let mut halvings = if touching {
+            self.touching_halvings(h)
+        } else {
+            0
+        };
         halvings = halvings.max(self.smooth_halvings(state, h));
         let step = h / f64::from(1_u32 << halvings);
         for _ in 0..1_u32 << halvings {

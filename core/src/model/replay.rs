@@ -131,11 +131,15 @@ impl Excitation {
                 deflection: 0.0,
             });
         for i in 0..self.len() {
-            if i > 0 && let Some(bristle) = &mut bristle {
+            if i > 0
+                && let Some(bristle) = &mut bristle
+            {
                 let h = self.time[i] - self.time[i - 1];
                 bristle.follow(self.position[i], h, &model.friction);
             }
-            if i > 0 && let Some(follower) = &mut follower {
+            if i > 0
+                && let Some(follower) = &mut follower
+            {
                 let h = self.time[i] - self.time[i - 1];
                 follower.advance(&self.position, i - 1, h);
             }

@@ -11,6 +11,7 @@ use hysteron_core::criticism::{StepReport, with_error};
 use hysteron_core::effect::{self, Effect, EffectId};
 use hysteron_core::measurement::{Measurement, import_csv};
 
+use super::{Desk, View};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::theme;
@@ -339,6 +340,40 @@ impl Compare {
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
             "message": self.message,
         })
+    }
+}
+
+impl View for Compare {
+    fn id(&self) -> &'static str {
+        "compare"
+    }
+
+    fn title(&self) -> &'static str {
+        "Compare a measurement"
+    }
+
+    fn update(&mut self, ctx: &egui::Context) {
+        Self::update(self, ctx);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        Self::ui(self, ui, &mut desk.targets);
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        Self::hook_state(self)
+    }
+
+    fn takes_files(&self) -> bool {
+        true
+    }
+
+    fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        Self::open(self, ctx, name, bytes);
+    }
+
+    fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {
+        Self::open_dropped(self, ctx, file);
     }
 }
 

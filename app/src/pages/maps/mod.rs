@@ -6,7 +6,7 @@ mod side;
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Map, MapInput, Outcome, Parameter, Quantity};
 
-use super::{Command, Page};
+use super::{Command, Desk, View};
 use crate::jobs::{Job, News};
 use crate::tasks::MapTask;
 use crate::theme;
@@ -79,41 +79,6 @@ impl Maps {
         if finished {
             self.job = None;
         }
-    }
-
-    /// Draws the page around the loop that *Explore* shows.
-    pub fn ui(&mut self, ui: &mut egui::Ui, explored: &ExploreInput, commands: &mut Vec<Command>) {
-        self.follow(explored);
-        let narrow = ui.available_width() < 700.0;
-        if narrow {
-            egui::CentralPanel::default().show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
-                    self.choices_ui(ui);
-                    self.update(ui.ctx());
-                    self.answer_ui(ui);
-                    let height = ui.available_width() + 40.0;
-                    self.picture_ui(ui, height, commands);
-                    self.point_ui(ui, commands);
-                });
-            });
-            return;
-        }
-        egui::Panel::left("map choices")
-            .default_size(330.0)
-            .resizable(false)
-            .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
-                    self.choices_ui(ui);
-                    self.update(ui.ctx());
-                    ui.separator();
-                    self.point_ui(ui, commands);
-                });
-            });
-        egui::CentralPanel::default().show(ui, |ui| {
-            self.answer_ui(ui);
-            let height = ui.available_height();
-            self.picture_ui(ui, height, commands);
-        });
     }
 
     /// The map in one sentence.
@@ -195,9 +160,53 @@ impl Maps {
             }
         })
     }
+}
 
-    /// What is on the screen, for tests.
-    pub fn hook_state(&self) -> serde_json::Value {
+impl View for Maps {
+    fn id(&self) -> &'static str {
+        "maps"
+    }
+
+    fn title(&self) -> &'static str {
+        "Parameter maps"
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        self.follow(&desk.relay_loop);
+        let commands = &mut desk.commands;
+        let narrow = ui.available_width() < 700.0;
+        if narrow {
+            egui::CentralPanel::default().show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.choices_ui(ui);
+                    self.update(ui.ctx());
+                    self.answer_ui(ui);
+                    let height = ui.available_width() + 40.0;
+                    self.picture_ui(ui, height, commands);
+                    self.point_ui(ui, commands);
+                });
+            });
+            return;
+        }
+        egui::Panel::left("map choices")
+            .default_size(330.0)
+            .resizable(false)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.choices_ui(ui);
+                    self.update(ui.ctx());
+                    ui.separator();
+                    self.point_ui(ui, commands);
+                });
+            });
+        egui::CentralPanel::default().show(ui, |ui| {
+            self.answer_ui(ui);
+            let height = ui.available_height();
+            self.picture_ui(ui, height, commands);
+        });
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
         serde_json::json!({
             "busy": self.job.is_some(),
             "share": self.map.share(),

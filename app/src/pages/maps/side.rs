@@ -2,7 +2,7 @@
 
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
-use super::{Command, Maps, Page, with_unit};
+use super::{Command, Maps, with_unit};
 
 impl Maps {
     /// Axes and quantity.
@@ -79,7 +79,7 @@ impl Maps {
         }
         if ui.button("Show this loop in Explore").clicked() {
             self.choose(point, commands);
-            commands.push(Command::Go(Page::Explore));
+            commands.push(Command::Go("explore"));
         }
     }
 }
