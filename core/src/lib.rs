@@ -11,6 +11,7 @@
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
 //! | [`scenario`] | a loop in a file |
+//! | [`tuning`] | how do I tune a controller from it? |
 //! | [`explore`] | everything about one loop at once |
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |
@@ -32,3 +33,4 @@ pub mod plant;
 pub mod relay;
 pub mod scenario;
 pub mod simulate;
+pub mod tuning;
