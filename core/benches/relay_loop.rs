@@ -11,10 +11,10 @@ use hysteron_core::simulate::{Options, run};
 
 /// `1/(s+1)^n`.
 fn lag(order: usize) -> TransferFunction {
-    let mut denominator = vec![1.0];
-    for _ in 0..order {
-        denominator.push(0.0);
-        for i in (1..denominator.len()).rev() {
+    let mut denominator = vec![0.0; order + 1];
+    denominator[0] = 1.0;
+    for n in 1..=order {
+        for i in (1..=n).rev() {
             denominator[i] += denominator[i - 1];
         }
     }
@@ -113,7 +113,7 @@ fn map(c: &mut Criterion) {
 fn page(c: &mut Criterion) {
     let input = ExploreInput::default();
     c.bench_function("explore, slider to data", |b| {
-        b.iter(|| compute(black_box(&input)))
+        b.iter(|| compute(black_box(&input)));
     });
 }
 

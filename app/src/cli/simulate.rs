@@ -46,11 +46,7 @@ pub(super) fn read(path: &Path) -> Result<Scenario, String> {
     }
     let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
     let text = std::str::from_utf8(&bytes).map_err(|e| {
-        let line = bytes[..e.valid_up_to()]
-            .iter()
-            .filter(|b| **b == b'\n')
-            .count()
-            + 1;
+        let line = bytes[..e.valid_up_to()].split(|b| *b == b'\n').count();
         format!("{shown}, line {line}: not UTF-8 text; expected a TOML file")
     })?;
     Scenario::from_toml(text).map_err(|e| format!("{shown}: {e}"))
