@@ -195,3 +195,56 @@ fn a_file_of_something_else_is_never_written_to() {
             .contains("cannot be opened")
     );
 }
+
+#[test]
+fn columns_are_mapped_and_what_was_assumed_is_said() {
+    let folder = folder("mapping");
+    let rig = include_str!("data/drive-02.csv");
+    let rows: Vec<&str> = rig.lines().skip(1).take(400).collect();
+    let file = folder.join("drive.csv");
+    std::fs::write(&file, format!("zeit,strom,x,v\n{}\n", rows.join("\n"))).unwrap();
+    let map = "t=zeit [s],u=strom [A],x1=x [rad],v1=v [rad/s]";
+    let json = |more: &[&str]| -> Value {
+        let output = diagnose(
+            &[&file],
+            &[&["--format", "json", "--map", map], more].concat(),
+        );
+        let log = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && log.is_empty(), "{log}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let inertia = |json: &Value| {
+        let parameters = json["steps"][0]["parameters"].as_array().unwrap();
+        let j1 = parameters.iter().find(|p| p["name"] == "J1").unwrap();
+        j1["value"].as_f64().unwrap()
+    };
+    let (free, known) = (json(&[]), json(&["--torque-constant", "0.5 N m/A"]));
+    assert!(
+        free["notes"][0]
+            .as_str()
+            .unwrap()
+            .contains("1 N m/A is taken")
+    );
+    assert!(known.get("notes").is_none());
+    // Twice the inertia if nothing is said of a constant of a half.
+    let ratio = inertia(&free) / inertia(&known);
+    assert!((ratio - 2.0).abs() < 1e-3, "{ratio}");
+    let text = diagnose(&[&file], &["--map", map]).stdout;
+    let text = String::from_utf8(text).unwrap();
+    assert!(
+        text.contains("  - The torque constant is not known: 1 N m/A is taken."),
+        "{text}"
+    );
+    for (arguments, expected) in [
+        (["--map", "t:zeit"], "is not a mapping"),
+        (["--torque-constant", "0.5"], "is not a torque constant"),
+    ] {
+        let output = diagnose(&[&file], &arguments);
+        let line = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(
+            line.contains(expected) && line.lines().count() == 1,
+            "{line}"
+        );
+    }
+}

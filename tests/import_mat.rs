@@ -1,8 +1,9 @@
 //! Files of MATLAB and columns with a mapping go in; SI units, or one line that says what to correct,
-//! come out. The `.mat` files in `tests/data` were written by SciPy, and hold, for k = 0 to 59, the time
+//! come out. The `.mat` files in `tests/data` were written by `SciPy`, and hold, for k = 0 to 59, the time
 //! k/2 ms, a current of 2 or -2 A that changes every 5 samples, k^2 encoder counts and 1.5 k rpm.
 
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 
 use hysteron_core::effect::Motion;
 use hysteron_core::measurement::{
@@ -134,7 +135,7 @@ fn a_mapping_serves_text_as_well() {
     let mut text = String::from("no,zeit,strom [mA],enc,x1 [rad]\n");
     for k in 0..60 {
         let current = if k % 10 < 5 { 2000 } else { -2000 };
-        text += &format!("7,{},{current},{},9\n", f64::from(k) * 0.5, k * k);
+        let _ = writeln!(text, "7,{},{current},{},9", f64::from(k) * 0.5, k * k);
     }
     // The unit in the file holds where the mapping has none; the file's own x1 makes way.
     let mapping = "t=zeit [ms],u=strom,x1=enc [counts:4096]";
@@ -287,7 +288,7 @@ fn every_type_of_number_and_both_byte_orders_are_read() {
     macro_rules! check {
         ($($kind:literal $number:ty),*) => {$(
             for big in [false, true] {
-                let value = |n: u8| {
+                let value = |n: i8| {
                     let n = n as $number;
                     if big { n.to_be_bytes().to_vec() } else { n.to_le_bytes().to_vec() }
                 };
