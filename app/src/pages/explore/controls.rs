@@ -25,11 +25,15 @@ impl Explore {
     /// The paper's figures, one click each.
     fn figures_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("Paper:");
+            ui.label("From the paper:");
             for figure in figures() {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
-                    .selectable_label(chosen, format!("Fig. {}", figure.number))
+                    .add(
+                        egui::Button::new(format!("Fig. {}", figure.number))
+                            .selected(chosen)
+                            .frame(true),
+                    )
                     .on_hover_text(format!("{}: {}", figure.title, figure.claim));
                 if button.clicked() {
                     self.figure = (!chosen).then_some(figure.number);

@@ -61,6 +61,7 @@ fn row_ui(
     for (value, exact) in values {
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             ui.label(format!("{value:.4}"));
             if let Some(exact) = exact {
                 ui.small(difference(value, exact));
@@ -72,10 +73,14 @@ fn row_ui(
 }
 
 fn difference(value: f64, exact: f64) -> String {
+    /// Below this many per cent two results are the same but for rounding.
+    const ROUNDING: f64 = 1e-8;
     let percent = 100.0 * (value / exact - 1.0);
     if percent == 0.0 {
         String::new()
-    } else if percent.abs() < 0.001 {
+    } else if percent.abs() < ROUNDING {
+        "same".to_owned()
+    } else if percent.abs() < 0.005 {
         format!("{percent:+.0e} %")
     } else {
         format!("{percent:+.2} %")
