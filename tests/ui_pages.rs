@@ -146,9 +146,9 @@ fn type_plant(harness: &mut Harness<'static, HysteronApp>, text: &str) {
 
 #[test]
 fn figs_3_4_and_5_check_their_claims_on_screen() {
+    let mut harness = app("explore");
+    harness.step();
     for number in 3..=5 {
-        let mut harness = app("explore");
-        harness.step();
         harness.get_by_label(&format!("Fig. {number}")).click();
         harness.step();
         harness.step();

@@ -145,14 +145,15 @@ pub(super) fn claim_ui(ui: &mut egui::Ui, number: u32, claims: &[Check]) {
     };
     ui.strong(format!("Fig. {number}, {}. {}", figure.title, figure.claim));
     ui.horizontal_wrapped(|ui| {
-        for check in claims {
+        for (i, check) in claims.iter().enumerate() {
             let (mark, color) = if check.holds {
                 ("yes:", theme::NOISE)
             } else {
                 ("no:", theme::MODEL)
             };
             ui.colored_label(color, mark);
-            ui.label(format!("{};", check.text));
+            let end = if i + 1 == claims.len() { "." } else { ";" };
+            ui.label(format!("{}{end}", check.text));
         }
     });
 }

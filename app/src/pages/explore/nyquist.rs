@@ -103,7 +103,8 @@ impl Nyquist {
                         .shape(MarkerShape::Square),
                 );
                 let text = format!("S: margin φ = {:.1}°", phi.to_degrees());
-                plot.text(label("S", text, [at[0], at[1] - 0.1 * view]));
+                let beside = [at[0] + 0.08 * view, at[1] - 0.1 * view];
+                plot.text(label("S", text, beside).anchor(egui::Align2::LEFT_CENTER));
             }
             if let Some((a, at)) = marker {
                 plot.points(dot("a", at));
@@ -197,7 +198,7 @@ fn tidy(hysteresis: f64) -> f64 {
 
 /// How far from the origin the things are that matter.
 fn reach(data: &ExploreData, margin: bool) -> f64 {
-    let least = if margin { 0.7 } else { 0.01 };
+    let least = if margin { 1.0 } else { 0.01 };
     let met = data.intersections.iter().flat_map(|i| i.point);
     let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |m, v| m.max(v.abs()));
     let size = match size(&mut met.map(|v| 2.0 * v)) {
