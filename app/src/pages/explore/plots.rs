@@ -1,8 +1,7 @@
 //! Time series and phase portrait, with the place that the playback has reached.
 
 use egui_plot::{
-    AxisHints, GridInput, HLine, Line, LineStyle, Plot, PlotPoints, Points, VLine,
-    uniform_grid_spacer,
+    AxisHints, HLine, Line, LineStyle, Plot, PlotPoints, Points, VLine, uniform_grid_spacer,
 };
 use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
@@ -25,8 +24,8 @@ pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) 
         .height(height)
         .custom_x_axes(vec![AxisHints::new_x().label(x).label_spacing(LABELS)])
         .custom_y_axes(vec![AxisHints::new_y().label(y).label_spacing(LABELS)])
-        .x_grid_spacer(uniform_grid_spacer(grid))
-        .y_grid_spacer(uniform_grid_spacer(grid))
+        .x_grid_spacer(uniform_grid_spacer(|input| grid(input.bounds)))
+        .y_grid_spacer(uniform_grid_spacer(|input| grid(input.bounds)))
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_boxed_zoom(false)
@@ -35,8 +34,8 @@ pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) 
 }
 
 /// Grid lines at 1, 2 or 5 times a power of ten, some seven across, with a finer and a coarser set.
-fn grid(input: GridInput) -> [f64; 3] {
-    let wanted = ((input.bounds.1 - input.bounds.0) / 7.0).max(f64::MIN_POSITIVE);
+fn grid(bounds: (f64, f64)) -> [f64; 3] {
+    let wanted = ((bounds.1 - bounds.0) / 7.0).max(f64::MIN_POSITIVE);
     let decade = 10_f64.powf(wanted.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0]
         .into_iter()
