@@ -122,7 +122,102 @@ fn explore_opens_on_an_oscillating_loop() {
     harness.step();
     harness.step();
     harness.get_by_label_contains("It oscillates: period 4.788 s");
+    harness.get_by_label("phase-margin point S").click();
+    harness.step();
+    harness.step();
     picture(&mut harness, "explore");
+}
+
+/// What Explore computed for its loop.
+fn explored(harness: &Harness<'static, HysteronApp>) -> serde_json::Value {
+    harness.state().hook_state()["explore"].clone()
+}
+
+fn type_plant(harness: &mut Harness<'static, HysteronApp>, text: &str) {
+    let field = harness.get_by_label("P(s) =");
+    field.focus();
+    harness.step();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.step();
+    harness.get_by_label("P(s) =").type_text(text);
+    harness.step();
+    harness.step();
+}
+
+#[test]
+fn figs_3_4_and_5_check_their_claims_on_screen() {
+    let mut harness = app("explore");
+    harness.step();
+    for number in 3..=5 {
+        harness.get_by_label(&format!("Fig. {number}")).click();
+        harness.step();
+        harness.step();
+        let state = explored(&harness);
+        let checks = state["checks"].as_array().expect("checks");
+        assert!(
+            checks.len() >= 3 && checks.iter().all(|c| c == true),
+            "{state}"
+        );
+        picture(&mut harness, &format!("explore_fig_{number}"));
+    }
+}
+
+#[test]
+fn a_typed_plant_is_taken_and_a_wrong_one_loses_nothing() {
+    let mut harness = app("explore");
+    harness.step();
+    type_plant(&mut harness, "2 e^{-0.5s}/(3s+1)");
+    let good = explored(&harness);
+    assert_eq!(good["plant_error"], serde_json::Value::Null, "{good}");
+    assert_eq!(good["loop"]["plant"]["dead_time"], 0.5);
+    assert_eq!(
+        good["loop"]["plant"]["denominator"],
+        serde_json::json!([3.0, 1.0])
+    );
+    // Closed form for K e^{-Ls}/(Ts+1): a = k K (1 - e^{-L/T}) + eps e^{-L/T}.
+    let decay = (-0.5_f64 / 3.0).exp();
+    let amplitude = good["exact"]["amplitude"].as_f64().expect("a cycle");
+    assert!((amplitude / (2.0 * (1.0 - decay) + 0.1 * decay) - 1.0).abs() < 1e-9);
+    type_plant(&mut harness, "2/(3s+");
+    let bad = explored(&harness);
+    assert!(
+        bad["plant_error"].as_str().is_some_and(|e| !e.is_empty()),
+        "{bad}"
+    );
+    assert_eq!(bad["loop"], good["loop"], "the last valid plant stays");
+    picture(&mut harness, "explore_wrong_plant");
+    harness.get_by_label("Back to this plant").click();
+    harness.step();
+    harness.step();
+    assert_eq!(explored(&harness)["plant_error"], serde_json::Value::Null);
+}
+
+#[test]
+fn dragging_the_line_of_the_nyquist_plot_sets_the_hysteresis() {
+    let mut harness = app("explore");
+    harness.step();
+    harness.step();
+    let before = explored(&harness);
+    let at = harness.state().hook_state()["targets"]["nyquist:line"].clone();
+    let coordinate = |i: usize| at[i].as_f64().expect("the line can be seen") as f32;
+    let from = egui::pos2(coordinate(0), coordinate(1));
+    harness.hover_at(from);
+    harness.step();
+    harness.drag_at(from);
+    harness.step();
+    for dy in [8.0, 20.0, 30.0] {
+        harness.hover_at(from + egui::vec2(0.0, dy));
+        harness.step();
+    }
+    harness.drop_at(from + egui::vec2(0.0, 30.0));
+    harness.step();
+    harness.step();
+    let after = explored(&harness);
+    let hysteresis =
+        |v: &serde_json::Value| v["loop"]["relay"]["hysteresis"].as_f64().expect("a number");
+    assert!(hysteresis(&after) > hysteresis(&before) + 0.03, "{after}");
+    let period = |v: &serde_json::Value| v["exact"]["period"].as_f64().expect("a cycle");
+    assert!(period(&after) > period(&before), "the answer follows");
 }
 
 #[test]

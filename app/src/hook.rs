@@ -16,6 +16,11 @@ impl Targets {
         }
     }
 
+    /// Notes a place that can be dragged.
+    pub fn note_place(&mut self, name: impl Into<String>, at: Pos2) {
+        self.0.insert(name.into(), at);
+    }
+
     /// Forgets the last frame.
     pub fn clear(&mut self) {
         self.0.clear();

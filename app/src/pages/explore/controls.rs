@@ -25,11 +25,15 @@ impl Explore {
     /// The paper's figures, one click each.
     fn figures_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("Paper:");
+            ui.label("From the paper:");
             for figure in figures() {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
-                    .selectable_label(chosen, format!("Fig. {}", figure.number))
+                    .add(
+                        egui::Button::new(format!("Fig. {}", figure.number))
+                            .selected(chosen)
+                            .frame(true),
+                    )
                     .on_hover_text(format!("{}: {}", figure.title, figure.claim));
                 if button.clicked() {
                     self.figure = (!chosen).then_some(figure.number);
@@ -141,14 +145,15 @@ pub(super) fn claim_ui(ui: &mut egui::Ui, number: u32, claims: &[Check]) {
     };
     ui.strong(format!("Fig. {number}, {}. {}", figure.title, figure.claim));
     ui.horizontal_wrapped(|ui| {
-        for check in claims {
+        for (i, check) in claims.iter().enumerate() {
             let (mark, color) = if check.holds {
                 ("yes:", theme::NOISE)
             } else {
                 ("no:", theme::MODEL)
             };
             ui.colored_label(color, mark);
-            ui.label(format!("{};", check.text));
+            let end = if i + 1 == claims.len() { "." } else { ";" };
+            ui.label(format!("{}{end}", check.text));
         }
     });
 }

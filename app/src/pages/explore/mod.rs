@@ -30,6 +30,8 @@ pub struct Explore {
     /// Whether the simulation is played back, and the time it has reached, s.
     playing: bool,
     clock: f64,
+    /// Where the line can be taken hold of, for tests.
+    line_at: Option<egui::Pos2>,
     finished: Option<Finished>,
 }
 
@@ -49,6 +51,7 @@ impl Default for Explore {
             figure: None,
             playing: true,
             clock: 0.0,
+            line_at: None,
             finished: None,
         }
     }
@@ -71,6 +74,9 @@ impl View for Explore {
             self.narrow_ui(ui);
         } else {
             self.wide_ui(ui);
+        }
+        if let Some(at) = self.line_at.take() {
+            desk.targets.note_place("nyquist:line", at);
         }
         if self.input != desk.relay_loop {
             desk.relay_loop.clone_from(&self.input);
@@ -212,7 +218,7 @@ impl Explore {
         };
         let relay = &mut self.input.relay;
         let amplitude = plots::swing_at(data, self.clock);
-        self.nyquist.ui(ui, relay, data, amplitude, height);
+        self.line_at = Some(self.nyquist.ui(ui, relay, data, amplitude, height));
     }
 
     fn phase_ui(&self, ui: &mut egui::Ui, height: f32) {

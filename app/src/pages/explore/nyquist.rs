@@ -35,7 +35,7 @@ pub struct Nyquist {
 }
 
 impl Nyquist {
-    /// Draws the plot; dragging sets the relay's hysteresis.
+    /// Draws the plot; dragging sets the relay's hysteresis. Returns a place on the line.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -43,7 +43,7 @@ impl Nyquist {
         data: &ExploreData,
         amplitude: Option<f64>,
         height: f32,
-    ) {
+    ) -> egui::Pos2 {
         caption_ui(
             ui,
             "Nyquist plot",
@@ -103,7 +103,8 @@ impl Nyquist {
                         .shape(MarkerShape::Square),
                 );
                 let text = format!("S: margin φ = {:.1}°", phi.to_degrees());
-                plot.text(label("S", text, [at[0], at[1] - 0.1 * view]));
+                let beside = [at[0] + 0.08 * view, at[1] - 0.1 * view];
+                plot.text(label("S", text, beside).anchor(egui::Align2::LEFT_CENTER));
             }
             if let Some((a, at)) = marker {
                 plot.points(dot("a", at));
@@ -112,6 +113,8 @@ impl Nyquist {
             }
         });
         self.drag(&shown.response, &shown.transform, relay, shown_margin);
+        let on_line = PlotPoint::new(-1.2 * view, level);
+        shown.transform.position_from_point(&on_line)
     }
 
     fn drag(
@@ -195,12 +198,14 @@ fn tidy(hysteresis: f64) -> f64 {
 
 /// How far from the origin the things are that matter.
 fn reach(data: &ExploreData, margin: bool) -> f64 {
-    let least = if margin { 0.7 } else { 0.05 };
-    data.intersections
-        .iter()
-        .flat_map(|i| i.point)
-        .chain(data.inverse_df.iter().flatten().copied())
-        .fold(least, |m, v| m.max(v.abs()))
+    let least = if margin { 1.0 } else { 0.01 };
+    let met = data.intersections.iter().flat_map(|i| i.point);
+    let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |m, v| m.max(v.abs()));
+    let size = match size(&mut met.map(|v| 2.0 * v)) {
+        0.0 => size(&mut data.inverse_df.iter().flatten().copied()),
+        size => size,
+    };
+    size.max(least)
 }
 
 /// The next larger step of a coarse scale, so that the view does not tremble with the sliders.

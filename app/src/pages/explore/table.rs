@@ -28,6 +28,7 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
                 ("Simulated", data.simulated, theme::SIMULATED),
             ];
             for (name, cycle, color) in rows {
+                let reference = reference.filter(|_| name != "Exact");
                 row_ui(ui, name, color, relay, cycle, reference);
             }
         });
@@ -61,6 +62,7 @@ fn row_ui(
     for (value, exact) in values {
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             ui.label(format!("{value:.4}"));
             if let Some(exact) = exact {
                 ui.small(difference(value, exact));
@@ -72,10 +74,12 @@ fn row_ui(
 }
 
 fn difference(value: f64, exact: f64) -> String {
+    /// Below this many per cent two results are the same but for rounding.
+    const ROUNDING: f64 = 1e-8;
     let percent = 100.0 * (value / exact - 1.0);
-    if percent == 0.0 {
-        String::new()
-    } else if percent.abs() < 0.001 {
+    if percent.abs() < ROUNDING {
+        "same".to_owned()
+    } else if percent.abs() < 0.005 {
         format!("{percent:+.0e} %")
     } else {
         format!("{percent:+.2} %")
