@@ -5,6 +5,7 @@ use hysteron_core::criticism::{Progress, StepJob, StepReport};
 use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, MapJob, Tile};
 use hysteron_core::measurement::Measurement;
+use hysteron_core::tuning::{TuningInput, TuningReport, tune};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -96,6 +97,22 @@ impl Task for MapTask {
                 return;
             }
         }
+    }
+}
+
+/// Runs the auto-tuning experiments.
+#[derive(Serialize, Deserialize)]
+pub struct TuneTask(pub TuningInput);
+
+impl Task for TuneTask {
+    const NAME: &'static str = "tune";
+    type Report = TuningReport;
+
+    fn run(self, say: Say<'_, TuningReport>) {
+        say(match tune(&self.0) {
+            Ok(report) => News::Report(Box::new(report)),
+            Err(error) => News::Failed(error.to_string()),
+        });
     }
 }
 

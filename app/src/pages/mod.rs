@@ -4,6 +4,7 @@
 mod compare;
 mod explore;
 mod maps;
+mod tune;
 
 use hysteron_core::explore::ExploreInput;
 
@@ -36,6 +37,7 @@ pub fn registry() -> Vec<Box<dyn View>> {
     vec![
         Box::<explore::Explore>::default(),
         Box::<maps::Maps>::default(),
+        Box::<tune::Tune>::default(),
         Box::<compare::Compare>::default(),
     ]
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::controller::Pid;
 use super::error::{TuningError, check};
 use super::linear::polynomial;
-use super::margins::{Margins, margins, unstable_poles};
+use super::margins::{Margins, margins, nyquist, unstable_poles};
 use super::scan::product;
 use crate::plant::TransferFunction;
 
@@ -70,6 +70,8 @@ pub struct LoopReport {
     pub unstable_poles: usize,
     /// Margins of a stable loop.
     pub margins: Option<Margins>,
+    /// Nyquist curve `C(jw) P(jw)` around -1, real and imaginary parts.
+    pub nyquist: Vec<[f64; 2]>,
     /// Step of the set point.
     pub set_point: Response,
     /// Step of the load.
@@ -93,6 +95,7 @@ pub fn close(
         pid: *pid,
         unstable_poles: unstable,
         margins: (unstable == 0).then(|| margins(plant, pid)),
+        nyquist: nyquist(plant, Some(pid)),
         set_point,
         load,
     })

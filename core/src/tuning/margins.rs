@@ -92,6 +92,29 @@ fn turn(
     turn(a, middle, splits - 1, value) + turn(middle, b, splits - 1, value)
 }
 
+/// Sizes of the response between which a curve is followed for drawing.
+const DRAWN: std::ops::Range<f64> = 5e-3..20.0;
+
+/// Most points of a curve for drawing.
+const DRAWN_POINTS: usize = 800;
+
+/// The part near the origin of the Nyquist curve of a valid `plant`, with the controller `pid` or
+/// without, real and imaginary parts, lowest frequency first.
+pub fn nyquist(plant: &TransferFunction, pid: Option<&Pid>) -> Vec<[f64; 2]> {
+    let (c_num, c_den) = pid.map_or((Vec::new(), Vec::new()), Pid::polynomials);
+    let polynomials: [&[f64]; 4] = [&plant.numerator, &plant.denominator, &c_num, &c_den];
+    let (low, high) = scan::range(&polynomials, plant.dead_time);
+    let drawn: Vec<[f64; 2]> = scan::grid(low, high)
+        .into_iter()
+        .map(|w| pid.map_or(Complex::new(1.0, 0.0), |c| c.response(w)) * plant.response(w))
+        .skip_while(|p| !DRAWN.contains(&p.norm()))
+        .take_while(|p| DRAWN.contains(&p.norm()))
+        .map(|p| [p.re, p.im])
+        .collect();
+    let stride = drawn.len().div_ceil(DRAWN_POINTS).max(1);
+    drawn.into_iter().step_by(stride).collect()
+}
+
 /// Margins of a stable loop of a valid `plant` and `pid`.
 pub fn margins(plant: &TransferFunction, pid: &Pid) -> Margins {
     let (c_num, c_den) = pid.polynomials();

@@ -43,7 +43,7 @@ pub use closed_loop::{Disturbance, LoopReport, Response, close, respond};
 pub use controller::{Parallel, Pid, Series};
 pub use error::TuningError;
 pub use experiment::{RelayTest, Run};
-pub use margins::{Margins, margins, unstable_poles};
+pub use margins::{Margins, margins, nyquist, unstable_poles};
 pub use moving_point::{NyquistPoint, Target, pi as move_with_pi, pid as move_with_pid};
 pub use phase_margin::RelayDesign;
 pub use report::{

@@ -10,7 +10,7 @@ use super::closed_loop::{LoopReport, close};
 use super::controller::Pid;
 use super::error::{TuningError, check};
 use super::experiment::{RelayTest, Run};
-use super::margins::margins;
+use super::margins::{margins, nyquist};
 use super::moving_point::{NyquistPoint, Target};
 use super::phase_margin::RelayDesign;
 use super::rules::{Identified, RULES, Wish, rule};
@@ -176,6 +176,8 @@ pub struct TuningReport {
     pub ultimate: UltimateReport,
     /// All crossings of the negative real axis by the true Nyquist curve.
     pub crossings: Vec<Crossing>,
+    /// The plant's true Nyquist curve near the origin, with the relay's delay.
+    pub nyquist: Vec<[f64; 2]>,
     /// The point of the Nyquist curve seen in the symmetric test.
     pub point: PointReport,
     /// Relay for the phase margin and gain adaptation, equations (7) and (8).
@@ -264,6 +266,7 @@ pub fn tune(input: &TuningInput) -> Result<TuningReport, TuningError> {
     );
     let mut report = TuningReport {
         crossings: crossings(&plant),
+        nyquist: nyquist(&plant, None),
         test,
         ultimate,
         point,

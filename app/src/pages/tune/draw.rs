@@ -1,0 +1,135 @@
+//! What the steps draw alike.
+
+use egui_plot::{Legend, Line, LineStyle, Plot, PlotPoints};
+use hysteron_core::tuning::{Pid, RelayTest};
+
+use crate::theme;
+
+/// Colour of what was before.
+pub const BEFORE: egui::Color32 = theme::RESIDUAL;
+/// Colour of what comes after.
+pub const AFTER: egui::Color32 = theme::EXACT;
+
+/// A value with four significant digits.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if !(1e-3..1e5).contains(&size) {
+        format!("{value:.2e}")
+    } else {
+        let digits = (3.0 - size.log10().floor()).clamp(0.0, 6.0);
+        format!("{value:.0$}", digits as usize)
+    }
+}
+
+/// A value that may be missing.
+pub fn maybe(value: Option<f64>, otherwise: &str) -> String {
+    value.map_or_else(|| otherwise.to_owned(), number)
+}
+
+/// A relative error in words.
+pub fn error(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |e| format!("{:+.1} %", 100.0 * e))
+}
+
+/// The controller's settings.
+pub fn controller(pid: &Pid) -> String {
+    let mut parts = vec![format!("K = {}", number(pid.gain))];
+    if let Some(ti) = pid.integral_time {
+        parts.push(format!("Ti = {} s", number(ti)));
+    }
+    if pid.derivative_time > 0.0 {
+        parts.push(format!("Td = {} s", number(pid.derivative_time)));
+    }
+    parts.join(", ")
+}
+
+/// An empty plot with named axes; the wheel scrolls the page.
+pub fn plot<'a>(id: &'a str, height: f32, x: &'a str, y: &'a str) -> Plot<'a> {
+    Plot::new(id)
+        .height(height)
+        .x_axis_label(x)
+        .y_axis_label(y)
+        .allow_scroll(false)
+        .legend(Legend::default())
+}
+
+/// Points as a curve.
+pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
+    points.iter().copied().collect()
+}
+
+/// Values over time.
+pub fn series(time: &[f64], values: &[f64]) -> PlotPoints<'static> {
+    time.iter().zip(values).map(|(t, v)| [*t, *v]).collect()
+}
+
+/// What is held between changes, as a staircase up to `end`.
+pub fn staircase(changes: &[[f64; 2]], end: f64) -> PlotPoints<'static> {
+    let ends = changes.iter().skip(1).map(|c| c[0]).chain([end]);
+    changes
+        .iter()
+        .zip(ends)
+        .flat_map(|(c, next)| [*c, [next, c[1]]])
+        .collect()
+}
+
+/// Output, input and thresholds of a relay run.
+pub fn run_ui(ui: &mut egui::Ui, id: &str, test: &RelayTest, height: f32) {
+    let end = test.run.time.last().copied().unwrap_or(0.0);
+    plot(id, height, "time [s]", "output y, input u").show(ui, |plot| {
+        plot.line(
+            Line::new("input u", staircase(&test.run.input, end))
+                .color(theme::INPUT)
+                .width(1.2)
+                .allow_band(false),
+        );
+        for eps in [test.relay.hysteresis, -test.relay.hysteresis] {
+            plot.line(
+                Line::new("threshold ±ε", curve(&[[0.0, eps], [end, eps]]))
+                    .color(theme::NOISE)
+                    .style(LineStyle::dashed_dense()),
+            );
+        }
+        plot.line(
+            Line::new("output y", series(&test.run.time, &test.run.output))
+                .color(theme::SIMULATED)
+                .width(2.5),
+        );
+    });
+}
+
+/// Two views side by side, or below each other where there is no room.
+pub fn beside(
+    ui: &mut egui::Ui,
+    height: f32,
+    first: impl FnOnce(&mut egui::Ui, f32),
+    second: impl FnOnce(&mut egui::Ui, f32),
+) {
+    if ui.available_width() < 600.0 {
+        first(ui, height);
+        second(ui, height);
+    } else {
+        ui.columns_const(|[left, right]| {
+            first(left, height);
+            second(right, height);
+        });
+    }
+}
+
+/// A table with a heading; wider than the window, it can be scrolled.
+pub fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut egui::Ui)) {
+    egui::ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
+        egui::Grid::new(id)
+            .striped(true)
+            .spacing([14.0, 4.0])
+            .show(ui, |ui| {
+                for head in heads {
+                    ui.strong(*head);
+                }
+                ui.end_row();
+                rows(ui);
+            });
+    });
+}

@@ -1,0 +1,201 @@
+//! Step 6: the loop before and after.
+
+use egui_plot::{Line, LineStyle, MarkerShape, Points};
+use hysteron_core::tuning::{LoopReport, Response};
+
+use super::draw::{AFTER, BEFORE, beside, controller, curve, maybe, number, plot, series, table};
+use super::{Seen, Stage};
+use crate::theme;
+
+pub const STAGE: Stage = Stage {
+    id: "loops",
+    title: "Before and after",
+    question: "Is the loop better now?",
+    answer,
+    ui,
+};
+
+fn answer(seen: Seen<'_>) -> String {
+    let before = &seen.report.before;
+    let after = match &seen.report.after {
+        Ok(after) => after,
+        Err(error) => return format!("There is no tuned loop: {error}."),
+    };
+    match (before.margins, after.margins) {
+        (_, None) => "No: the tuned loop is unstable. Take another rule.".to_owned(),
+        (None, Some(m)) => format!(
+            "It was unstable; now it is stable, with Ms = {:.2}.",
+            m.max_sensitivity
+        ),
+        (Some(old), Some(new)) => format!(
+            "A load leaves {} s of error instead of {} s; Ms {:.2} instead of {:.2}.",
+            number(after.load.iae),
+            number(before.load.iae),
+            new.max_sensitivity,
+            old.max_sensitivity
+        ),
+    }
+}
+
+fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
+    let report = seen.report;
+    let after = report.after.as_ref().ok();
+    ui.label(format!(
+        "Before: {}. After: {}.",
+        controller(&report.before.pid),
+        after.map_or_else(|| "none".to_owned(), |a| controller(&a.pid))
+    ));
+    let half = (0.5 * height - 16.0).max(200.0);
+    beside(
+        ui,
+        half,
+        |ui, height| {
+            let name = ["step response", "output y, set point 1"];
+            response_ui(ui, name, &report.before, after, |l| &l.set_point, height);
+        },
+        |ui, height| {
+            let name = ["load response", "output y, load 1 at the input"];
+            response_ui(ui, name, &report.before, after, |l| &l.load, height);
+        },
+    );
+    beside(
+        ui,
+        half,
+        |ui, height| nyquist_ui(ui, &report.before, after, height),
+        |ui, _| table_ui(ui, &report.before, after, report.horizon),
+    );
+}
+
+fn response_ui(
+    ui: &mut egui::Ui,
+    [id, axis]: [&str; 2],
+    before: &LoopReport,
+    after: Option<&LoopReport>,
+    part: fn(&LoopReport) -> &Response,
+    height: f32,
+) {
+    // An unstable loop grows without bounds; the other one is what can be read.
+    let stable = |l: &&LoopReport| l.margins.is_some();
+    let top = [Some(before), after]
+        .into_iter()
+        .flatten()
+        .filter(stable)
+        .map(|l| part(l).peak)
+        .fold(0.0, f64::max);
+    let top = if top > 0.0 { 1.1 * top } else { 2.0 };
+    let end = part(before).time.last().copied().unwrap_or(1.0);
+    let bottom = if before.margins.is_some() { -0.1 } else { -0.5 } * top;
+    plot(id, height, "time [s]", axis)
+        .default_x_bounds(0.0, end)
+        .default_y_bounds(bottom, top)
+        .show(ui, |plot| {
+            let response = part(before);
+            plot.line(
+                Line::new("before", series(&response.time, &response.output))
+                    .color(BEFORE)
+                    .width(2.0)
+                    .style(LineStyle::dashed_loose())
+                    .allow_band(false),
+            );
+            if let Some(response) = after.map(part) {
+                plot.line(
+                    Line::new("after", series(&response.time, &response.output))
+                        .color(AFTER)
+                        .width(2.5)
+                        .allow_band(false),
+                );
+            }
+        });
+}
+
+fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, height: f32) {
+    plot("loop nyquist", height, "real part", "imaginary part")
+        .data_aspect(1.0)
+        .default_x_bounds(-2.2, 0.8)
+        .default_y_bounds(-1.6, 0.6)
+        .show(ui, |plot| {
+            let circle: Vec<[f64; 2]> = (0..=120)
+                .map(|i| std::f64::consts::TAU * f64::from(i) / 120.0)
+                .map(|t| [t.cos(), t.sin()])
+                .collect();
+            plot.line(
+                Line::new("unit circle", curve(&circle))
+                    .color(theme::NOISE.gamma_multiply(0.6))
+                    .width(1.0)
+                    .style(LineStyle::dashed_dense())
+                    .allow_band(false),
+            );
+            plot.line(
+                Line::new("before", curve(&before.nyquist))
+                    .color(BEFORE)
+                    .width(2.0)
+                    .style(LineStyle::dashed_loose())
+                    .allow_band(false),
+            );
+            if let Some(after) = after {
+                plot.line(
+                    Line::new("after", curve(&after.nyquist))
+                        .color(AFTER)
+                        .width(2.5)
+                        .allow_band(false),
+                );
+            }
+            plot.points(
+                Points::new("-1", curve(&[[-1.0, 0.0]]))
+                    .color(theme::MODEL)
+                    .radius(6.0)
+                    .shape(MarkerShape::Cross),
+            );
+        });
+}
+
+fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, horizon: f64) {
+    table(ui, "loops", &["", "before", "after"], |ui| {
+        let mut row = |name: &str, value: &dyn Fn(&LoopReport) -> String| {
+            ui.label(name);
+            ui.colored_label(BEFORE, value(before));
+            ui.colored_label(AFTER, after.map_or_else(String::new, value));
+            ui.end_row();
+        };
+        row("stable", &|l| match l.unstable_poles {
+            0 => "yes".to_owned(),
+            n => format!("no: {n} poles to the right"),
+        });
+        row("gain margin", &|l| {
+            l.margins
+                .map_or_else(dash, |m| maybe(m.gain_margin, "without limit"))
+        });
+        row("phase margin [°]", &|l| {
+            l.margins.map_or_else(dash, |m| {
+                maybe(m.phase_margin.map(f64::to_degrees), "without limit")
+            })
+        });
+        row("delay margin [s]", &|l| {
+            l.margins
+                .map_or_else(dash, |m| maybe(m.delay_margin, "without limit"))
+        });
+        row("sensitivity Ms", &|l| {
+            l.margins.map_or_else(dash, |m| number(m.max_sensitivity))
+        });
+        row("overshoot [%]", &|l| {
+            stable(l, format!("{:.0}", 100.0 * l.set_point.overshoot))
+        });
+        row("settled after [s]", &|l| {
+            maybe(l.set_point.settling_time, "not yet")
+        });
+        row("load error [s]", &|l| stable(l, number(l.load.iae)));
+        row("load peak", &|l| stable(l, number(l.load.peak)));
+    });
+    ui.small(format!(
+        "Load error: integral of |y| over the {} s shown. Without integral action it grows with the time.",
+        number(horizon)
+    ));
+}
+
+fn dash() -> String {
+    "-".to_owned()
+}
+
+fn stable(report: &LoopReport, text: String) -> String {
+    report.margins.map_or_else(dash, |_| text)
+}

@@ -1,0 +1,213 @@
+//! How is a controller tuned from a relay experiment? Step by step, from the relay to the tuned loop.
+
+mod adaptation;
+mod controls;
+mod draw;
+mod loops;
+mod model;
+mod oscillation;
+mod rules;
+mod ultimate;
+
+use hysteron_core::relay::Relay;
+use hysteron_core::tuning::{TuningInput, TuningReport};
+
+use super::{Desk, View};
+use crate::jobs::{Job, News};
+use crate::tasks::TuneTask;
+use crate::theme;
+
+/// What a step shows.
+#[derive(Clone, Copy)]
+struct Seen<'a> {
+    input: &'a TuningInput,
+    report: &'a TuningReport,
+}
+
+/// A step of the experiment: one file each.
+struct Stage {
+    /// Its name in tests.
+    id: &'static str,
+    /// What its button says.
+    title: &'static str,
+    question: &'static str,
+    answer: fn(Seen<'_>) -> String,
+    /// Draws it in about this height; may choose another rule.
+    ui: fn(&mut egui::Ui, Seen<'_>, f32, &mut String),
+}
+
+/// The experiment, in its order.
+const STAGES: [Stage; 6] = [
+    oscillation::STAGE,
+    ultimate::STAGE,
+    adaptation::STAGE,
+    model::STAGE,
+    rules::STAGE,
+    loops::STAGE,
+];
+
+/// The page: what is set, what was last computed, and the step in view.
+pub struct Tune {
+    input: TuningInput,
+    /// Asymmetry of the asymmetric test; the loop of the other pages may have none.
+    asymmetry: f64,
+    stage: usize,
+    /// Last finished experiment; it stays on screen while the next one runs.
+    shown: Option<(TuningInput, Box<TuningReport>)>,
+    /// Input of the job that runs or ran last.
+    asked: Option<TuningInput>,
+    job: Option<Job<TuneTask>>,
+    message: Option<String>,
+}
+
+impl Default for Tune {
+    fn default() -> Self {
+        let input = TuningInput::default();
+        Self {
+            asymmetry: input.relay.asymmetry,
+            input,
+            stage: 0,
+            shown: None,
+            asked: None,
+            job: None,
+            message: None,
+        }
+    }
+}
+
+impl View for Tune {
+    fn id(&self) -> &'static str {
+        "tune"
+    }
+
+    fn title(&self) -> &'static str {
+        "Tune a controller"
+    }
+
+    fn update(&mut self, _ctx: &egui::Context) {
+        let news = self.job.as_mut().map(Job::news).unwrap_or_default();
+        for said in news {
+            match (said, &self.asked) {
+                (News::Report(report), Some(asked)) => {
+                    self.shown = Some((asked.clone(), report));
+                    self.message = None;
+                    self.job = None;
+                }
+                (News::Failed(text), _) => {
+                    self.message = Some(text);
+                    self.job = None;
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        if ui.available_width() < 700.0 {
+            egui::CentralPanel::default().show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    egui::CollapsingHeader::new("Plant, relay and wishes")
+                        .show(ui, |ui| self.controls_ui(ui, desk));
+                    self.ask(ui.ctx(), desk);
+                    self.steps_ui(ui, desk);
+                    self.stage_ui(ui, 260.0);
+                });
+            });
+            return;
+        }
+        egui::Panel::left("tuning")
+            .default_size(350.0)
+            .resizable(false)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| self.controls_ui(ui, desk));
+            });
+        egui::CentralPanel::default().show(ui, |ui| {
+            self.ask(ui.ctx(), desk);
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                self.steps_ui(ui, desk);
+                let height = (ui.max_rect().bottom() - ui.cursor().top() - 110.0).max(300.0);
+                self.stage_ui(ui, height);
+            });
+        });
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        let stage = STAGES.get(self.stage);
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "step": stage.map(|s| s.id),
+            "rule": self.input.rule,
+            "answer": self.answer(),
+            "message": self.message,
+        })
+    }
+}
+
+impl Tune {
+    /// Starts the experiment where something was changed and none runs: so a slider that is dragged
+    /// shows every experiment that could be finished meanwhile.
+    fn ask(&mut self, ctx: &egui::Context, desk: &Desk) {
+        self.input.plant.clone_from(&desk.relay_loop.plant);
+        self.input.relay = Relay {
+            asymmetry: self.asymmetry,
+            ..desk.relay_loop.relay
+        };
+        if self.job.is_none() && self.asked.as_ref() != Some(&self.input) {
+            self.asked = Some(self.input.clone());
+            self.job = Some(Job::run(ctx, TuneTask(self.input.clone())));
+        }
+    }
+
+    fn seen(&self) -> Option<Seen<'_>> {
+        let (input, report) = self.shown.as_ref()?;
+        Some(Seen { input, report })
+    }
+
+    fn answer(&self) -> Option<String> {
+        let stage = STAGES.get(self.stage)?;
+        self.seen().map(stage.answer)
+    }
+
+    /// The steps as buttons, and the one to the next.
+    fn steps_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        ui.horizontal_wrapped(|ui| {
+            for (index, stage) in STAGES.iter().enumerate() {
+                let text = format!("{} {}", index + 1, stage.title);
+                let button = ui.selectable_label(self.stage == index, text);
+                desk.targets.note(format!("step:{}", stage.id), ui, &button);
+                if button.clicked() {
+                    self.stage = index;
+                }
+            }
+            if self.stage + 1 < STAGES.len() && ui.button("Next step").clicked() {
+                self.stage += 1;
+            }
+            if self.job.is_some() {
+                ui.spinner();
+            }
+        });
+    }
+
+    fn stage_ui(&mut self, ui: &mut egui::Ui, height: f32) {
+        if let Some(message) = &self.message {
+            ui.colored_label(ui.visuals().warn_fg_color, message);
+        }
+        let Some(stage) = STAGES.get(self.stage) else {
+            return;
+        };
+        ui.label(stage.question);
+        let Some((input, report)) = &self.shown else {
+            let waits = self.message.is_none();
+            let text = if waits {
+                "The experiment runs ..."
+            } else {
+                "There is nothing to tune from yet: try another plant or relay."
+            };
+            theme::answer_ui(ui, text);
+            return;
+        };
+        let seen = Seen { input, report };
+        theme::answer_ui(ui, &(stage.answer)(seen));
+        (stage.ui)(ui, seen, height, &mut self.input.rule);
+    }
+}

@@ -1,0 +1,119 @@
+//! Step 4: a model from one asymmetric relay test.
+
+use hysteron_core::tuning::{AsymmetricTest, Model, TuningError};
+
+use super::draw::{beside, number, run_ui, table};
+use super::{Seen, Stage};
+
+pub const STAGE: Stage = Stage {
+    id: "model",
+    title: "Asymmetric test",
+    question: "What does one test tell if the relay pushes harder one way?",
+    answer,
+    ui,
+};
+
+fn answer(seen: Seen<'_>) -> String {
+    match &seen.report.asymmetric {
+        Ok(AsymmetricTest {
+            berner: Ok(model), ..
+        }) => format!("A model: {}.", words(model)),
+        Ok(AsymmetricTest {
+            berner: Err(error), ..
+        })
+        | Err(error) => format!("No model: {error}."),
+    }
+}
+
+fn words(model: &Model) -> String {
+    match *model {
+        Model::Lag {
+            gain,
+            time_constant,
+            dead_time,
+        } => format!(
+            "gain {}, lag {} s, dead time {} s",
+            number(gain),
+            number(time_constant),
+            number(dead_time)
+        ),
+        Model::Integrating { gain, dead_time } => format!(
+            "an integrator, gain {} 1/s, dead time {} s",
+            number(gain),
+            number(dead_time)
+        ),
+    }
+}
+
+fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
+    let Ok(found) = &seen.report.asymmetric else {
+        ui.label("Give the relay some asymmetry: then its input has a mean, which tells the static gain.");
+        return;
+    };
+    ui.label(format!(
+        "The input now has a mean, which tells the static gain; the half periods {} s and {} s have the ratio {}, which tells how much of the lag is dead time: {:.0} %.",
+        number(found.test.on_time),
+        number(found.test.off_time),
+        number(found.half_period_ratio),
+        100.0 * found.normalised_dead_time
+    ));
+    beside(
+        ui,
+        height,
+        |ui, height| run_ui(ui, "asymmetric run", &found.test, height),
+        |ui, _| table_ui(ui, found),
+    );
+}
+
+fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {
+    table(
+        ui,
+        "models",
+        &["", "gain", "lag [s]", "dead time [s]"],
+        |ui| {
+            row_ui(ui, "Berner et al. 2016", &found.berner);
+            row_ui(ui, "Shen et al. 1996", &found.shen);
+        },
+    );
+    for failed in [&found.berner, &found.shen] {
+        if let Err(error) = failed {
+            ui.small(error.to_string());
+        }
+    }
+    ui.small("Berner, Hagglund and Astrom: from the half periods. Shen, Wu and Yu: through the points of the Nyquist curve at 0 and at ω.");
+    let point = &found.point;
+    ui.label(format!(
+        "Point of the Nyquist curve at ω = {} rad/s: {} {} j.",
+        number(point.omega),
+        number(point.value[0]),
+        format_args!(
+            "{} {}",
+            if point.value[1] < 0.0 { "-" } else { "+" },
+            number(point.value[1].abs())
+        )
+    ));
+    if let Some(gain) = found.static_gain {
+        ui.label(format!("Static gain: {}.", number(gain)));
+    }
+}
+
+fn row_ui(ui: &mut egui::Ui, name: &str, model: &Result<Model, TuningError>) {
+    ui.label(name);
+    let cells = match model {
+        Ok(Model::Lag {
+            gain,
+            time_constant,
+            dead_time,
+        }) => [number(*gain), number(*time_constant), number(*dead_time)],
+        Ok(Model::Integrating { gain, dead_time }) => [
+            format!("{} 1/s", number(*gain)),
+            "integrator".to_owned(),
+            number(*dead_time),
+        ],
+        Err(_) => ["none".to_owned(), String::new(), String::new()],
+    };
+    for cell in cells {
+        ui.label(cell);
+    }
+    ui.end_row();
+}

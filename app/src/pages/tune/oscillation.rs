@@ -1,0 +1,26 @@
+//! Step 1: the relay takes the controller's place.
+
+use super::draw::{number, run_ui};
+use super::{Seen, Stage};
+
+pub const STAGE: Stage = Stage {
+    id: "oscillation",
+    title: "Relay",
+    question: "What does the loop do with a relay instead of the controller?",
+    answer,
+    ui,
+};
+
+fn answer(seen: Seen<'_>) -> String {
+    let test = &seen.report.test;
+    format!(
+        "It oscillates: period {} s, amplitude {}.",
+        number(test.period),
+        number(test.amplitude)
+    )
+}
+
+fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
+    ui.label("From rest to the settled cycle. No model is needed: these two numbers are the whole measurement. Amplitude: half of peak to peak.");
+    run_ui(ui, "relay run", &seen.report.test, height);
+}

@@ -1,0 +1,82 @@
+//! Step 5: every rule's controller; a click chooses one.
+
+use hysteron_core::tuning::{LoopReport, rule};
+
+use super::draw::{controller, maybe, number, table};
+use super::{Seen, Stage};
+
+pub const STAGE: Stage = Stage {
+    id: "rules",
+    title: "Rule",
+    question: "Which controller follows from the experiment?",
+    answer,
+    ui,
+};
+
+fn answer(seen: Seen<'_>) -> String {
+    let name = rule(&seen.input.rule).map_or("This rule", |r| r.name);
+    match &seen.report.after {
+        Ok(after) => format!("{name}: {}.", controller(&after.pid)),
+        Err(error) => format!("{name} gives none: {error}."),
+    }
+}
+
+fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
+    ui.label("The same experiment, different wishes: compare robustness (Ms: 1.4 is calm, 2 is lively, beyond that is risky) with how well a load is rejected. Click a rule to take it.");
+    let heads = [
+        "rule",
+        "K",
+        "Ti [s]",
+        "Td [s]",
+        "Ms",
+        "phase margin [°]",
+        "overshoot [%]",
+        "load error [s]",
+    ];
+    table(ui, "rules", &heads, |ui| {
+        for report in &seen.report.rules {
+            let Ok(rule) = rule(&report.rule) else {
+                continue;
+            };
+            let name = ui
+                .selectable_label(*chosen == rule.id, rule.name)
+                .on_hover_text(format!("{}\n{}", rule.sentence, rule.source));
+            if name.clicked() {
+                rule.id.clone_into(chosen);
+            }
+            match &report.outcome {
+                Ok(found) => cells_ui(ui, found),
+                Err(error) => {
+                    ui.label("none").on_hover_text(error.to_string());
+                }
+            }
+            ui.end_row();
+        }
+    });
+    ui.small(format!(
+        "Ms: maximum sensitivity, 1/Ms is the least distance of the loop's Nyquist curve from -1. Load error: integral of |y| over {} s after a step of 1 at the plant's input.",
+        number(seen.report.horizon)
+    ));
+    for report in &seen.report.rules {
+        if let (Ok(rule), Err(error)) = (rule(&report.rule), &report.outcome) {
+            ui.small(format!("{}: {error}.", rule.name));
+        }
+    }
+}
+
+fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
+    let pid = &found.pid;
+    ui.label(number(pid.gain));
+    ui.label(maybe(pid.integral_time, "-"));
+    let derivative = (pid.derivative_time > 0.0).then_some(pid.derivative_time);
+    ui.label(maybe(derivative, "-"));
+    let Some(margins) = found.margins else {
+        ui.label("unstable");
+        return;
+    };
+    ui.label(format!("{:.2}", margins.max_sensitivity));
+    let phase = margins.phase_margin.map(f64::to_degrees);
+    ui.label(phase.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}")));
+    ui.label(format!("{:.0}", 100.0 * found.set_point.overshoot));
+    ui.label(number(found.load.iae));
+}

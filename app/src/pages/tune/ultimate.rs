@@ -1,0 +1,147 @@
+//! Step 2: ultimate gain and period, equation (4), beside the true ones.
+
+use egui_plot::{Line, LineStyle, MarkerShape, Points};
+use hysteron_core::tuning::Ultimate;
+
+use super::draw::{beside, curve, error, maybe, number, plot, table};
+use super::{Seen, Stage};
+use crate::theme;
+
+pub const STAGE: Stage = Stage {
+    id: "ultimate",
+    title: "Ultimate gain",
+    question: "At which gain would the loop oscillate by itself?",
+    answer,
+    ui,
+};
+
+fn answer(seen: Seen<'_>) -> String {
+    let found = &seen.report.ultimate;
+    let said = format!(
+        "At K_u = {} with T_u = {} s, says the relay.",
+        number(found.corrected.gain),
+        number(found.corrected.period)
+    );
+    match (found.truth, found.corrected_error, found.period_error) {
+        (Some(truth), Some(gain), Some(period)) => format!(
+            "{said} In truth {} ({}) and {} s ({}).",
+            number(truth.gain),
+            off(gain),
+            number(truth.period),
+            off(period)
+        ),
+        _ => format!("{said} In truth at no gain."),
+    }
+}
+
+/// How far the relay's value is from the true one.
+fn off(share: f64) -> String {
+    let way = if share < 0.0 { "low" } else { "high" };
+    format!("{:.1} % too {way}", 100.0 * share.abs())
+}
+
+fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
+    ui.label("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis, and K_u is read off the axis. Try less hysteresis.");
+    beside(
+        ui,
+        height,
+        |ui, height| nyquist_ui(ui, seen, height),
+        |ui, _| table_ui(ui, seen),
+    );
+}
+
+fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
+    let report = seen.report;
+    let found = report.point.point.value;
+    let reach = 2.2 * found[0].hypot(found[1]);
+    plot("ultimate", height, "real part", "imaginary part")
+        .data_aspect(1.0)
+        .default_x_bounds(-reach, 0.4 * reach)
+        .default_y_bounds(-0.8 * reach, 0.4 * reach)
+        .show(ui, |plot| {
+            plot.line(
+                Line::new("plant P(jω)", curve(&report.nyquist))
+                    .color(theme::MEASURED)
+                    .width(2.0)
+                    .allow_band(false),
+            );
+            let line = curve(&[[-20.0, found[1]], [0.0, found[1]]]);
+            plot.line(
+                Line::new("relay -1/N(a)", line)
+                    .color(theme::DESCRIBING)
+                    .width(2.5)
+                    .style(LineStyle::dashed_loose())
+                    .allow_band(false),
+            );
+            let mut mark = |name: &str, at: [f64; 2], color, shape| {
+                plot.points(
+                    Points::new(name, curve(&[at]))
+                        .color(color)
+                        .radius(6.0)
+                        .shape(shape),
+                );
+            };
+            let on_axis = |u: Ultimate| [-1.0 / u.gain, 0.0];
+            mark(
+                "point by the relay",
+                found,
+                theme::MODEL,
+                MarkerShape::Diamond,
+            );
+            let by_relay = on_axis(report.ultimate.corrected);
+            mark(
+                "-1/K_u by the relay",
+                by_relay,
+                theme::MODEL,
+                MarkerShape::Square,
+            );
+            if let Some(truth) = report.ultimate.truth {
+                mark(
+                    "true -1/K_u",
+                    on_axis(truth),
+                    theme::EXACT,
+                    MarkerShape::Circle,
+                );
+            }
+        });
+}
+
+fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
+    let found = &seen.report.ultimate;
+    let heads = ["", "K_u", "error", "T_u [s]", "error"];
+    table(ui, "ultimate table", &heads, |ui| {
+        let mut row = |name: &str, u: Option<Ultimate>, gain: Option<f64>, period: Option<f64>| {
+            ui.label(name);
+            ui.label(maybe(u.map(|u| u.gain), "none"));
+            ui.label(error(gain));
+            ui.label(maybe(u.map(|u| u.period), "none"));
+            ui.label(error(period));
+            ui.end_row();
+        };
+        row(
+            "4k/(π a)",
+            Some(found.plain),
+            found.plain_error,
+            found.period_error,
+        );
+        row(
+            "4k/(π √(a² - ε²))",
+            Some(found.corrected),
+            found.corrected_error,
+            found.period_error,
+        );
+        row("true", found.truth, None, None);
+    });
+    ui.small(format!(
+        "Here the {}. Half or twice of K_u is what a program reports that counts otherwise.",
+        found.amplitude_convention
+    ));
+    ui.add_space(6.0);
+    let point = &seen.report.point;
+    ui.label(format!(
+        "The point itself, at ω = {} rad/s, is off by {:.1} % of its size, since the describing function takes the output for a sine; by the first harmonic of the record it is exact (off by {:.0e}).",
+        number(point.point.omega),
+        100.0 * point.error,
+        point.fourier_error
+    ));
+}
