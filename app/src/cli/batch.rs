@@ -17,7 +17,7 @@ use super::diagnose::{Arguments, Format, Report, one};
 
 /// A file that could not be diagnosed, as a line of JSON.
 #[derive(Serialize)]
-struct Failed<'a> {
+struct BadFile<'a> {
     schema: u32,
     file: &'a str,
     failed: &'a str,
@@ -132,7 +132,7 @@ impl Batch {
         let name = file.to_string_lossy();
         let json = match &report {
             Ok(report) => report.json_line(&name),
-            Err(line) => serde_json::to_string(&Failed {
+            Err(line) => serde_json::to_string(&BadFile {
                 schema: 1,
                 file: &name,
                 failed: line,
