@@ -114,7 +114,7 @@ impl Fit {
                 self.damping *= 10.0;
                 continue;
             };
-            let motion = simulate(data, &self.structure, &values, &starts);
+            let (starts, motion) = self.motion_from(data, &values, starts);
             let cost = fit_cost(data, &motion);
             if cost <= self.cost {
                 let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
@@ -133,6 +133,34 @@ impl Fit {
             self.damping = RESTART_DAMPING;
         }
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
+    }
+
+    /// Motion with new values; where it got worse, each window starts from the better of its new and
+    /// its present state: near a kink, such as sticking, a step in the state may lead anywhere.
+    fn motion_from(
+        &self,
+        data: &Data,
+        values: &[f64],
+        mut starts: Vec<Start>,
+    ) -> (Vec<Start>, Motion) {
+        let moved = simulate(data, &self.structure, values, &starts);
+        if fit_cost(data, &moved) <= self.cost {
+            return (starts, moved);
+        }
+        let stayed = simulate(data, &self.structure, values, &self.starts);
+        let (after, before) = (window_costs(data, &moved), window_costs(data, &stayed));
+        let mut mixed = false;
+        for (k, start) in starts.iter_mut().enumerate() {
+            if before[k] < after[k] {
+                *start = self.starts[k];
+                mixed = true;
+            }
+        }
+        if !mixed {
+            return (starts, moved);
+        }
+        let motion = simulate(data, &self.structure, values, &starts);
+        (starts, motion)
     }
 
     /// Steps for finite differences: as large as the uncertainty of a value, once that is known, so that
@@ -335,6 +363,23 @@ impl Fit {
                 fixed[j] = Some(values[j] - self.values[j]);
             }
         }
+    }
+
+    /// Takes for each window the measured state where that suits the values better than the present one.
+    pub fn take_measured_starts(&mut self, data: &Data) {
+        let measured = data.guessed_starts();
+        let motion = simulate(data, &self.structure, &self.values, &measured);
+        let (before, after) = (
+            window_costs(data, &self.motion),
+            window_costs(data, &motion),
+        );
+        for (k, start) in measured.into_iter().enumerate() {
+            if after[k] < before[k] {
+                self.starts[k] = start;
+            }
+        }
+        self.motion = simulate(data, &self.structure, &self.values, &self.starts);
+        self.cost = fit_cost(data, &self.motion);
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.

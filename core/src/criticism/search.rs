@@ -27,6 +27,9 @@ const FINALISTS: usize = 3;
 /// A fit that costs this many times the best one of its effect is not followed.
 const NEAR: f64 = 1.5;
 
+/// A fit on the whole record that costs this many times what it did on a part has unsuited states.
+const UNSETTLED: f64 = 1.5;
+
 /// A fit that goes on is hoped to fall by this many times its last fall.
 const HOPE: f64 = 3.0;
 
@@ -172,6 +175,7 @@ impl Search {
             .filter(|s| scout.windows.binary_search(&s.sample).is_ok())
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
+        fit.take_measured_starts(scout);
         for _ in 0..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
@@ -194,10 +198,12 @@ impl Search {
         let near = NEAR * best.cost;
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
         first.done |= best.cost > hopeless;
+        settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {
             if fit.cost <= near.min(hopeless) {
-                let next = Fit::new(data, fit.structure, fit.values, starts, scales);
+                let mut next = Fit::new(data, fit.structure, fit.values, starts, scales);
+                settle(&mut next, fit.cost / share, data, scales);
                 self.finalists.push(next);
             }
         }
@@ -246,5 +252,14 @@ impl Search {
             best.polish_starts(data, scales);
         }
         Some(best)
+    }
+}
+
+/// The states of the windows belong to the model before: where they do not suit the new one, which came
+/// to `expected` on the scout, they are improved first.
+fn settle(fit: &mut Fit, expected: f64, data: &Data, scales: &Scales) {
+    if !fit.done && fit.cost > UNSETTLED * expected {
+        fit.take_measured_starts(data);
+        fit.polish_starts(data, scales);
     }
 }

@@ -84,13 +84,16 @@ fn usual_error(score: &Score) -> f64 {
     (usual.iter().sum::<f64>() / usual.len().max(1) as f64).sqrt()
 }
 
+/// Whether what is left looks like noise in itself.
+pub(super) fn is_plain_noise(score: &Score) -> bool {
+    let error = usual_error(score);
+    error < SURE_NOISE_ERROR || (error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
+}
+
 /// Whether what is left is noise, against the error that there was at first.
 pub(super) fn is_noise(score: &Score, first: f64) -> bool {
-    let error = usual_error(score);
     let excess = (score.error.powi(2) - 1.0).max(0.0).sqrt();
-    error < SURE_NOISE_ERROR
-        || (error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
-        || (score.error < SMALL_ERROR && excess < SMALL_SHARE * first)
+    is_plain_noise(score) || (score.error < SMALL_ERROR && excess < SMALL_SHARE * first)
 }
 
 /// Change of the Bayesian information criterion on the fitted part; negative is better.

@@ -2,7 +2,7 @@
 
 use super::race::Race;
 use super::search::Search;
-use super::select::{delta_bic, fall, helps, is_noise, same};
+use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same};
 use super::session::{Scored, Session};
 use super::verdict::{Class, verdict};
 use super::{Candidate, CriticismError, Progress, Step, StepReport};
@@ -232,15 +232,12 @@ impl StepJob {
         let mut class = Class::default();
         for (effect, fit) in fits {
             let swapped = self.session.scored(fit);
-            if !alike(model, &swapped) {
-                continue;
-            }
             if own.contains().contains(&effect.id()) {
                 let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
-                if self.simpler.as_ref().is_none_or(fewer) {
+                if enough(model, &swapped) && self.simpler.as_ref().is_none_or(fewer) {
                     self.simpler = Some(swapped);
                 }
-            } else {
+            } else if alike(model, &swapped) {
                 class.push(effect);
             }
         }
@@ -250,13 +247,22 @@ impl StepJob {
 
     /// The effect to add next: the best that helps; of equals the one with fewer parameters.
     fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
-        let helping = || self.tried.iter().filter(|(_, s)| helps_clearly(model, s));
+        // A part of an effect that leaves nothing but noise is not widened to the whole.
+        let settled = is_plain_noise(&model.score);
+        let widens = |e: &dyn Effect| self.wanted.iter().any(|w| e.contains().contains(&w.id()));
+        let helping = || {
+            self.tried
+                .iter()
+                .filter(|(e, s)| !(settled && widens(*e)) && helps_clearly(model, s))
+        };
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
             .filter(|(e, s)| {
-                alike(s, &best.1)
-                    && (s.fit.values.len() < best.1.fit.values.len()
-                        || best.0.contains().contains(&e.id()))
+                if best.0.contains().contains(&e.id()) {
+                    enough(&best.1, s)
+                } else {
+                    alike(s, &best.1) && s.fit.values.len() < best.1.fit.values.len()
+                }
             })
             .min_by_key(|(_, s)| s.fit.values.len())
             .or(Some(best))
@@ -412,6 +418,11 @@ impl StepJob {
         others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
         others.into_iter().take(count).cloned().collect()
     }
+}
+
+/// Whether a part of an effect does in place of the whole: as well, or so that noise alone is left.
+fn enough(whole: &Scored, part: &Scored) -> bool {
+    alike(whole, part) || is_plain_noise(&part.score)
 }
 
 /// Whether two models leave the same error within noise.
