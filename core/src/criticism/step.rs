@@ -7,7 +7,7 @@ use super::session::{Scored, Session};
 use super::verdict::{Class, verdict};
 use super::{Candidate, CriticismError, Progress, Step, StepReport};
 use crate::effect::{self, Effect, EffectId};
-use crate::measurement::Measurement;
+use crate::measurement::{Kind, Measurement};
 
 /// Error of a perfect model in noise units.
 pub(super) const NOISE_FLOOR: f64 = 1.0;
@@ -147,7 +147,7 @@ impl StepJob {
                 };
                 let search = self.wanted.get(next).map(|effect| {
                     let probe = self.session.probe(&scored.fit);
-                    Search::adding(&self.session.data, &scored.fit, *effect, &probe)
+                    Search::adding(&self.session.data, &scored.fit, *effect, &probe, None)
                 });
                 self.session
                     .baseline_error
@@ -217,7 +217,7 @@ impl StepJob {
                     &self.session,
                     &without.fit,
                     self.rivals(place),
-                    Some(model.fit.cost),
+                    Some((&model.fit, place)),
                 ),
             },
             None => Stage::Report,
@@ -237,7 +237,7 @@ impl StepJob {
                 if enough(model, &swapped) && self.simpler.as_ref().is_none_or(fewer) {
                     self.simpler = Some(swapped);
                 }
-            } else if alike(model, &swapped) {
+            } else if alike(model, &swapped) && same_body(model, &swapped) {
                 class.push(effect);
             }
         }
@@ -245,7 +245,8 @@ impl StepJob {
         self.classes.push(class);
     }
 
-    /// The effect to add next: the best that helps; of equals the one with fewer parameters.
+    /// The effect to add next: the best that helps; of equals the one with fewer parameters, or that stands
+    /// first in the registry.
     fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
         // A part of an effect that leaves nothing but noise is not widened to the whole.
         let settled = is_plain_noise(&model.score);
@@ -261,7 +262,8 @@ impl StepJob {
                 if best.0.contains().contains(&e.id()) {
                     enough(&best.1, s)
                 } else {
-                    alike(s, &best.1) && s.fit.values.len() < best.1.fit.values.len()
+                    let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
+                    alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
                 }
             })
             .min_by_key(|(_, s)| s.fit.values.len())
@@ -389,15 +391,35 @@ impl StepJob {
     /// one; and the session.
     pub(super) fn successor(self) -> (Session, Option<Scored>) {
         let next = self.model.as_ref().and_then(|model| {
-            if let Some(id) = self.needless(model).first() {
-                let index = self.wanted.iter().position(|w| w.id() == *id)?;
-                self.without.get(index).cloned()
-            } else {
-                let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
-                suggested.or_else(|| self.simpler.clone())
+            let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
+            let needless = self.needless(model).into_iter().find(|id| {
+                // The newest may show only together with the next.
+                let newest = self.wanted.last().is_some_and(|w| w.id() == *id);
+                !(newest && suggested.is_some())
+            });
+            if let Some(id) = needless {
+                let index = self.wanted.iter().position(|w| w.id() == id)?;
+                return self.without.get(index).cloned();
             }
+            suggested.or_else(|| self.simpler.clone())
         });
         (self.session, next)
+    }
+
+    /// Models with an effect that lowers the error much, though not beyond chance while the rest is as
+    /// correlated as it is: the best first. Two missing effects may hide each other so.
+    pub(super) fn faint(&self, count: usize) -> Vec<Scored> {
+        let Some(model) = &self.model else {
+            return Vec::new();
+        };
+        let mut seen: Vec<&Scored> = self
+            .tried
+            .iter()
+            .map(|(_, s)| s)
+            .filter(|s| fall(&model.score, &s.score) > LARGE_FALL)
+            .collect();
+        seen.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
+        seen.into_iter().take(count).cloned().collect()
     }
 
     /// Models with another effect that would help too, the best first: where the suggestion may turn
@@ -428,6 +450,29 @@ fn enough(whole: &Scored, part: &Scored) -> bool {
 /// Whether two models leave the same error within noise.
 fn alike(a: &Scored, b: &Scored) -> bool {
     same(&a.score, a.fit.values.len(), &b.score, b.fit.values.len())
+}
+
+/// Relative difference of error up to which two models do exactly the same.
+const TIED: f64 = 1e-3;
+
+/// Whether two models leave the same error for all that can be computed.
+fn tied(a: &Scored, b: &Scored) -> bool {
+    (a.score.error / b.score.error - 1.0).abs() < TIED
+}
+
+/// Relative difference of inertia (of a process: gain and time constant) up to which two models speak of
+/// the same body.
+const SAME_BODY: f64 = 0.2;
+
+/// Whether two models agree on the body, which the user knows roughly: with two levels of input a huge
+/// dead zone looks like a small load, on a motor half as heavy.
+fn same_body(a: &Scored, b: &Scored) -> bool {
+    let essential = match a.fit.structure.kind {
+        Kind::Drive => 1,
+        Kind::Process => 2,
+    };
+    let pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
+    pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
 }
 
 /// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how
