@@ -53,7 +53,8 @@ pub(super) struct Fit {
     pub values: Vec<f64>,
     pub starts: Vec<Start>,
     pub motion: Motion,
-    /// Squared residuals in noise units, summed over the samples used for the fit.
+    /// Squared residuals in noise units over the samples used for the fit; where windows differ widely,
+    /// by their usual size (see [`robust_cost`]).
     pub cost: f64,
     damping: f64,
     iterations: usize,
@@ -81,7 +82,7 @@ impl Fit {
     ) -> Self {
         structure.clamp(&mut values, scales);
         let motion = simulate(data, &structure, &values, &starts);
-        let cost = fit_cost(data, &motion);
+        let cost = robust_cost(data, &motion);
         let p = values.len();
         Self {
             structure,
@@ -115,7 +116,7 @@ impl Fit {
                 continue;
             };
             let (starts, motion) = self.motion_from(data, &values, starts);
-            let cost = fit_cost(data, &motion);
+            let cost = robust_cost(data, &motion);
             if cost <= self.cost {
                 let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
                 (self.values, self.starts, self.motion, self.cost) = (values, starts, motion, cost);
@@ -144,7 +145,7 @@ impl Fit {
         mut starts: Vec<Start>,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-        if fit_cost(data, &moved) <= self.cost {
+        if robust_cost(data, &moved) <= self.cost {
             return (starts, moved);
         }
         let stayed = simulate(data, &self.structure, values, &self.starts);
@@ -243,6 +244,7 @@ impl Fit {
             })
             .collect();
         let informed = informed_windows(data);
+        let robust = window_weights(data, &self.motion);
         let mut row = vec![0.0; p];
         for block in &data.blocks {
             // A held-back block in a window that is also fitted informs nothing.
@@ -251,7 +253,7 @@ impl Fit {
             }
             let sums = &mut windows[block.window];
             for output in &data.outputs {
-                let weight = 1.0 / output.noise;
+                let weight = robust[block.window].sqrt() / output.noise;
                 let modelled = self.motion.of(output.is_velocity);
                 let parts: Vec<&[f64]> = columns.iter().map(|c| c.of(output.is_velocity)).collect();
                 for i in block.from..block.to {
@@ -379,7 +381,7 @@ impl Fit {
             }
         }
         self.motion = simulate(data, &self.structure, &self.values, &self.starts);
-        self.cost = fit_cost(data, &self.motion);
+        self.cost = robust_cost(data, &self.motion);
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
@@ -412,7 +414,7 @@ impl Fit {
             }
             self.motion = simulate(data, &self.structure, &self.values, &self.starts);
         }
-        self.cost = fit_cost(data, &self.motion);
+        self.cost = robust_cost(data, &self.motion);
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance.
@@ -550,6 +552,46 @@ fn fit_cost(data: &Data, motion: &Motion) -> f64 {
         .filter(|b| !b.held_back)
         .map(|b| cost_between(data, motion, b.from, b.to))
         .sum()
+}
+
+/// Mean square of a window, in noise units, from which on it counts by the logarithm.
+const ODD_MEAN_SQUARE: f64 = 30.0;
+
+/// Cost and number of residuals of each window on the fitted part.
+fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
+    let mut windows = vec![(0.0, 0.0); data.windows.len()];
+    for b in data.blocks.iter().filter(|b| !b.held_back) {
+        windows[b.window].0 += cost_between(data, motion, b.from, b.to);
+        windows[b.window].1 += ((b.to - b.from) * data.outputs.len()) as f64;
+    }
+    windows
+}
+
+/// Squared residuals as if every window were as far off as usual: the mean over windows of
+/// `ln(1 + m / K)`, taken back, with `m` the mean square of a window (Cauchy's loss; Huber 1981). Near the
+/// noise it is the sum of squares. Where a body sticks, some windows may go wrong by a thousand times the
+/// noise whatever the parameters: they must not decide alone.
+fn robust_cost(data: &Data, motion: &Motion) -> f64 {
+    let (mut logs, mut count) = (0.0, 0.0);
+    for (cost, n) in fitted_windows(data, motion) {
+        if n > 0.0 {
+            logs += n * (cost / (n * ODD_MEAN_SQUARE)).ln_1p();
+            count += n;
+        }
+    }
+    if count > 0.0 {
+        count * ODD_MEAN_SQUARE * (logs / count).exp_m1()
+    } else {
+        0.0
+    }
+}
+
+/// Weight of each window in the normal equations, from the derivative of [`robust_cost`].
+fn window_weights(data: &Data, motion: &Motion) -> Vec<f64> {
+    fitted_windows(data, motion)
+        .into_iter()
+        .map(|(cost, n)| 1.0 / (1.0 + cost / (n.max(1.0) * ODD_MEAN_SQUARE)))
+        .collect()
 }
 
 fn window_costs(data: &Data, motion: &Motion) -> Vec<f64> {

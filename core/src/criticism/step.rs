@@ -150,8 +150,8 @@ impl StepJob {
                     Search::adding(&self.session.data, &scored.fit, *effect, &probe, None)
                 });
                 self.session
-                    .baseline_error
-                    .get_or_insert(scored.score.error);
+                    .baseline
+                    .get_or_insert_with(|| scored.score.clone());
                 if search.is_none() {
                     self.wanted.clone_from(&scored.fit.structure.effects);
                 }
@@ -312,7 +312,7 @@ impl StepJob {
                 &self.classes,
                 &parameters,
                 &whole,
-                is_noise(&whole.score, self.session.first_error(&whole)),
+                is_noise(&whole.score, self.session.first(&whole)),
             )
         });
         Some(StepReport {
