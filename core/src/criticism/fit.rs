@@ -173,7 +173,7 @@ impl Fit {
             let level = (self.cost / count).sqrt().max(1.0);
             for (j, step) in steps.iter_mut().enumerate() {
                 let uncertain = level / self.information[(j, j)].max(f64::MIN_POSITIVE).sqrt();
-                let size = uncertain.clamp(LEAST_DIFFERENCE * step.abs(), step.abs());
+                let size = uncertain.max(LEAST_DIFFERENCE * step.abs()).min(step.abs());
                 *step = size.copysign(*step);
             }
         }

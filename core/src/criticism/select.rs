@@ -32,11 +32,6 @@ const NOISE_CORRELATION: f64 = 2.0;
 /// Error up to which what is left is noise even if it is correlated.
 const SURE_NOISE_ERROR: f64 = 1.05;
 
-/// Mean square of a held-back block, in units of the median one, above which it is far off, and share of
-/// the blocks that may be so in a model that is right.
-const ODD: f64 = 10.0;
-const ODD_BLOCKS: f64 = 0.06;
-
 /// A model that explains all but this share of the error that there was, down to this many times the
 /// noise, is complete: no clock, no rig and no equation is right to more digits.
 const SMALL_SHARE: f64 = 2e-3;
@@ -77,22 +72,10 @@ pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
     (statistic(b, a) + penalty).abs() < SAME_STATISTIC && fall(b, a).abs() < SAME_SHARE
 }
 
-/// Error without the few blocks that are far off: where a body sticks or breaks loose, a hair decides.
-fn usual_error(score: &Score) -> f64 {
-    let mut blocks = score.held_blocks.clone();
-    blocks.sort_by(f64::total_cmp);
-    let median = blocks.get(blocks.len() / 2).copied().unwrap_or(1.0);
-    let (odd, usual): (Vec<f64>, Vec<f64>) = blocks.iter().partition(|m| **m > ODD * median);
-    if odd.len() as f64 > ODD_BLOCKS * blocks.len() as f64 {
-        return score.error;
-    }
-    (usual.iter().sum::<f64>() / usual.len().max(1) as f64).sqrt()
-}
-
 /// Whether what is left looks like noise in itself.
 pub(super) fn is_plain_noise(score: &Score) -> bool {
-    let error = usual_error(score);
-    error < SURE_NOISE_ERROR || (error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
+    score.error < SURE_NOISE_ERROR
+        || (score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
 }
 
 /// Whether what is left is noise, against what the baseline left at first.

@@ -256,7 +256,7 @@ struct Bristle<'e> {
 impl Bristle<'_> {
     fn follow(&mut self, measured: f64, h: f64, friction: &DryFriction) {
         let width = TREMBLING * self.noise;
-        let position = self.position.clamp(measured - width, measured + width);
+        let position = self.position.max(measured - width).min(measured + width);
         let moved = position - self.position;
         self.position = position;
         if moved != 0.0 {
