@@ -147,6 +147,7 @@ pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
     // The constant term keeps an offset of the input from bending the other two.
     let mut normal = Matrix3::zeros();
     let mut right = Vector3::zeros();
+    let mut power = 0.0;
     let mut i = 0;
     while i + chunk < n {
         let (mut iw, mut iv) = (0.0, 0.0);
@@ -158,6 +159,7 @@ pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
         let row = Vector3::new(iw, -iv, time[i + chunk] - time[i]);
         normal += row * row.transpose();
         right += row * (v[i + chunk] - v[i]);
+        power += (v[i + chunk] - v[i]).powi(2);
         i += chunk;
     }
     // Columns differ by orders of magnitude: scaled to unit length before solving.
@@ -184,7 +186,11 @@ pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
         };
         b = (say - lambda * sab) / saa;
     }
-    if !b.is_finite() || b == 0.0 || (data.kind == Kind::Drive && b < 0.0) {
+    if data.kind == Kind::Drive && (b.is_nan() || b <= 0.0) {
+        // A resonance turns the motor against its torque: the sizes alone say how heavy it is.
+        (b, lambda) = ((power / saa).sqrt(), 0.0);
+    }
+    if !b.is_finite() || b == 0.0 {
         return None;
     }
     Some(match data.kind {

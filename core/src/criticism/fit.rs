@@ -18,6 +18,12 @@ const MAX_ITERATIONS: usize = 30;
 /// A relative fall of the cost below this ends a fit.
 const COST_TOLERANCE: f64 = 1e-6;
 
+/// Damping of the first step.
+const FIRST_DAMPING: f64 = 1e-3;
+
+/// Iterations of the baseline before an effect is fitted.
+const BODY_ITERATIONS: usize = 2;
+
 /// Damping above which no step is tried any more.
 const MAX_DAMPING: f64 = 1e9;
 
@@ -36,6 +42,14 @@ pub(super) struct Motion {
 }
 
 impl Motion {
+    /// No motion over `n` samples.
+    fn still(n: usize) -> Self {
+        Self {
+            position: vec![0.0; n],
+            velocity: vec![0.0; n],
+        }
+    }
+
     /// The part that an output shows.
     pub fn of(&self, is_velocity: bool) -> &[f64] {
         if is_velocity {
@@ -57,6 +71,8 @@ pub(super) struct Fit {
     /// by their usual size (see [`robust_cost`]).
     pub cost: f64,
     damping: f64,
+    /// Index of the first value that is held.
+    held: usize,
     iterations: usize,
     stalls: usize,
     pub done: bool,
@@ -82,7 +98,7 @@ impl Fit {
     ) -> Self {
         structure.clamp(&mut values, scales);
         let motion = simulate(data, &structure, &values, &starts);
-        let cost = robust_cost(data, &motion);
+        let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE);
         let p = values.len();
         Self {
             structure,
@@ -90,7 +106,8 @@ impl Fit {
             starts,
             motion,
             cost,
-            damping: 1e-3,
+            damping: FIRST_DAMPING,
+            held: usize::MAX,
             iterations: 0,
             stalls: 0,
             done: !cost.is_finite(),
@@ -107,7 +124,9 @@ impl Fit {
         let p = self.values.len();
         let steps = self.difference_steps(data, scales);
         let columns = self.columns(data, &steps, scales);
-        let (matrix, gradient, windows) = self.normal_equations(data, &columns);
+        let scale = oddness(data, &self.motion);
+        let (matrix, gradient, windows) = self.normal_equations(data, &columns, scale);
+        let present = robust_cost(data, &self.motion, scale);
         let mut lowered = false;
         while self.damping < MAX_DAMPING {
             let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
@@ -115,11 +134,12 @@ impl Fit {
                 self.damping *= 10.0;
                 continue;
             };
-            let (starts, motion) = self.motion_from(data, &values, starts);
-            let cost = robust_cost(data, &motion);
-            if cost <= self.cost {
-                let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
-                (self.values, self.starts, self.motion, self.cost) = (values, starts, motion, cost);
+            let (starts, motion) = self.motion_from(data, &values, starts, scale);
+            let cost = robust_cost(data, &motion, scale);
+            if cost <= present {
+                let fall = (present - cost) / present.max(f64::MIN_POSITIVE);
+                self.cost = robust_cost(data, &motion, ODD_MEAN_SQUARE);
+                (self.values, self.starts, self.motion) = (values, starts, motion);
                 self.damping = (self.damping * 0.2).max(1e-9);
                 lowered = fall > COST_TOLERANCE;
                 break;
@@ -136,6 +156,18 @@ impl Fit {
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
     }
 
+    /// Fits the baseline alone, the effects as they are: with a wrong body the values of a new effect
+    /// would be led astray at once.
+    pub fn fit_body(&mut self, data: &Data, scales: &Scales) {
+        self.held = self.structure.baseline_len();
+        for _ in 0..BODY_ITERATIONS {
+            self.iterate(data, scales);
+        }
+        self.held = usize::MAX;
+        (self.iterations, self.stalls, self.damping) = (0, 0, FIRST_DAMPING);
+        self.done = !self.cost.is_finite();
+    }
+
     /// Motion with new values; where it got worse, each window starts from the better of its new and
     /// its present state: near a kink, such as sticking, a step in the state may lead anywhere.
     fn motion_from(
@@ -143,9 +175,10 @@ impl Fit {
         data: &Data,
         values: &[f64],
         mut starts: Vec<Start>,
+        scale: f64,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-        if robust_cost(data, &moved) <= self.cost {
+        if robust_cost(data, &moved, scale) <= robust_cost(data, &self.motion, scale) {
             return (starts, moved);
         }
         let stayed = simulate(data, &self.structure, values, &self.starts);
@@ -190,6 +223,9 @@ impl Fit {
             .iter()
             .enumerate()
             .map(|(j, step)| {
+                if j >= self.held {
+                    return Motion::still(data.len());
+                }
                 let mut values = self.values.clone();
                 values[j] += step;
                 difference(
@@ -215,11 +251,7 @@ impl Fit {
         if data.has_position {
             columns.push(difference(moved(dx, 0.0), dx));
         } else {
-            let n = data.len();
-            columns.push(Motion {
-                position: vec![0.0; n],
-                velocity: vec![0.0; n],
-            });
+            columns.push(Motion::still(data.len()));
         }
         columns.push(difference(moved(0.0, dv), dv));
         columns
@@ -229,6 +261,7 @@ impl Fit {
         &self,
         data: &Data,
         columns: &[Motion],
+        scale: f64,
     ) -> (DMatrix<f64>, DVector<f64>, Vec<WindowSums>) {
         // The last two columns are those of the starts.
         let p = columns.len() - 2;
@@ -244,7 +277,7 @@ impl Fit {
             })
             .collect();
         let informed = informed_windows(data);
-        let robust = window_weights(data, &self.motion);
+        let robust = window_weights(data, &self.motion, scale);
         let mut row = vec![0.0; p];
         for block in &data.blocks {
             // A held-back block in a window that is also fitted informs nothing.
@@ -381,14 +414,14 @@ impl Fit {
             }
         }
         self.motion = simulate(data, &self.structure, &self.values, &self.starts);
-        self.cost = robust_cost(data, &self.motion);
+        self.cost = robust_cost(data, &self.motion, ODD_MEAN_SQUARE);
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
         for _ in 0..2 {
             let columns = self.columns(data, &[], scales);
-            let (_, _, windows) = self.normal_equations(data, &columns);
+            let (_, _, windows) = self.normal_equations(data, &columns, f64::INFINITY);
             let trial: Vec<Start> = self
                 .starts
                 .iter()
@@ -414,7 +447,7 @@ impl Fit {
             }
             self.motion = simulate(data, &self.structure, &self.values, &self.starts);
         }
-        self.cost = robust_cost(data, &self.motion);
+        self.cost = robust_cost(data, &self.motion, ODD_MEAN_SQUARE);
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance.
@@ -451,11 +484,7 @@ pub(super) fn simulate(
     values: &[f64],
     starts: &[Start],
 ) -> Motion {
-    let n = data.len();
-    let mut motion = Motion {
-        position: vec![0.0; n],
-        velocity: vec![0.0; n],
-    };
+    let mut motion = Motion::still(data.len());
     let model = structure.model(values);
     data.excitation
         .replay(&model, starts, &mut motion.position, &mut motion.velocity);
@@ -567,30 +596,45 @@ fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
     windows
 }
 
+/// Mean square from which a window is odd, given how far off all are: this many times the median one, so
+/// that a model which is wrong everywhere is fitted everywhere.
+const ODD_TIMES: f64 = 3.0;
+
+fn oddness(data: &Data, motion: &Motion) -> f64 {
+    let mut squares: Vec<f64> = fitted_windows(data, motion)
+        .into_iter()
+        .filter(|(_, n)| *n > 0.0)
+        .map(|(cost, n)| cost / n)
+        .collect();
+    squares.sort_by(f64::total_cmp);
+    let median = squares.get(squares.len() / 2).copied().unwrap_or(0.0);
+    ODD_MEAN_SQUARE.max(ODD_TIMES * median)
+}
+
 /// Squared residuals as if every window were as far off as usual: the mean over windows of
-/// `ln(1 + m / K)`, taken back, with `m` the mean square of a window (Cauchy's loss; Huber 1981). Near the
-/// noise it is the sum of squares. Where a body sticks, some windows may go wrong by a thousand times the
+/// `ln(1 + m / K)`, taken back, with `m` the mean square of a window and `K` the `scale` (Cauchy's loss;
+/// Huber 1981). For `m` below `K` it is the sum of squares. Where a body sticks, some windows may go wrong by a thousand times the
 /// noise whatever the parameters: they must not decide alone.
-fn robust_cost(data: &Data, motion: &Motion) -> f64 {
+fn robust_cost(data: &Data, motion: &Motion, scale: f64) -> f64 {
     let (mut logs, mut count) = (0.0, 0.0);
     for (cost, n) in fitted_windows(data, motion) {
         if n > 0.0 {
-            logs += n * (cost / (n * ODD_MEAN_SQUARE)).ln_1p();
+            logs += n * (cost / (n * scale)).ln_1p();
             count += n;
         }
     }
     if count > 0.0 {
-        count * ODD_MEAN_SQUARE * (logs / count).exp_m1()
+        count * scale * (logs / count).exp_m1()
     } else {
         0.0
     }
 }
 
 /// Weight of each window in the normal equations, from the derivative of [`robust_cost`].
-fn window_weights(data: &Data, motion: &Motion) -> Vec<f64> {
+fn window_weights(data: &Data, motion: &Motion, scale: f64) -> Vec<f64> {
     fitted_windows(data, motion)
         .into_iter()
-        .map(|(cost, n)| 1.0 / (1.0 + cost / (n.max(1.0) * ODD_MEAN_SQUARE)))
+        .map(|(cost, n)| 1.0 / (1.0 + cost / (n.max(1.0) * scale)))
         .collect()
 }
 

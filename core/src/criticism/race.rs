@@ -56,12 +56,14 @@ impl Race {
     ) -> Self {
         let target = instead.map(|(whole, _)| whole.cost);
         let probe = session.probe(fit);
+        // What takes the place of another effect must first come back to where that was.
+        let scouted = instead.is_none().then(|| session.scouted(fit));
         Self {
             contenders: effects
                 .into_iter()
                 .map(|effect| Contender {
                     effect,
-                    search: Search::adding(&session.data, fit, effect, &probe, instead),
+                    search: Search::adding(&session.data, fit, effect, &probe, instead, scouted),
                     close: match instead {
                         Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
                         _ => CLOSE,

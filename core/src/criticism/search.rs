@@ -15,6 +15,9 @@ const SCAN_ITERATIONS: usize = 2;
 /// A starting point that still costs this many times the present model is not followed.
 const HOPELESS: f64 = 10.0;
 
+/// Share of the cost on the scout below which a starting point must come to be followed.
+const PROMISING: f64 = 0.995;
+
 /// A regressed baseline that differs by less than this share from the present one is no new start.
 const WORTH_A_START: f64 = 0.2;
 
@@ -41,6 +44,8 @@ pub(super) struct Search {
     finalists: Vec<Fit>,
     /// Cost of the model that this one would replace.
     present: f64,
+    /// The same on the scout; infinite where every fit is followed.
+    scouted: f64,
     total: usize,
     optimism: f64,
 }
@@ -61,13 +66,15 @@ impl Search {
 
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
     /// the baseline, since a missing effect may have bent the baseline far off. What it contains, or
-    /// what it stands in for (a fit and the place in it), lends it the values that both have.
+    /// what it stands in for (a fit and the place in it), lends it the values that both have. `scouted`
+    /// is the cost of the fitted model on the scout, which the effect must lower to be followed.
     pub fn adding(
         data: &Data,
         fit: &Fit,
         effect: &'static dyn Effect,
         probe: &Probe,
         instead: Option<(&Fit, usize)>,
+        scouted: Option<f64>,
     ) -> Self {
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
@@ -103,7 +110,11 @@ impl Search {
         points.extend(Self::other_valleys(
             data, fit, &rest, &kept, &structure, effect, probe,
         ));
-        Self::from_points(structure, points, fit.cost)
+        let present = instead.map_or(fit.cost, |(whole, _)| whole.cost);
+        Self {
+            scouted: scouted.unwrap_or(f64::INFINITY),
+            ..Self::from_points(structure, points, present)
+        }
     }
 
     /// The same point with the baseline regressed anew, if that is somewhere else.
@@ -184,6 +195,7 @@ impl Search {
             scanned: Vec::new(),
             finalists: Vec::new(),
             present,
+            scouted: f64::INFINITY,
             optimism: f64::INFINITY,
         }
     }
@@ -205,8 +217,30 @@ impl Search {
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
         fit.take_measured_starts(scout);
+        let mut other = fit.clone();
         for _ in 0..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
+        }
+        if fit.cost > PROMISING * self.scouted {
+            // Perhaps a wrong body led the new effect astray.
+            other.fit_body(scout, scales);
+            eprintln!(
+                "DBG body {:?} {:?} {:.4e}",
+                other
+                    .structure
+                    .effects
+                    .iter()
+                    .map(|e| e.id().as_str())
+                    .collect::<Vec<_>>(),
+                other.values,
+                other.cost
+            );
+            for _ in 0..SCAN_ITERATIONS {
+                other.iterate(scout, scales);
+            }
+            if other.cost < fit.cost {
+                fit = other;
+            }
         }
         self.scanned.push((fit, starts));
         if self.pending.is_empty() {
@@ -226,7 +260,7 @@ impl Search {
         let hopeless = HOPELESS * self.present * share;
         let near = NEAR * best.cost;
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        first.done |= best.cost > hopeless;
+        first.done |= best.cost > hopeless.min(PROMISING * self.scouted);
         settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {

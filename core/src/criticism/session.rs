@@ -125,6 +125,18 @@ impl Session {
         Scored { fit, score }
     }
 
+    /// Cost of `fit` on the scout.
+    pub fn scouted(&self, fit: &Fit) -> f64 {
+        let starts = fit
+            .starts
+            .iter()
+            .copied()
+            .filter(|s| self.scout.windows.binary_search(&s.sample).is_ok())
+            .collect();
+        let (structure, values) = (fit.structure.clone(), fit.values.clone());
+        Fit::new(&self.scout, structure, values, starts, &self.scales).cost
+    }
+
     pub fn kind(&self) -> Kind {
         self.data.kind
     }

@@ -12,6 +12,9 @@ use crate::measurement::{Kind, Measurement};
 /// Error of a perfect model in noise units.
 pub(super) const NOISE_FLOOR: f64 = 1.0;
 
+/// The effect that is tried together with others where nothing helps by itself.
+const COMPANION: EffectId = EffectId::new("constant_load");
+
 /// What a step is doing.
 enum Stage {
     /// Fitting the model itself, effect by effect; `next` is the one to add then.
@@ -147,7 +150,7 @@ impl StepJob {
                 };
                 let search = self.wanted.get(next).map(|effect| {
                     let probe = self.session.probe(&scored.fit);
-                    Search::adding(&self.session.data, &scored.fit, *effect, &probe, None)
+                    Search::adding(&self.session.data, &scored.fit, *effect, &probe, None, None)
                 });
                 self.session
                     .baseline
@@ -419,7 +422,11 @@ impl StepJob {
             .filter(|s| fall(&model.score, &s.score) > LARGE_FALL)
             .collect();
         seen.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
-        seen.into_iter().take(count).cloned().collect()
+        seen.truncate(count);
+        // A constant load hides behind almost anything that repeats.
+        let loaded = self.tried.iter().find(|(e, _)| e.id() == COMPANION);
+        seen.extend(loaded.map(|(_, s)| s));
+        seen.into_iter().cloned().collect()
     }
 
     /// Models with another effect that would help too, the best first: where the suggestion may turn
@@ -472,7 +479,9 @@ fn same_body(a: &Scored, b: &Scored) -> bool {
         Kind::Process => 2,
     };
     let pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
-    pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
+    pairs
+        .into_iter()
+        .all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
 }
 
 /// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how

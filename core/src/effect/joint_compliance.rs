@@ -6,11 +6,46 @@ use crate::model::{Coupling, Load, Model};
 
 pub(super) struct JointCompliance;
 
-/// Damping of the joint that is tried, over inertia times natural frequency.
+/// Damping of the joint that is tried, over inertia times natural frequency: first one that blurs the
+/// resonance over the distance of the frequencies tried, then less.
 const DAMPING_RATIO: f64 = 0.05;
+const FINER_DAMPING: [f64; 3] = [0.05, 0.015, 0.003];
+
+/// Frequencies about a good one that are tried then, as ratios.
+const FINER: f64 = 1.008;
+const FINER_STEPS: i32 = 3;
 
 /// Natural frequencies that are followed.
 const BEST: usize = 3;
+
+/// Share of the unexplained force that a load with this natural frequency would leave, and the effect's
+/// values.
+fn trial(probe: &Probe, omega: f64, damping: f64) -> Option<(f64, f64, Vec<f64>)> {
+    let inertia = probe.scales.inertia.abs();
+    let load = Load {
+        inertia,
+        viscous: 0.0,
+        dry_friction: 0.0,
+        coupling: Coupling {
+            half_gap: 0.0,
+            stiffness: inertia * omega * omega,
+            damping: damping * inertia * omega,
+        },
+    };
+    let fit = probe.regress(&[&probe.load_torque(&load)])?;
+    let scale = -fit.coefficients[0];
+    (scale > 0.0).then(|| {
+        let c = load.coupling;
+        let values = vec![scale * c.stiffness, scale * c.damping, scale * inertia, 0.0];
+        (fit.left, omega, values)
+    })
+}
+
+fn best(mut trials: Vec<(f64, f64, Vec<f64>)>) -> Vec<(f64, f64, Vec<f64>)> {
+    trials.sort_by(|a, b| a.0.total_cmp(&b.0));
+    trials.truncate(BEST);
+    trials
+}
 
 impl Effect for JointCompliance {
     fn id(&self) -> EffectId {
@@ -67,37 +102,20 @@ impl Effect for JointCompliance {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        let inertia = probe.scales.inertia.abs();
-        let mut found: Vec<(f64, Vec<f64>)> = probe
+        let coarse = probe
             .load_frequencies()
             .into_iter()
-            .filter_map(|omega| {
-                let load = Load {
-                    inertia,
-                    viscous: 0.0,
-                    dry_friction: 0.0,
-                    coupling: Coupling {
-                        half_gap: 0.0,
-                        stiffness: inertia * omega * omega,
-                        damping: DAMPING_RATIO * inertia * omega,
-                    },
-                };
-                let fit = probe.regress(&[&probe.load_torque(&load)])?;
-                let scale = -fit.coefficients[0];
-                (scale > 0.0).then(|| {
-                    let c = load.coupling;
-                    let values = vec![
-                        scale * c.stiffness,
-                        scale * c.damping,
-                        scale * inertia,
-                        0.1 * probe.scales.viscous,
-                    ];
-                    (fit.left, values)
-                })
-            })
+            .filter_map(|omega| trial(probe, omega, DAMPING_RATIO))
             .collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.into_iter().take(BEST).map(|f| f.1).collect()
+        let finer = best(coarse)
+            .iter()
+            .flat_map(|(_, omega, _)| {
+                (-FINER_STEPS..=FINER_STEPS).map(move |k| omega * FINER.powi(k))
+            })
+            .flat_map(|omega| FINER_DAMPING.map(|damping| (omega, damping)))
+            .filter_map(|(omega, damping)| trial(probe, omega, damping))
+            .collect();
+        best(finer).into_iter().map(|t| t.2).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

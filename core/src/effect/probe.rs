@@ -23,14 +23,16 @@ const SCANNED: usize = 6_000;
 /// Forces of every regression: input, velocity, constant.
 const BASE: usize = 3;
 
-/// Spatial frequencies that are scanned at most, over the measured travel.
-const MAX_SPATIAL: usize = 500;
+/// Spatial frequencies that are scanned at most as close as the measured travel tells them apart, and
+/// beyond them up to the highest.
+const FINE_SPATIAL: usize = 700;
+const COARSE_SPATIAL: usize = 150;
 
 /// Highest spatial frequency, in radians per sample at the typical speed.
 const FASTEST_SPATIAL: f64 = 0.8;
 
 /// Natural frequencies of a load that are scanned.
-const LOAD_FREQUENCIES: u32 = 48;
+const LOAD_FREQUENCIES: u32 = 110;
 
 /// Share of the typical speed below which a velocity has no sign.
 const STILL: f64 = 0.01;
@@ -348,9 +350,13 @@ impl Probe {
     pub fn spatial_frequencies(&self, count: usize) -> Vec<(f64, f64, f64)> {
         let travel = self.scales.travel;
         let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
-        let spacing = (1.2 / travel).max(fastest / MAX_SPATIAL as f64);
-        let scan: Vec<(f64, f64, f64, f64)> = (1..=MAX_SPATIAL)
-            .map(|k| k as f64 * spacing)
+        let spacing = 1.2 / travel;
+        let fine = (1..=FINE_SPATIAL).map(|k| k as f64 * spacing);
+        let from = FINE_SPATIAL as f64 * spacing;
+        let wider = spacing.max((fastest - from) / COARSE_SPATIAL as f64);
+        let coarse = (1..=COARSE_SPATIAL).map(|k| from + k as f64 * wider);
+        let scan: Vec<(f64, f64, f64, f64)> = fine
+            .chain(coarse)
             .take_while(|n| *n <= fastest)
             .filter_map(|n| self.spatial(n))
             .collect();
