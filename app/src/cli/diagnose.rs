@@ -3,12 +3,14 @@
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::time::Instant;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
 use hysteron_core::measurement::{
     self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
 };
+use hysteron_core::report::{self, Provenance, ReportInput};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -22,14 +24,17 @@ pub(super) struct Arguments {
     /// Which column is what: t, u, x1, v1, x2, v2 or y, its name in the file (- before it turns the sign), its
     /// unit; such as "t=time [ms],u=-current [A],x1=enc [counts:4096]"
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
-    map: Option<Mapping>,
+    map: Option<AsWritten<Mapping>>,
     /// What a current or voltage as input becomes, such as "0.05 N m/A"; without it all torques stand in
     /// multiples of it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    torque_constant: Option<TorqueConstant>,
+    torque_constant: Option<AsWritten<TorqueConstant>>,
     /// For a person or for a program; of many files one block or one line of JSON each
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
+    /// Write what was found to this file as a page with pictures, for a browser or a printer
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
     /// Add each result to this file as a line of JSON, and skip files whose result is there
     #[arg(long, value_name = "OUT")]
     pub resume: Option<PathBuf>,
@@ -54,10 +59,31 @@ pub(super) enum Format {
     Json,
 }
 
+/// A value of an option and how it was written.
+#[derive(Clone, Debug)]
+pub(super) struct AsWritten<T> {
+    text: String,
+    value: T,
+}
+
+impl<T: FromStr> FromStr for AsWritten<T> {
+    type Err = T::Err;
+
+    fn from_str(text: &str) -> Result<Self, T::Err> {
+        Ok(Self {
+            text: text.to_owned(),
+            value: text.parse()?,
+        })
+    }
+}
+
 /// One file by the contract of a single one; many files, or a file to resume from, as a batch.
 pub(super) fn run(arguments: &Arguments) -> ExitCode {
     match (arguments.files.as_slice(), &arguments.resume) {
         ([file], None) => super::finish(single(file, arguments)),
+        _ if arguments.report.is_some() => super::finish(Err(
+            "--report writes the page of one file: give one FILE, without --resume".to_owned(),
+        )),
         _ => super::batch::run(arguments),
     }
 }
@@ -68,6 +94,10 @@ fn single(file: &Path, arguments: &Arguments) -> Result<String, String> {
     let report = one(file, arguments, |fraction, text| line.show(fraction, text));
     line.clear();
     let report = report?;
+    if let (Some(path), Some(page)) = (&arguments.report, &report.page) {
+        std::fs::write(path, page)
+            .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
+    }
     match arguments.format {
         Format::Text => Ok(report.text(&report.name)),
         Format::Json => report.json().map_err(|e| {
@@ -85,6 +115,8 @@ pub(super) struct Report {
     /// What the import had to assume or leave out.
     notes: Vec<String>,
     diagnosis: Diagnosis,
+    /// As an HTML page, if that is wanted.
+    page: Option<String>,
 }
 
 /// A diagnosis as JSON, with what belongs to the file and not to it.
@@ -154,7 +186,7 @@ pub(super) fn one(
     mut show: impl FnMut(f64, &str),
 ) -> Result<Report, String> {
     let started = Instant::now();
-    let measurement = read(file, arguments)?;
+    let (measurement, bytes) = read(file, arguments)?;
     let name = measurement.name.clone();
     let mut job = DiagnosisJob::new(&measurement).map_err(|e| format!("{name}: {e}"))?;
     loop {
@@ -162,17 +194,68 @@ pub(super) fn one(
             Progress::Running { fraction, text } => show(fraction, &text),
             Progress::Done(mut diagnosis) => {
                 diagnosis.seconds = started.elapsed().as_secs_f64();
+                let page = arguments.report.as_ref().and_then(|_| {
+                    let (first, last) = job.evidence()?;
+                    Some(report::html(&ReportInput {
+                        measurement: &measurement,
+                        steps: &diagnosis.steps,
+                        first_atlas: &first.atlas,
+                        last,
+                        verdict: Some(&diagnosis.verdict),
+                        provenance: &provenance(file, arguments, &bytes),
+                    }))
+                });
                 return Ok(Report {
                     name,
                     notes: measurement.warnings,
                     diagnosis,
+                    page,
                 });
             }
         }
     }
 }
 
-fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
+/// How the diagnosis of this file can be made again.
+fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
+    let mut command = format!("hysteron diagnose {}", quoted(&file.to_string_lossy()));
+    let kind = arguments.kind.map(|kind| match kind {
+        Kind::Drive => "drive",
+        Kind::Process => "process",
+    });
+    let options = [
+        ("--kind", kind),
+        ("--map", arguments.map.as_ref().map(|m| m.text.as_str())),
+        (
+            "--torque-constant",
+            arguments.torque_constant.as_ref().map(|m| m.text.as_str()),
+        ),
+    ];
+    for (option, value) in options {
+        if let Some(value) = value {
+            command.push_str(&format!(" {option} {}", quoted(value)));
+        }
+    }
+    Provenance {
+        command,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        bytes: bytes.len(),
+        sha256: report::sha256(bytes),
+    }
+}
+
+/// An argument as a shell takes it.
+fn quoted(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
+/// The measurement and the bytes that it was read from.
+fn read(path: &Path, arguments: &Arguments) -> Result<(Measurement, Vec<u8>), String> {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
@@ -190,10 +273,14 @@ fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
     });
     let options = ImportOptions {
         kind,
-        mapping: arguments.map.clone().unwrap_or_default(),
-        torque_constant: arguments.torque_constant,
+        mapping: arguments
+            .map
+            .as_ref()
+            .map_or_else(Mapping::default, |m| m.value.clone()),
+        torque_constant: arguments.torque_constant.as_ref().map(|c| c.value),
     };
-    import(&name, &bytes, &options).map_err(|e| e.to_string())
+    let measurement = import(&name, &bytes, &options).map_err(|e| e.to_string())?;
+    Ok((measurement, bytes))
 }
 
 /// One line on stderr that is written over again and again; nothing where stderr is no terminal.

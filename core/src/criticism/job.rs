@@ -2,7 +2,7 @@
 
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
-use super::{Diagnosis, Step};
+use super::{Diagnosis, Step, StepReport};
 use crate::effect::EffectId;
 use crate::measurement::Measurement;
 
@@ -80,8 +80,12 @@ pub struct DiagnosisJob {
     detours_taken: usize,
     /// Whether the present way began with an effect that was not seen clearly.
     bold: bool,
-    /// The best that came to an end without explaining everything.
-    unfinished: Option<Diagnosis>,
+    /// The best that came to an end without explaining everything, and the report on its last model.
+    unfinished: Option<(Diagnosis, Option<StepReport>)>,
+    /// Report on the baseline, without its curves.
+    first: Option<StepReport>,
+    /// Report on the last model.
+    last: Option<StepReport>,
 }
 
 impl DiagnosisJob {
@@ -108,6 +112,8 @@ impl DiagnosisJob {
             detours_taken: 0,
             bold: false,
             unfinished: None,
+            first: None,
+            last: None,
         })
     }
 
@@ -127,7 +133,10 @@ impl DiagnosisJob {
         };
         let effects = report.step.effects.len();
         let before = self.diagnosis.steps.len();
-        self.diagnosis.steps.push(report.step);
+        self.diagnosis.steps.push(report.step.clone());
+        if self.first.is_none() {
+            self.first = Some(without_curves(&report));
+        }
         let Some(job) = self.job.take() else {
             return Progress::Done(self.diagnosis.clone());
         };
@@ -151,7 +160,9 @@ impl DiagnosisJob {
         }
         let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
-        match (report.verdict, next) {
+        let verdict = report.verdict.clone();
+        self.last = Some(report);
+        match (verdict, next) {
             (_, Some(model)) if !ended => {
                 self.job = Some(StepJob::from_fit(session, model));
             }
@@ -176,13 +187,13 @@ impl DiagnosisJob {
         let better = self
             .unfinished
             .take()
-            .filter(|other| self.bold || DETOUR_GAIN * error(other) <= error(&self.diagnosis));
+            .filter(|other| self.bold || DETOUR_GAIN * error(&other.0) <= error(&self.diagnosis));
         let best = match better {
             Some(other) if !self.diagnosis.verdict.complete => other,
-            _ => self.diagnosis.clone(),
+            _ => (self.diagnosis.clone(), self.last.take()),
         };
-        if best.verdict.complete || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
-            self.diagnosis = best;
+        if best.0.verdict.complete || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
+            (self.diagnosis, self.last) = best;
             return Some(self.diagnosis.clone());
         }
         self.unfinished = Some(best);
@@ -192,5 +203,25 @@ impl DiagnosisJob {
         self.bold = detour.bold;
         self.job = Some(StepJob::from_fit(session, detour.model));
         None
+    }
+
+    /// Once it is done: the reports on the baseline (without its curves) and on the last model.
+    pub fn evidence(&self) -> Option<(&StepReport, &StepReport)> {
+        self.first.as_ref().zip(self.last.as_ref())
+    }
+}
+
+/// The report without what is as long as the measurement.
+fn without_curves(report: &StepReport) -> StepReport {
+    StepReport {
+        step: report.step.clone(),
+        replay: super::Replay {
+            channels: Vec::new(),
+            window_starts: Vec::new(),
+        },
+        atlas: report.atlas.clone(),
+        verdict: report.verdict.clone(),
+        needless: report.needless.clone(),
+        ..*report
     }
 }

@@ -1,5 +1,6 @@
 //! Where does the model fail, which effect is missing, how much, how sure?
 
+mod atlas;
 mod baseline;
 mod data;
 mod fit;
@@ -15,6 +16,7 @@ mod step;
 mod structure;
 mod verdict;
 
+pub use atlas::{Profile, ProfileBin};
 pub use job::{CriticismError, DiagnosisJob, Progress};
 pub use noise::noise_level;
 pub use report::{

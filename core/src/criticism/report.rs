@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Profile;
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Quantity};
 
@@ -144,6 +145,8 @@ pub struct StepReport {
     pub noise_floor: f64,
     /// Curves for the plots.
     pub replay: Replay,
+    /// The residual over every axis.
+    pub atlas: Vec<Profile>,
     /// The effect that data say should be added next, if any.
     pub suggestion: Option<EffectId>,
     /// Effects in the model that data say are not needed.

@@ -1,5 +1,6 @@
 //! What all fits on one measurement share: its data, sizes, units, and how a fit becomes a report.
 
+use super::atlas::atlas;
 use super::baseline;
 use super::data::Data;
 use super::fit::{Fit, Score, score};
@@ -184,12 +185,20 @@ impl Session {
         if is_noise(&scored.score, self.first(scored)) {
             return Vec::new();
         }
-        let unit = self
-            .outputs
+        locate(self.whole(), &scored.fit.motion, self.output_unit())
+    }
+
+    /// The residual over every axis.
+    pub fn atlas(&self, fit: &Fit) -> Vec<super::Profile> {
+        atlas(self.whole(), &fit.motion, self.output_unit())
+    }
+
+    /// Unit of the velocity, or of the output of a process.
+    fn output_unit(&self) -> &str {
+        self.outputs
             .iter()
             .find(|o| o.0 != Quantity::Position)
-            .map_or_else(|| self.velocity_unit(), |o| o.2.as_str());
-        locate(self.whole(), &scored.fit.motion, unit)
+            .map_or_else(|| self.velocity_unit(), |o| o.2.as_str())
     }
 
     fn velocity_unit(&self) -> &'static str {

@@ -326,6 +326,7 @@ impl StepJob {
             },
             noise_floor: NOISE_FLOOR,
             replay: self.session.replay(&whole.fit),
+            atlas: self.session.atlas(&whole.fit),
             suggestion,
             needless,
             verdict,
