@@ -257,3 +257,36 @@ fn an_unfinished_diagnosis_can_be_shown() {
     diagnosis.noise_floor = f64::INFINITY;
     assert!(render(&diagnosis, "rig.csv", &[]).contains("unknown"));
 }
+
+#[test]
+fn a_report_is_written_beside_the_answer() {
+    let page = Path::new(env!("CARGO_TARGET_TMPDIR")).join("process-02.html");
+    let _ = std::fs::remove_file(&page);
+    let output = hysteron()
+        .args(["diagnose", "--kind", "process", "--report"])
+        .args([&page, &data("process-02.csv")])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
+    assert!(
+        page.contains("process-02.csv --kind process"),
+        "how to make it again"
+    );
+    let run = |arguments: &[&Path]| hysteron().arg("diagnose").args(arguments).output().unwrap();
+    let (file, option) = (data("process-02.csv"), Path::new("--report"));
+    refused(
+        &run(&[&file, option, Path::new("/no/such/folder/out.html")]),
+        &["out.html", "cannot be written"],
+    );
+    refused(
+        &run(&[
+            &file,
+            &data("process-01.csv"),
+            option,
+            Path::new("out.html"),
+        ]),
+        &["--report", "one FILE"],
+    );
+}

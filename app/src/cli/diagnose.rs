@@ -218,7 +218,10 @@ pub(super) fn one(
 
 /// How the diagnosis of this file can be made again.
 fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
-    let mut command = format!("hysteron diagnose {}", quoted(&file.to_string_lossy()));
+    let mut command = format!(
+        "hysteron diagnose {}",
+        report::shell_word(&file.to_string_lossy())
+    );
     let kind = arguments.kind.map(|kind| match kind {
         Kind::Drive => "drive",
         Kind::Process => "process",
@@ -233,7 +236,7 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
     ];
     for (option, value) in options {
         if let Some(value) = value {
-            command.push_str(&format!(" {option} {}", quoted(value)));
+            command.push_str(&format!(" {option} {}", report::shell_word(value)));
         }
     }
     Provenance {
@@ -241,16 +244,6 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         bytes: bytes.len(),
         sha256: report::sha256(bytes),
-    }
-}
-
-/// An argument as a shell takes it.
-fn quoted(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', "'\\''"))
     }
 }
 

@@ -89,7 +89,7 @@ pub(super) const STYLE: &str = r#"
   --measured: #56b4e9; --model: #f0772a; --residual: #cc79a7; --noise: #1fc295; --band: #e69f00; } }
 @media print { :root { --ground: #fff; --text: #000; --faint: #444; --line: #bbb; --panel: #fff;
   --measured: #2f8fc4; --model: #d55e00; --residual: #b3578c; --noise: #00805d; } main { max-width: none !important; padding: 0 !important; }
-  figure, table, .answer { break-inside: avoid; } h2 { break-after: avoid; } }
+  figure, tr, pre, .answer { break-inside: avoid; } h2, h3 { break-after: avoid; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--ground); color: var(--text); font: 16px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", sans-serif; }
 main { max-width: 960px; margin: 0 auto; padding: 2rem 1.25rem 4rem; }

@@ -218,6 +218,16 @@ fn reproduce(input: &ReportInput) -> String {
     )
 }
 
+/// A word of a command line, quoted if a shell would take it apart.
+pub fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
 /// A number with three or four digits.
 fn short(value: f64) -> String {
     let size = value.abs();

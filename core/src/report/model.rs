@@ -60,7 +60,11 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
                 Cell::Code(p.name.clone()),
                 Cell::Text(p.label.clone()),
                 Cell::Number(with_error(p.value, p.std_error, unit)),
-                Cell::Text(p.effect.map_or_else(|| "baseline".to_owned(), name_of)),
+                Cell::Text(
+                    p.effect
+                        .filter(|id| *id != VISCOUS_FRICTION)
+                        .map_or_else(|| "baseline".to_owned(), name_of),
+                ),
             ]
         })
         .collect();
@@ -104,9 +108,9 @@ pub(super) fn candidates(steps: &[Step]) -> String {
                 } else {
                     "too little to add it".to_owned()
                 };
-                let values: Vec<String> = c
-                    .parameters
-                    .iter()
+                // What does not help has values that mean nothing.
+                let shown = c.parameters.iter().filter(|_| c.significant);
+                let values: Vec<String> = shown
                     .map(|p| {
                         let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
                         format!("{} = {}", p.name, with_error(p.value, p.std_error, unit))

@@ -244,8 +244,8 @@ fn profile_chart(name: &str, profile: &Profile, before: Option<&Profile>) -> Str
         &profile.unit,
         range(own.iter().map(|p| p.0)).unwrap_or((0.0, 1.0)),
     );
-    let top = range(own.iter().chain(&other).map(|p| p.1)).map_or(1.0, |r| r.1);
-    let y = Axis::new("residual / noise", "1", (0.0, 1.06 * top.max(1.0)));
+    let sizes = own.iter().chain(&other).map(|p| p.1).chain([1.0]);
+    let y = Axis::sized("residual / noise", "1", range(sizes).unwrap_or((0.0, 1.0)));
     let mut chart = Chart::new(HALF, LOW + 20.0, x, y);
     chart.line(&other, "before");
     chart.line(&own, "residual");

@@ -6,9 +6,12 @@ use super::html::escape;
 
 /// Space for the labels, in units of the picture.
 const LEFT: f64 = 74.0;
-const RIGHT: f64 = 12.0;
+const RIGHT: f64 = 24.0;
 const TOP: f64 = 10.0;
 const BOTTOM: f64 = 40.0;
+
+/// A range that spans more than this factor is shown on a logarithmic axis.
+const LOGARITHMIC_FROM: f64 = 20.0;
 
 /// Width of a character, for the bars' labels.
 const CHARACTER: f64 = 6.8;
@@ -19,6 +22,7 @@ pub(super) struct Axis {
     label: String,
     from: f64,
     to: f64,
+    logarithmic: bool,
 }
 
 impl Axis {
@@ -37,7 +41,12 @@ impl Axis {
             let half = if from == 0.0 { 1.0 } else { 0.1 * from.abs() };
             (from, to) = (from - half, to + half);
         }
-        Self { label, from, to }
+        Self {
+            label,
+            from,
+            to,
+            logarithmic: false,
+        }
     }
 
     /// The same with some room at both ends.
@@ -49,8 +58,37 @@ impl Axis {
         axis
     }
 
+    /// A logarithmic axis where the range spans far, both ends above 0; else a linear one from 0.
+    pub fn sized(name: &str, unit: &str, (from, to): (f64, f64)) -> Self {
+        if from > 0.0 && to > LOGARITHMIC_FROM * from {
+            Self {
+                logarithmic: true,
+                ..Self::new(name, unit, (0.9 * from, 1.15 * to))
+            }
+        } else {
+            Self::new(name, unit, (0.0, 1.06 * to))
+        }
+    }
+
+    /// Where a value lies between the ends, 0 to 1.
+    fn share(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            (value.max(f64::MIN_POSITIVE) / self.from).ln() / (self.to / self.from).ln()
+        } else {
+            (value - self.from) / (self.to - self.from)
+        }
+    }
+
     /// Round values about `count` in number, and digits after the point.
     fn ticks(&self, count: f64) -> Vec<f64> {
+        if self.logarithmic {
+            let powers = (self.from.log10().floor() as i32)..=(self.to.log10().ceil() as i32);
+            return powers
+                .take(20)
+                .map(|p| 10_f64.powi(p))
+                .filter(|t| (self.from..=self.to).contains(t))
+                .collect();
+        }
         let rough = (self.to - self.from) / count;
         let power = 10_f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0]
@@ -79,6 +117,7 @@ pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)>
 
 /// A number on an axis whose ticks are `step` apart.
 fn tick_text(value: f64, step: f64) -> String {
+    let step = step.min(value.abs().max(f64::MIN_POSITIVE));
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -117,13 +156,11 @@ impl Chart {
     }
 
     fn at_x(&self, x: f64) -> f64 {
-        let share = (x - self.x.from) / (self.x.to - self.x.from);
-        LEFT + share.clamp(-1.0, 2.0) * (self.width - LEFT - RIGHT)
+        LEFT + self.x.share(x).clamp(-1.0, 2.0) * (self.width - LEFT - RIGHT)
     }
 
     fn at_y(&self, y: f64) -> f64 {
-        let share = (y - self.y.from) / (self.y.to - self.y.from);
-        TOP + (1.0 - share.clamp(-1.0, 2.0)) * (self.height - TOP - BOTTOM)
+        TOP + (1.0 - self.y.share(y).clamp(-1.0, 2.0)) * (self.height - TOP - BOTTOM)
     }
 
     /// A curve; values that are no numbers break it.
@@ -184,7 +221,7 @@ impl Chart {
                 bottom + 15.0
             );
         }
-        let ys = self.y.ticks(((h - TOP - BOTTOM) / 34.0).max(2.0));
+        let ys = self.y.ticks(((h - TOP - BOTTOM) / 28.0).max(2.0));
         for tick in &ys {
             let (y, text) = (self.at_y(*tick), tick_text(*tick, spacing(&ys)));
             let _ = write!(

@@ -1,5 +1,6 @@
 //! What is missing from the model? A measurement, the model's replay, and the effects that could be added.
 
+mod export;
 mod plots;
 mod side;
 
@@ -14,6 +15,7 @@ use hysteron_core::measurement::{Measurement, import_csv};
 use super::{Desk, View};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::save::save;
 use crate::theme;
 
 /// A measurement that comes with the app.
@@ -51,6 +53,7 @@ type Arrival = (String, Result<Vec<u8>, String>);
 /// The page.
 pub struct Compare {
     measurement: Option<Arc<Measurement>>,
+    source: export::Source,
     /// Effects on top of the baseline, in the order in which they were added.
     effects: Vec<EffectId>,
     /// Finished steps by their effects, so that undo is instant.
@@ -63,12 +66,15 @@ pub struct Compare {
     /// The finding that is shaded.
     finding: usize,
     arrivals: (Sender<Arrival>, Receiver<Arrival>),
+    /// What saving a file has to say.
+    saved: (Sender<String>, Receiver<String>),
 }
 
 impl Default for Compare {
     fn default() -> Self {
         Self {
             measurement: None,
+            source: export::Source::default(),
             effects: Vec::new(),
             reports: HashMap::new(),
             shown: None,
@@ -77,6 +83,7 @@ impl Default for Compare {
             message: None,
             finding: 0,
             arrivals: channel(),
+            saved: channel(),
         }
     }
 }
@@ -92,6 +99,7 @@ enum Command {
     Cancel,
     Shade(usize),
     Dismiss,
+    ExportReport,
 }
 
 impl Compare {
@@ -101,6 +109,7 @@ impl Compare {
             Ok(measurement) => {
                 self.message = measurement.warnings.first().cloned();
                 self.measurement = Some(Arc::new(measurement));
+                self.source = export::Source::of(bytes);
                 self.effects.clear();
                 self.reports.clear();
                 self.shown = None;
@@ -154,6 +163,9 @@ impl Compare {
                 Ok(bytes) => self.open(ctx, &name, &bytes),
                 Err(error) => self.message = Some(format!("{name}: cannot be read ({error})")),
             }
+        }
+        if let Some(text) = self.saved.1.try_iter().last() {
+            self.message = Some(text);
         }
         let news = self.job.as_mut().map(Job::news).unwrap_or_default();
         for news in news {
@@ -259,6 +271,11 @@ impl Compare {
             }
             Command::Shade(index) => self.finding = index,
             Command::Dismiss => self.message = None,
+            Command::ExportReport => {
+                if let Some(document) = export::report(self) {
+                    save(ctx, document, &self.saved.0);
+                }
+            }
         }
     }
 

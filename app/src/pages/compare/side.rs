@@ -17,7 +17,7 @@ pub(super) fn ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    file_ui(page, ui, commands);
+    file_ui(page, ui, targets, commands);
     progress_ui(page, ui, commands);
     let Some(report) = page.report() else {
         return;
@@ -38,7 +38,7 @@ pub(super) fn ui(
     ui.collapsing("Parameters of the model", |ui| parameters_ui(report, ui));
 }
 
-fn file_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if let Some(m) = &page.measurement {
             ui.strong(&m.name);
@@ -46,6 +46,13 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         }
         if ui.button("Open another").clicked() {
             commands.push(Command::Close);
+        }
+        let export = ui
+            .add_enabled(page.report().is_some(), egui::Button::new("Export report"))
+            .on_hover_text("One page with pictures, equations, parameters and the verdict");
+        targets.note("export:report", ui, &export);
+        if export.clicked() {
+            commands.push(Command::ExportReport);
         }
     });
 }
