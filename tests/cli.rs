@@ -290,3 +290,29 @@ fn a_report_is_written_beside_the_answer() {
         &["--report", "one FILE"],
     );
 }
+
+#[test]
+fn a_model_is_read_and_saved() {
+    let saved = Path::new(env!("CARGO_TARGET_TMPDIR")).join("saved.toml");
+    let run = |arguments: &[&Path]| hysteron().arg("diagnose").args(arguments).output().unwrap();
+    let (file, model) = (data("process-02.csv"), Path::new("--model"));
+    let output = run(&[&file, Path::new("--save-model"), &saved]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("Missing: Input delay"));
+    let output = run(&[&file, model, &saved]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("Nothing is missing"), "{text}");
+    let bad = written("bad.toml", b"kind = \"process\"\n[parameters]\nJ1 = 3\n");
+    refused(
+        &run(&[&file, model, &bad]),
+        &["bad.toml, line 3: 'J1'", "K or T"],
+    );
+    refused(
+        &run(&[&file, model, Path::new("none.toml")]),
+        &["none.toml cannot be read"],
+    );
+    refused(
+        &run(&[&data("drive-01.csv"), model, &saved]),
+        &["the model is of a process, the measurement of a drive"],
+    );
+}

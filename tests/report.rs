@@ -35,6 +35,7 @@ fn page(measurement: &Measurement, command: &str) -> (Diagnosis, String) {
         first_atlas: &first.atlas,
         last: &last,
         verdict: Some(&diagnosis.verdict),
+        model: None,
         provenance: &Provenance {
             command: command.to_owned(),
             version: "1.2.3".to_owned(),

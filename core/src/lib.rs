@@ -18,6 +18,7 @@
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
+//! | [`user_model`] | what does the user know of the model? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 //! | [`report`] | what was found, on one page |
 #![warn(missing_docs)]
@@ -36,3 +37,4 @@ pub mod report;
 pub mod scenario;
 pub mod simulate;
 pub mod tuning;
+pub mod user_model;

@@ -11,6 +11,7 @@ use hysteron_core::measurement::{
     self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
 };
 use hysteron_core::report::{self, Provenance, ReportInput};
+use hysteron_core::user_model::UserModel;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -32,6 +33,12 @@ pub(super) struct Arguments {
     /// For a person or for a program; of many files one block or one line of JSON each
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
+    /// What is known of the model: parameters that are fixed or roughly known, effects that it has already
+    #[arg(long, value_name = "M.toml")]
+    model: Option<PathBuf>,
+    /// Write the model with the effects that were found to this file, for --model
+    #[arg(long, value_name = "OUT.toml")]
+    save_model: Option<PathBuf>,
     /// Write what was found to this file as a page with pictures, for a browser or a printer
     #[arg(long, value_name = "OUT.html")]
     report: Option<PathBuf>,
@@ -79,24 +86,53 @@ impl<T: FromStr> FromStr for AsWritten<T> {
 
 /// One file by the contract of a single one; many files, or a file to resume from, as a batch.
 pub(super) fn run(arguments: &Arguments) -> ExitCode {
+    let model = match arguments.model.as_deref().map(read_model).transpose() {
+        Ok(model) => model,
+        Err(line) => return super::finish(Err(line)),
+    };
+    let setup = Setup { arguments, model };
     match (arguments.files.as_slice(), &arguments.resume) {
-        ([file], None) => super::finish(single(file, arguments)),
-        _ if arguments.report.is_some() => super::finish(Err(
-            "--report writes the page of one file: give one FILE, without --resume".to_owned(),
-        )),
-        _ => super::batch::run(arguments),
+        ([file], None) => super::finish(single(file, &setup)),
+        _ if arguments.report.is_some() || arguments.save_model.is_some() => {
+            super::finish(Err(
+                "--report and --save-model write the result of one file: give one FILE, without --resume"
+                    .to_owned(),
+            ))
+        }
+        _ => super::batch::run(&setup),
     }
 }
 
+/// What is asked, and the model that it begins with.
+pub(super) struct Setup<'a> {
+    pub arguments: &'a Arguments,
+    model: Option<UserModel>,
+}
+
+fn read_model(path: &Path) -> Result<UserModel, String> {
+    let shown = path.display();
+    let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let text =
+        str::from_utf8(&bytes).map_err(|_| format!("{shown}: a model must be UTF-8 text"))?;
+    UserModel::from_toml(text).map_err(|e| format!("{shown}, {e}"))
+}
+
 /// The report, or one line that says what is wrong with the input.
-fn single(file: &Path, arguments: &Arguments) -> Result<String, String> {
+fn single(file: &Path, setup: &Setup) -> Result<String, String> {
+    let arguments = setup.arguments;
     let mut line = ProgressLine::new();
-    let report = one(file, arguments, |fraction, text| line.show(fraction, text));
+    let report = one(file, setup, |fraction, text| line.show(fraction, text));
     line.clear();
     let report = report?;
-    if let (Some(path), Some(page)) = (&arguments.report, &report.page) {
-        std::fs::write(path, page)
-            .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
+    let files = [
+        (&arguments.report, &report.page),
+        (&arguments.save_model, &report.model),
+    ];
+    for (path, text) in files {
+        if let (Some(path), Some(text)) = (path, text) {
+            std::fs::write(path, text)
+                .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
+        }
     }
     match arguments.format {
         Format::Text => Ok(report.text(&report.name)),
@@ -117,6 +153,8 @@ pub(super) struct Report {
     diagnosis: Diagnosis,
     /// As an HTML page, if that is wanted.
     page: Option<String>,
+    /// The last model as a file, if that is wanted.
+    model: Option<String>,
 }
 
 /// A diagnosis as JSON, with what belongs to the file and not to it.
@@ -182,13 +220,17 @@ impl Report {
 /// Diagnoses one file; `show` hears of progress.
 pub(super) fn one(
     file: &Path,
-    arguments: &Arguments,
+    setup: &Setup,
     mut show: impl FnMut(f64, &str),
 ) -> Result<Report, String> {
+    let arguments = setup.arguments;
     let started = Instant::now();
     let (measurement, bytes) = read(file, arguments)?;
     let name = measurement.name.clone();
-    let mut job = DiagnosisJob::new(&measurement).map_err(|e| format!("{name}: {e}"))?;
+    let blank = UserModel::blank(measurement.kind);
+    let given = setup.model.as_ref().unwrap_or(&blank);
+    let mut job =
+        DiagnosisJob::with_model(&measurement, given).map_err(|e| format!("{name}: {e}"))?;
     loop {
         match job.advance() {
             Progress::Running { fraction, text } => show(fraction, &text),
@@ -202,14 +244,20 @@ pub(super) fn one(
                         first_atlas: &first.atlas,
                         last,
                         verdict: Some(&diagnosis.verdict),
+                        model: setup.model.as_ref(),
                         provenance: &provenance(file, arguments, &bytes),
                     }))
+                });
+                let last = diagnosis.steps.last();
+                let model = last.filter(|_| arguments.save_model.is_some()).map(|step| {
+                    UserModel::from_step(measurement.kind, step, setup.model.as_ref()).to_toml()
                 });
                 return Ok(Report {
                     name,
                     notes: measurement.warnings,
                     diagnosis,
                     page,
+                    model,
                 });
             }
         }
@@ -226,8 +274,10 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
         Kind::Drive => "drive",
         Kind::Process => "process",
     });
+    let model = arguments.model.as_ref().map(|m| m.to_string_lossy());
     let options = [
         ("--kind", kind),
+        ("--model", model.as_deref()),
         ("--map", arguments.map.as_ref().map(|m| m.text.as_str())),
         (
             "--torque-constant",

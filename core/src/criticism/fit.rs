@@ -82,7 +82,7 @@ impl Fit {
     ) -> Self {
         structure.clamp(&mut values, scales);
         let motion = simulate(data, &structure, &values, &starts);
-        let cost = robust_cost(data, &motion);
+        let cost = robust_cost(data, &motion) + structure.prior_cost(&values);
         let p = values.len();
         Self {
             structure,
@@ -107,7 +107,12 @@ impl Fit {
         let p = self.values.len();
         let steps = self.difference_steps(data, scales);
         let columns = self.columns(data, &steps, scales);
-        let (matrix, gradient, windows) = self.normal_equations(data, &columns);
+        let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns);
+        for (j, value, tolerance) in self.structure.priors() {
+            let weight = 1.0 / (tolerance * tolerance);
+            matrix[(j, j)] += weight;
+            gradient[j] += weight * (value - self.values[j]);
+        }
         let mut lowered = false;
         while self.damping < MAX_DAMPING {
             let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
@@ -116,7 +121,7 @@ impl Fit {
                 continue;
             };
             let (starts, motion) = self.motion_from(data, &values, starts);
-            let cost = robust_cost(data, &motion);
+            let cost = robust_cost(data, &motion) + self.structure.prior_cost(&values);
             if cost <= self.cost {
                 let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
                 (self.values, self.starts, self.motion, self.cost) = (values, starts, motion, cost);
@@ -145,7 +150,7 @@ impl Fit {
         mut starts: Vec<Start>,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-        if robust_cost(data, &moved) <= self.cost {
+        if robust_cost(data, &moved) + self.structure.prior_cost(values) <= self.cost {
             return (starts, moved);
         }
         let stayed = simulate(data, &self.structure, values, &self.starts);
@@ -186,10 +191,19 @@ impl Fit {
             position: slope(&moved.position, &self.motion.position, step),
             velocity: slope(&moved.velocity, &self.motion.velocity, step),
         };
+        let n = data.len();
+        let still = || Motion {
+            position: vec![0.0; n],
+            velocity: vec![0.0; n],
+        };
+        let fixed = self.structure.fixed();
         let mut columns: Vec<Motion> = steps
             .iter()
             .enumerate()
             .map(|(j, step)| {
+                if fixed[j] {
+                    return still();
+                }
                 let mut values = self.values.clone();
                 values[j] += step;
                 difference(
@@ -215,11 +229,7 @@ impl Fit {
         if data.has_position {
             columns.push(difference(moved(dx, 0.0), dx));
         } else {
-            let n = data.len();
-            columns.push(Motion {
-                position: vec![0.0; n],
-                velocity: vec![0.0; n],
-            });
+            columns.push(still());
         }
         columns.push(difference(moved(0.0, dv), dv));
         columns
@@ -332,7 +342,8 @@ impl Fit {
         scales: &Scales,
     ) -> Option<Vec<f64>> {
         let p = self.values.len();
-        let mut fixed: Vec<Option<f64>> = vec![None; p];
+        let known = self.structure.fixed();
+        let mut fixed: Vec<Option<f64>> = known.iter().map(|f| f.then_some(0.0)).collect();
         loop {
             let free: Vec<usize> = (0..p).filter(|j| fixed[*j].is_none()).collect();
             let part = DMatrix::from_fn(free.len(), free.len(), |a, b| matrix[(free[a], free[b])]);
@@ -381,7 +392,7 @@ impl Fit {
             }
         }
         self.motion = simulate(data, &self.structure, &self.values, &self.starts);
-        self.cost = robust_cost(data, &self.motion);
+        self.cost = robust_cost(data, &self.motion) + self.structure.prior_cost(&self.values);
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
@@ -414,33 +425,37 @@ impl Fit {
             }
             self.motion = simulate(data, &self.structure, &self.values, &self.starts);
         }
-        self.cost = robust_cost(data, &self.motion);
+        self.cost = robust_cost(data, &self.motion) + self.structure.prior_cost(&self.values);
     }
 
-    /// Standard errors of the values: noise as found, with `inflation` of the variance.
+    /// Standard errors of the values: noise as found, with `inflation` of the variance; 0 for fixed ones.
     pub fn standard_errors(&self, inflation: f64) -> Vec<f64> {
         let p = self.values.len();
-        let mut scaled = self.information.clone();
-        let d: Vec<f64> = (0..p)
-            .map(|j| self.information[(j, j)].max(f64::MIN_POSITIVE).sqrt())
-            .collect();
-        for a in 0..p {
-            for b in 0..p {
-                scaled[(a, b)] /= d[a] * d[b];
-            }
+        let mut information = self.information.clone();
+        // The tolerance of a prior is as the user says: it does not grow with the residuals.
+        for (j, _, tolerance) in self.structure.priors() {
+            information[(j, j)] += (inflation - 1.0) / (tolerance * tolerance);
         }
-        for j in 0..p {
+        let fixed = self.structure.fixed();
+        let free: Vec<usize> = (0..p).filter(|j| !fixed[*j]).collect();
+        let d: Vec<f64> = free
+            .iter()
+            .map(|j| information[(*j, *j)].max(f64::MIN_POSITIVE).sqrt())
+            .collect();
+        let mut scaled = DMatrix::from_fn(free.len(), free.len(), |a, b| {
+            information[(free[a], free[b])] / (d[a] * d[b])
+        });
+        for j in 0..free.len() {
             scaled[(j, j)] += 1e-12;
         }
-        match scaled.cholesky() {
-            Some(c) => {
-                let inverse = c.inverse();
-                (0..p)
-                    .map(|j| (inverse[(j, j)] * inflation).sqrt() / d[j])
-                    .collect()
-            }
-            None => vec![f64::INFINITY; p],
+        let mut errors = vec![0.0; p];
+        let inverse = scaled.cholesky().map(|c| c.inverse());
+        for (a, j) in free.into_iter().enumerate() {
+            errors[j] = inverse
+                .as_ref()
+                .map_or(f64::INFINITY, |i| (i[(a, a)] * inflation).sqrt() / d[a]);
         }
+        errors
     }
 }
 
@@ -655,7 +670,7 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
         .map(|b| ((b.to - b.from) as f64 * outputs - own_states).max(1.0));
     let fit_cost = fit_cost(data, &fit.motion);
     let held_count = (count(true) - own(false)).max(1.0);
-    let fit_count = (count(false) - own(true) - fit.values.len() as f64).max(1.0);
+    let fit_count = (count(false) - own(true) - fit.structure.free_count() as f64).max(1.0);
     Score {
         error: (held_blocks.iter().sum::<f64>() / held_count).sqrt(),
         error_fit: (fit_cost / fit_count).sqrt(),

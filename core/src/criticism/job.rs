@@ -5,6 +5,7 @@ use super::step::{NOISE_FLOOR, StepJob};
 use super::{Diagnosis, Step, StepReport};
 use crate::effect::EffectId;
 use crate::measurement::Measurement;
+use crate::user_model::UserModel;
 
 /// Most effects that a diagnosis adds; a model that needs more is not this one.
 const MAX_EFFECTS: usize = 6;
@@ -54,6 +55,24 @@ pub enum CriticismError {
         /// Its name in the file.
         name: String,
     },
+    /// A model of another kind of system.
+    #[error("the model is of a {model}, the measurement of a {measured}")]
+    WrongKind {
+        /// What the model is of.
+        model: &'static str,
+        /// What was measured.
+        measured: &'static str,
+    },
+    /// A known parameter in another unit than this measurement gives it.
+    #[error("the model gives {symbol} in {said}, but with this measurement it is in {unit}")]
+    WrongUnit {
+        /// Symbol of the parameter.
+        symbol: String,
+        /// Unit in the model.
+        said: String,
+        /// Unit with this measurement.
+        unit: String,
+    },
     /// An effect that makes no sense for this kind of system.
     #[error("{effect} cannot be added to this kind of system")]
     WrongEffect {
@@ -91,8 +110,16 @@ pub struct DiagnosisJob {
 impl DiagnosisJob {
     /// Prepares a diagnosis.
     pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
+        Self::with_model(measurement, &UserModel::blank(measurement.kind))
+    }
+
+    /// Prepares a diagnosis that begins with what the user knows.
+    pub fn with_model(
+        measurement: &Measurement,
+        model: &UserModel,
+    ) -> Result<Self, CriticismError> {
         Ok(Self {
-            job: Some(StepJob::new(measurement, &[])?),
+            job: Some(StepJob::with_model(measurement, &[], model)?),
             diagnosis: Diagnosis {
                 schema: 1,
                 kind: measurement.kind,
@@ -104,6 +131,7 @@ impl DiagnosisJob {
                     complete: false,
                     unknown: false,
                     next_experiment: None,
+                    contradicted: Vec::new(),
                     text: String::new(),
                 },
                 seconds: 0.0,
@@ -167,8 +195,9 @@ impl DiagnosisJob {
                 self.job = Some(StepJob::from_fit(session, model));
             }
             (verdict, _) => {
-                self.diagnosis.verdict =
-                    verdict.unwrap_or_else(|| super::verdict::undecided(&self.diagnosis.steps));
+                self.diagnosis.verdict = verdict.unwrap_or_else(|| {
+                    super::verdict::undecided(&self.diagnosis.steps, session.knowledge.present())
+                });
                 if let Some(done) = self.end_of_way(session) {
                     return Progress::Done(done);
                 }

@@ -5,6 +5,7 @@ mod baseline;
 mod data;
 mod fit;
 mod job;
+mod knowledge;
 mod locate;
 mod noise;
 mod race;
@@ -18,9 +19,11 @@ mod verdict;
 
 pub use atlas::{Profile, ProfileBin};
 pub use job::{CriticismError, DiagnosisJob, Progress};
+pub use knowledge::baseline_symbols;
 pub use noise::noise_level;
 pub use report::{
-    Candidate, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step, StepReport, Verdict,
+    Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
+    StepReport, Verdict,
 };
 pub use step::StepJob;
 pub use verdict::with_error;

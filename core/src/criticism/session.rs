@@ -4,11 +4,13 @@ use super::atlas::atlas;
 use super::baseline;
 use super::data::Data;
 use super::fit::{Fit, Score, score};
+use super::knowledge::{self, Knowledge};
 use super::locate::locate;
 use super::select::is_noise;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
-use crate::effect::{EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales};
+use crate::effect::{Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales};
 use crate::measurement::{Kind, Measurement, Quantity};
+use crate::user_model::{Status, UserModel};
 
 /// A fit with its score.
 #[derive(Clone)]
@@ -30,6 +32,8 @@ pub(super) struct Session {
     full: Option<Data>,
     /// Score of the baseline, once it is fitted.
     pub baseline: Option<Score>,
+    /// What the user knows beforehand.
+    pub knowledge: Knowledge,
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
@@ -39,7 +43,8 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
+    pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
+        knowledge::check(model, measurement)?;
         let data = Data::new(measurement)?;
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
         let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
@@ -50,6 +55,7 @@ impl Session {
         Ok(Self {
             scales,
             scout: compared.scout(),
+            knowledge: Knowledge::of(model),
             baseline: None,
             full: (compared.used() < data.used()).then_some(data),
             data: compared,
@@ -61,6 +67,42 @@ impl Session {
                 .map(|c| (c.quantity, c.name.clone(), c.unit.clone()))
                 .collect(),
         })
+    }
+
+    /// Checks the units that the user's model says, its effects being among `effects`.
+    pub fn check_units(&self, effects: &[&'static dyn Effect]) -> Result<(), CriticismError> {
+        let baseline = baseline::parameters(self.kind())
+            .iter()
+            .map(|p| (None, p.symbol, self.unit_of(p.dimension)));
+        let own = effects.iter().flat_map(|e| {
+            e.parameters().iter().map(|spec| {
+                (
+                    Some(e.id()),
+                    spec.symbol,
+                    self.unit_of(Some(spec.dimension)),
+                )
+            })
+        });
+        for (owner, symbol, unit) in baseline.chain(own) {
+            let said = self.knowledge.find(owner, symbol);
+            if let Some(said) = said.and_then(|k| k.unit.as_ref()).filter(|u| **u != unit) {
+                return Err(CriticismError::WrongUnit {
+                    symbol: symbol.to_owned(),
+                    said: said.clone(),
+                    unit,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Unit of a parameter; without a dimension that of a process gain.
+    fn unit_of(&self, dimension: Option<Dimension>) -> String {
+        let output = self.outputs.first().map_or("1", |o| o.2.as_str());
+        dimension.map_or_else(
+            || baseline::gain_unit(&self.input_unit, output),
+            |d| baseline::unit(d, self.motion, &self.input_unit),
+        )
     }
 
     /// What `fit` leaves unexplained, as a force.
@@ -149,7 +191,8 @@ impl Session {
         let Scored { fit, score } = scored;
         let inflation = score.error_fit.powi(2).max(1.0) * score.correlation.max(1.0);
         let errors = fit.standard_errors(inflation);
-        let output_unit = self.outputs.first().map_or("1", |o| o.2.as_str());
+        let known = fit.structure.known();
+        let status = |j: usize| known[j].map_or(Status::Free, |k| k.status);
         let mut parameters: Vec<Parameter> = baseline::parameters(self.kind())
             .iter()
             .enumerate()
@@ -159,10 +202,8 @@ impl Session {
                 label: p.label.to_owned(),
                 value: fit.values[j],
                 std_error: errors[j],
-                unit: p.dimension.map_or_else(
-                    || baseline::gain_unit(&self.input_unit, output_unit),
-                    |d| baseline::unit(d, self.motion, &self.input_unit),
-                ),
+                status: status(j),
+                unit: self.unit_of(p.dimension),
             })
             .collect();
         for (index, effect) in fit.structure.effects.iter().enumerate() {
@@ -173,7 +214,8 @@ impl Session {
                     label: spec.label.to_owned(),
                     value: fit.values[j],
                     std_error: errors[j],
-                    unit: baseline::unit(spec.dimension, self.motion, &self.input_unit),
+                    status: status(j),
+                    unit: self.unit_of(Some(spec.dimension)),
                 });
             }
         }

@@ -97,6 +97,20 @@ pub enum Range {
     Long,
 }
 
+impl Range {
+    /// What a value would have to be, if it cannot be in the range whatever the sizes of the experiment.
+    pub fn refuses(self, value: f64) -> Option<&'static str> {
+        let (right, wanted) = match self {
+            Self::Signed => (value.is_finite(), "finite"),
+            Self::NonNegative => (value >= 0.0, "at least 0"),
+            Self::Fraction => ((-0.9..=0.9).contains(&value), "between -0.9 and 0.9"),
+            Self::UnitInterval => ((0.0..=1.0).contains(&value), "between 0 and 1"),
+            _ => (value > 0.0, "above 0"),
+        };
+        (!right).then_some(wanted)
+    }
+}
+
 /// A parameter of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterSpec {

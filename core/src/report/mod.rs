@@ -14,6 +14,7 @@ use std::fmt::Write as _;
 use crate::criticism::{Profile, Step, StepReport, Verdict};
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::{Kind, Measurement};
+use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
 pub use sha256::sha256;
 
@@ -43,6 +44,8 @@ pub struct ReportInput<'a> {
     pub last: &'a StepReport,
     /// What the data say, if they have been heard to the end.
     pub verdict: Option<&'a Verdict>,
+    /// The model that the user brought, if any.
+    pub model: Option<&'a UserModel>,
     /// Where it comes from.
     pub provenance: &'a Provenance,
 }
@@ -201,6 +204,7 @@ fn places(input: &ReportInput) -> String {
     out
 }
 
+/// The command, the version, the file, and the model that the user brought.
 fn reproduce(input: &ReportInput) -> String {
     let Provenance {
         command,
@@ -208,14 +212,23 @@ fn reproduce(input: &ReportInput) -> String {
         bytes,
         sha256,
     } = input.provenance;
-    format!(
+    let mut out = format!(
         "<pre><code>{}</code></pre>\n<p>Hysteron {}. The same file gives the same answer, on any machine.</p>\n\
          <p>File: {}, {bytes} bytes, SHA-256 <code>{}</code></p>\n",
         escape(command),
         escape(version),
         escape(&input.measurement.name),
         escape(sha256),
-    )
+    );
+    if let Some(model) = input.model {
+        let lines: Vec<String> = model.to_toml().lines().map(escape).collect();
+        let _ = writeln!(
+            out,
+            "<p>The model that it began with:</p>\n<pre><code>{}</code></pre>",
+            lines.join("\n")
+        );
+    }
+    out
 }
 
 /// A word of a command line, quoted if a shell would take it apart.

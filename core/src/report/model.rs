@@ -7,6 +7,7 @@ use super::{ReportInput, name_of, short};
 use crate::criticism::{Parameter, Step, with_error};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION};
 use crate::measurement::Kind;
+use crate::user_model::Status;
 
 /// Equations of the baseline; `F` is the sum of what the effects add.
 fn baseline(kind: Kind) -> [&'static str; 2] {
@@ -61,6 +62,14 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
                 Cell::Text(p.label.clone()),
                 Cell::Number(with_error(p.value, p.std_error, unit)),
                 Cell::Text(
+                    match p.status {
+                        Status::Free => "",
+                        Status::Prior(_) => "known roughly",
+                        Status::Fixed => "fixed",
+                    }
+                    .to_owned(),
+                ),
+                Cell::Text(
                     p.effect
                         .filter(|id| *id != VISCOUS_FRICTION)
                         .map_or_else(|| "baseline".to_owned(), name_of),
@@ -70,7 +79,13 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
         .collect();
     table(
         &mut out,
-        &["symbol", "meaning", "value ± standard error", "belongs to"],
+        &[
+            "symbol",
+            "meaning",
+            "value ± standard error",
+            "",
+            "belongs to",
+        ],
         &rows,
     );
     out.push_str(

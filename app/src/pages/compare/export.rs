@@ -36,6 +36,7 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
         first_atlas: first.map_or(&[], |r| r.atlas.as_slice()),
         last,
         verdict: last.verdict.as_ref(),
+        model: None,
         provenance: &Provenance {
             command: format!(
                 "hysteron diagnose {}",
