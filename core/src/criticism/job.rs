@@ -189,6 +189,11 @@ impl DiagnosisJob {
         let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
         let verdict = report.verdict.clone();
+        if verdict.as_ref().is_some_and(|v| !v.contradicted.is_empty()) {
+            // Wrong values are to be put right; no other way round them is looked for.
+            self.detours.clear();
+            self.unfinished = None;
+        }
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended => {

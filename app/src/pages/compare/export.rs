@@ -2,6 +2,7 @@
 
 use hysteron_core::criticism::Step;
 use hysteron_core::report::{self, Provenance, ReportInput};
+use hysteron_core::user_model::UserModel;
 
 use super::Compare;
 use crate::save::Document;
@@ -38,10 +39,7 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
         verdict: last.verdict.as_ref(),
         model: None,
         provenance: &Provenance {
-            command: format!(
-                "hysteron diagnose {}",
-                report::shell_word(&measurement.name)
-            ),
+            command: command(page, &measurement.name),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             bytes: page.source.bytes,
             sha256: page.source.sha256.clone(),
@@ -52,6 +50,29 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
         kind: "Web page",
         media: "text/html;charset=utf-8",
         text,
+    })
+}
+
+/// What to type for the same diagnosis.
+fn command(page: &Compare, file: &str) -> String {
+    let mut command = format!("hysteron diagnose {}", report::shell_word(file));
+    if let Some((name, _)) = &page.model {
+        command.push_str(" --model ");
+        command.push_str(&report::shell_word(name));
+    }
+    command
+}
+
+/// The model on screen as a file.
+pub(super) fn model(page: &Compare) -> Option<Document> {
+    let (measurement, last) = (page.measurement.as_ref()?, page.report()?);
+    let given = page.model.as_ref().map(|(_, model)| model);
+    let model = UserModel::from_step(measurement.kind, &last.step, given);
+    Some(Document {
+        name: format!("{}.toml", stem(&measurement.name)),
+        kind: "Model",
+        media: "application/toml;charset=utf-8",
+        text: model.to_toml(),
     })
 }
 

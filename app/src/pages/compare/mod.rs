@@ -11,6 +11,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use hysteron_core::criticism::{StepReport, with_error};
 use hysteron_core::effect::{self, Effect, EffectId};
 use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::user_model::UserModel;
 
 use super::{Desk, View};
 use crate::hook::Targets;
@@ -54,6 +55,8 @@ type Arrival = (String, Result<Vec<u8>, String>);
 pub struct Compare {
     measurement: Option<Arc<Measurement>>,
     source: export::Source,
+    /// What the user knows of the model, and the file that says it.
+    model: Option<(String, UserModel)>,
     /// Effects on top of the baseline, in the order in which they were added.
     effects: Vec<EffectId>,
     /// Finished steps by their effects, so that undo is instant.
@@ -75,6 +78,7 @@ impl Default for Compare {
         Self {
             measurement: None,
             source: export::Source::default(),
+            model: None,
             effects: Vec::new(),
             reports: HashMap::new(),
             shown: None,
@@ -100,24 +104,66 @@ enum Command {
     Shade(usize),
     Dismiss,
     ExportReport,
+    SaveModel,
+    OpenModel,
+    DropModel,
 }
 
 impl Compare {
-    /// Opens a measurement from the bytes of a file; a bad one leaves everything as it was.
+    /// Opens a measurement, or a model (TOML), from the bytes of a file; a bad one leaves everything as it was.
     pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        if name.to_ascii_lowercase().ends_with(".toml") {
+            return self.open_model(ctx, name, bytes);
+        }
         match import_csv(name, bytes, None) {
             Ok(measurement) => {
                 self.message = measurement.warnings.first().cloned();
                 self.measurement = Some(Arc::new(measurement));
                 self.source = export::Source::of(bytes);
-                self.effects.clear();
-                self.reports.clear();
-                self.shown = None;
-                self.finding = 0;
-                self.start(ctx);
+                let kind = self.measurement.as_ref().map(|m| m.kind);
+                if self
+                    .model
+                    .as_ref()
+                    .is_some_and(|(_, m)| Some(m.kind) != kind)
+                {
+                    self.model = None;
+                }
+                self.restart(ctx);
             }
             Err(error) => self.message = Some(error.to_string()),
         }
+    }
+
+    /// Takes a model and begins anew with it.
+    fn open_model(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        let read = str::from_utf8(bytes)
+            .map_err(|_| "a model must be UTF-8 text".to_owned())
+            .and_then(|text| UserModel::from_toml(text).map_err(|e| e.to_string()));
+        match (read, &self.measurement) {
+            (Err(error), _) => self.message = Some(format!("{name}, {error}")),
+            (Ok(model), Some(measurement)) if model.kind != measurement.kind => {
+                self.message = Some(format!(
+                    "{name} is the model of a {}, but {} is the measurement of a {}.",
+                    model.kind.name(),
+                    measurement.name,
+                    measurement.kind.name()
+                ));
+            }
+            (Ok(model), _) => {
+                self.message = None;
+                self.model = Some((name.to_owned(), model));
+                self.restart(ctx);
+            }
+        }
+    }
+
+    /// Begins with the first model again.
+    fn restart(&mut self, ctx: &egui::Context) {
+        self.effects.clear();
+        self.reports.clear();
+        self.shown = None;
+        self.finding = 0;
+        self.start(ctx);
     }
 
     /// Opens a file that was dropped on the window.
@@ -140,9 +186,9 @@ impl Compare {
         });
     }
 
-    fn open_dialog(&self, ctx: &egui::Context) {
+    fn open_dialog(&self, ctx: &egui::Context, kind: &str, endings: &[&str]) {
         let (sender, ctx) = (self.arrivals.0.clone(), ctx.clone());
-        let dialog = rfd::AsyncFileDialog::new().add_filter("Measurement", &["csv", "txt", "tsv"]);
+        let dialog = rfd::AsyncFileDialog::new().add_filter(kind, endings);
         let pick = async move {
             if let Some(file) = dialog.pick_file().await {
                 let bytes = file.read().await;
@@ -192,7 +238,8 @@ impl Compare {
             self.shown = Some(self.effects.clone());
         } else if let Some(measurement) = &self.measurement {
             self.progress = (0.0, "Starting".to_owned());
-            self.job = Some(Job::start(ctx, measurement, &self.effects));
+            let model = self.model.as_ref().map(|(_, model)| model);
+            self.job = Some(Job::start(ctx, measurement, &self.effects, model));
         }
     }
 
@@ -246,7 +293,12 @@ impl Compare {
                     self.open(ctx, built_in.id, built_in.csv);
                 }
             }
-            Command::OpenDialog => self.open_dialog(ctx),
+            Command::OpenDialog => self.open_dialog(ctx, "Measurement", &["csv", "txt", "tsv"]),
+            Command::OpenModel => self.open_dialog(ctx, "Model", &["toml"]),
+            Command::DropModel => {
+                self.model = None;
+                self.restart(ctx);
+            }
             Command::Close => {
                 let arrivals = std::mem::replace(&mut self.arrivals, channel());
                 *self = Self {
@@ -273,6 +325,11 @@ impl Compare {
             Command::Dismiss => self.message = None,
             Command::ExportReport => {
                 if let Some(document) = export::report(self) {
+                    save(ctx, document, &self.saved.0);
+                }
+            }
+            Command::SaveModel => {
+                if let Some(document) = export::model(self) {
                     save(ctx, document, &self.saved.0);
                 }
             }
@@ -321,7 +378,10 @@ impl Compare {
     fn answer_ui(&self, ui: &mut egui::Ui) {
         let text = match self.report() {
             None => "Fitting the simplest model ...".to_owned(),
-            Some(report) => answer(report),
+            Some(report) => {
+                let model = self.model.as_ref().map(|(_, model)| model.present());
+                answer(report, &model.unwrap_or_default())
+            }
         };
         theme::answer_ui(ui, &text);
     }
@@ -355,6 +415,7 @@ impl Compare {
                 r.step.candidates.iter().map(|c| serde_json::json!({"effects": c.effects, "error": c.error})).collect()
             }),
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
+            "model": self.model.as_ref().map(|(name, _)| name.clone()),
             "message": self.message,
         })
     }
@@ -410,13 +471,13 @@ fn times_noise(error: f64) -> String {
     }
 }
 
-/// The page's answer in one or two sentences.
-fn answer(report: &StepReport) -> String {
+/// The page's answer in one or two sentences; `present` are the effects of the user's model.
+fn answer(report: &StepReport, present: &[EffectId]) -> String {
     let step = &report.step;
     let added: Vec<String> = step
         .effects
         .iter()
-        .filter(|e| **e != effect::VISCOUS_FRICTION)
+        .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
         .map(|id| {
             let main = step.parameters.iter().find(|p| p.effect == Some(*id));
             main.map_or_else(
@@ -443,6 +504,14 @@ fn answer(report: &StepReport) -> String {
         }
         (Some(verdict), true) if verdict.complete => {
             "Nothing is missing: what the model leaves is measurement noise.".to_owned()
+        }
+        (Some(verdict), _) if !verdict.contradicted.is_empty() => {
+            let names: Vec<&str> = verdict
+                .contradicted
+                .iter()
+                .map(|c| c.name.as_str())
+                .collect();
+            format!("The data contradict the known {}.", names.join(" and "))
         }
         _ => format!(
             "The model misses by {} times the noise.",

@@ -55,6 +55,26 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &
             commands.push(Command::ExportReport);
         }
     });
+    ui.horizontal_wrapped(|ui| {
+        let load = ui.button("Load model ...").on_hover_text(
+            "What is known beforehand: parameters, effects already in the model (TOML)",
+        );
+        targets.note("model:load", ui, &load);
+        if load.clicked() {
+            commands.push(Command::OpenModel);
+        }
+        let save = ui.add_enabled(page.report().is_some(), egui::Button::new("Save model"));
+        targets.note("model:save", ui, &save);
+        if save.clicked() {
+            commands.push(Command::SaveModel);
+        }
+        if let Some((name, _)) = &page.model {
+            ui.label(format!("Begins with {name}"));
+            if ui.small_button("Forget it").clicked() {
+                commands.push(Command::DropModel);
+            }
+        }
+    });
 }
 
 fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -81,9 +101,14 @@ fn waterfall_ui(
     let steps: Vec<(String, &StepReport)> = (0..=shown.len())
         .filter_map(|n| {
             let report = page.reports.get(&shown[..n])?;
-            let label = n.checked_sub(1).map_or("Baseline".to_owned(), |i| {
-                format!("+ {}", name_of(shown[i]))
-            });
+            let first = if page.model.is_some() {
+                "Your model"
+            } else {
+                "Baseline"
+            };
+            let label = n
+                .checked_sub(1)
+                .map_or(first.to_owned(), |i| format!("+ {}", name_of(shown[i])));
             Some((label, report))
         })
         .collect();
