@@ -256,6 +256,7 @@ fn without_curves(report: &StepReport) -> StepReport {
         atlas: report.atlas.clone(),
         verdict: report.verdict.clone(),
         needless: report.needless.clone(),
+        missing: report.missing.clone(),
         ..*report
     }
 }

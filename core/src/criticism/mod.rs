@@ -7,6 +7,7 @@ mod fit;
 mod job;
 mod knowledge;
 mod locate;
+mod missing;
 mod noise;
 mod race;
 mod report;
@@ -20,6 +21,7 @@ mod verdict;
 pub use atlas::{Profile, ProfileBin};
 pub use job::{CriticismError, DiagnosisJob, Progress};
 pub use knowledge::baseline_symbols;
+pub use missing::MissingPart;
 pub use noise::noise_level;
 pub use report::{
     Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Profile;
+use super::{MissingPart, Profile};
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Quantity};
 use crate::user_model::Status;
@@ -177,6 +177,9 @@ pub struct StepReport {
     pub suggestion: Option<EffectId>,
     /// Effects in the model that data say are not needed.
     pub needless: Vec<EffectId>,
+    /// Where the verdict is unknown: what is missing, estimated without a model, the likeliest first.
+    #[serde(default)]
+    pub missing: Vec<MissingPart>,
     /// Present when nothing should be added: what is missing from the baseline, and how sure.
     pub verdict: Option<Verdict>,
 }

@@ -97,7 +97,7 @@ impl Session {
     }
 
     /// Unit of a parameter; without a dimension that of a process gain.
-    fn unit_of(&self, dimension: Option<Dimension>) -> String {
+    pub fn unit_of(&self, dimension: Option<Dimension>) -> String {
         let output = self.outputs.first().map_or("1", |o| o.2.as_str());
         dimension.map_or_else(
             || baseline::gain_unit(&self.input_unit, output),
@@ -107,7 +107,11 @@ impl Session {
 
     /// What `fit` leaves unexplained, as a force.
     pub fn probe(&self, fit: &Fit) -> Probe {
-        let data = &self.data;
+        self.probe_of(&self.data, fit)
+    }
+
+    /// The same of a fit on these data.
+    pub fn probe_of(&self, data: &Data, fit: &Fit) -> Probe {
         let model = fit.structure.model(&fit.values);
         let outputs: Vec<ProbeOutput> = data
             .outputs
@@ -236,11 +240,18 @@ impl Session {
     }
 
     /// Unit of the velocity, or of the output of a process.
-    fn output_unit(&self) -> &str {
+    pub fn output_unit(&self) -> &str {
         self.outputs
             .iter()
             .find(|o| o.0 != Quantity::Position)
             .map_or_else(|| self.velocity_unit(), |o| o.2.as_str())
+    }
+
+    /// Name and unit of an output.
+    pub fn output_name(&self, index: usize) -> (&str, &str) {
+        self.outputs
+            .get(index)
+            .map_or(("output", "1"), |(_, name, unit)| (name, unit))
     }
 
     fn velocity_unit(&self) -> &'static str {

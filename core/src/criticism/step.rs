@@ -1,6 +1,7 @@
 //! One step of a diagnosis: fits one model and tries every effect on top of it.
 
 use super::knowledge::contradictions;
+use super::missing::missing_parts;
 use super::race::Race;
 use super::search::Search;
 use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same};
@@ -381,7 +382,13 @@ impl StepJob {
             add_idle(&mut verdict, &self.idle(model).0);
             verdict
         });
+        let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
         Some(StepReport {
+            missing: if unknown {
+                missing_parts(&self.session, &whole)
+            } else {
+                Vec::new()
+            },
             step: Step {
                 effects: self.session.effects(&model.fit),
                 error: whole.score.error,

@@ -22,6 +22,7 @@ mod static_curvature;
 mod stribeck_friction;
 
 pub use id::{EffectId, VISCOUS_FRICTION};
+pub use probe::{Place, StepPart, Steps};
 pub use probe::{Probe, ProbeInput, ProbeOutput, Regression};
 pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales};
 

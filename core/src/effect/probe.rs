@@ -7,11 +7,14 @@
 //! inertia or viscous friction, and a constant force can explain: a score test (Rao 1948), one linear
 //! regression instead of a fit.
 
+mod steps;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::Scales;
 use crate::measurement::Kind;
 use crate::model::{Load, free_body, load_torque};
+pub use steps::{Place, StepPart, Steps};
 
 /// Samples at most that are looked at.
 const MAX_SAMPLES: usize = 200_000;

@@ -69,6 +69,9 @@ pub fn html(input: &ReportInput) -> String {
     );
     section(&mut out, "Measured and modelled", &curves(input));
     section(&mut out, "Where the models fail", &places(input));
+    if !input.last.missing.is_empty() {
+        section(&mut out, "What is missing", &missing(input));
+    }
     section(&mut out, "The model", &model::equations(input));
     section(
         &mut out,
@@ -201,6 +204,19 @@ fn places(input: &ReportInput) -> String {
         }
         out.push_str("</div>\n");
     }
+    out
+}
+
+/// What no effect of the library explains.
+fn missing(input: &ReportInput) -> String {
+    let mut out = String::from(
+        "<p>No effect of the library explains what is left. These are forces, inputs or errors of sensors that would, \
+         estimated without a model: steps over one axis at a time, with a band of two standard errors.</p>\n<div class=\"pair\">\n",
+    );
+    for (svg, caption) in pictures::missing(&input.last.missing) {
+        figure(&mut out, &svg, &caption);
+    }
+    out.push_str("</div>\n");
     out
 }
 

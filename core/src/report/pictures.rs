@@ -3,7 +3,8 @@
 use super::html::figure;
 use super::svg::{Axis, Bar, Chart, bars, range};
 use super::{name_of, short};
-use crate::criticism::{Finding, Profile, ReplayChannel, Step};
+use crate::criticism::{Finding, MissingPart, Profile, ReplayChannel, Step};
+use crate::effect::StepPart;
 use crate::measurement::{Channel, Measurement};
 
 /// Size of a wide picture.
@@ -228,6 +229,51 @@ pub(super) fn profiles(
         }
     }
     pictures
+}
+
+/// Estimates that are drawn.
+const MOST_ESTIMATES: usize = 4;
+
+/// Pictures with captions of what is missing, estimated without a model.
+pub(super) fn missing(parts: &[MissingPart]) -> Vec<(String, String)> {
+    parts
+        .iter()
+        .take(MOST_ESTIMATES)
+        .map(|m| {
+            let lower = |p: &StepPart| p.value - 2.0 * p.std_error;
+            let upper = |p: &StepPart| p.value + 2.0 * p.std_error;
+            let values = m.parts.iter().map(|p| p.value);
+            // Bands that know nothing would squeeze the rest.
+            let known = range(values.chain([0.0])).unwrap_or((0.0, 1.0));
+            let size = known.1 - known.0;
+            let (low, high) = (known.0 - size, known.1 + size);
+            let bands = m.parts.iter().flat_map(|p| [lower(p), upper(p)]);
+            let y = range(bands.map(|v| v.clamp(low, high)).chain([known.0, known.1]));
+            let x = range(m.parts.iter().flat_map(|p| [p.from, p.to])).unwrap_or((0.0, 1.0));
+            let mut chart = Chart::new(
+                HALF,
+                TALL,
+                Axis::new(&m.axis, &m.axis_unit, x),
+                Axis::roomy(
+                    &format!("missing {}", m.what),
+                    &m.unit,
+                    y.unwrap_or((0.0, 1.0)),
+                ),
+            );
+            for p in &m.parts {
+                let (a, b) = (lower(p), upper(p));
+                chart.band(&[(p.from, a, b), (p.to, a, b)], "band");
+            }
+            let ends = m
+                .parts
+                .iter()
+                .flat_map(|p| [(p.from, p.value), (p.to, p.value)]);
+            chart.line(&ends.collect::<Vec<_>>(), "estimate");
+            chart.level(0.0, "noise");
+            let title = format!("Missing {} over {}", m.what, m.axis);
+            (chart.finish(&title), m.text.clone())
+        })
+        .collect()
 }
 
 fn profile_chart(name: &str, profile: &Profile, before: Option<&Profile>) -> String {

@@ -184,6 +184,21 @@ impl Chart {
         self.line(&[(self.x.from, y), (self.x.to, y)], class);
     }
 
+    /// The area between two curves over the same points: x, lower, upper.
+    pub fn band(&mut self, points: &[(f64, f64, f64)], class: &str) {
+        let mut path = String::new();
+        let there = points.iter().map(|p| (p.0, p.2));
+        let back = points.iter().rev().map(|p| (p.0, p.1));
+        let closed = there
+            .chain(back)
+            .filter(|p| p.0.is_finite() && p.1.is_finite());
+        for (k, (x, y)) in closed.enumerate() {
+            let command = if k == 0 { 'M' } else { 'L' };
+            let _ = write!(path, "{command}{:.1} {:.1}", self.at_x(x), self.at_y(y));
+        }
+        let _ = write!(self.body, "<path class=\"{class}\" d=\"{path}Z\"/>");
+    }
+
     /// Spans of x that are shaded.
     pub fn shade(&mut self, spans: &[(f64, f64)]) {
         for (from, to) in spans {
@@ -329,6 +344,7 @@ mod tests {
             Axis::new("y", "m", (-1e308, 1e308)),
         );
         chart.line(&wild.map(|v| (v, v)), "model");
+        chart.band(&wild.map(|v| (v, v, -v)), "band");
         let svg = chart.finish("wild");
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     }

@@ -1,6 +1,7 @@
 //! What is missing from the model? A measurement, the model's replay, and the effects that could be added.
 
 mod export;
+mod missing;
 mod plots;
 mod side;
 

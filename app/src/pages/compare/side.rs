@@ -4,7 +4,7 @@ use egui::{Color32, RichText};
 use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
 
-use super::{Command, Compare, name_of, times_noise};
+use super::{Command, Compare, missing, name_of, times_noise};
 use crate::hook::Targets;
 use crate::theme;
 
@@ -34,6 +34,7 @@ pub(super) fn ui(
             }
         });
     }
+    missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
     ui.collapsing("Parameters of the model", |ui| parameters_ui(report, ui));
 }
