@@ -108,10 +108,17 @@ impl Fit {
         let steps = self.difference_steps(data, scales);
         let columns = self.columns(data, &steps, scales);
         let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns);
-        for (j, value, tolerance) in self.structure.priors() {
-            let weight = 1.0 / (tolerance * tolerance);
-            matrix[(j, j)] += weight;
-            gradient[j] += weight * (value - self.values[j]);
+        let priors = self.structure.priors();
+        // The equations of the data stand for their cost divided by this.
+        let scale = if priors.is_empty() {
+            1.0
+        } else {
+            robust_scale(data, &self.motion)
+        };
+        for (j, value, tolerance) in &priors {
+            let weight = 1.0 / (scale * tolerance * tolerance);
+            matrix[(*j, *j)] += weight;
+            gradient[*j] += weight * (value - self.values[*j]);
         }
         let mut lowered = false;
         while self.damping < MAX_DAMPING {
@@ -131,8 +138,10 @@ impl Fit {
             }
             self.damping *= 6.0;
         }
-        let schur = reduced(&matrix, &gradient, &windows, data, p).0;
-        self.information = schur;
+        self.information = reduced(&matrix, &gradient, &windows, data, p).0;
+        for (j, _, tolerance) in &priors {
+            self.information[(*j, *j)] += (1.0 - 1.0 / scale) / (tolerance * tolerance);
+        }
         if !lowered {
             // Once more with long difference steps, which see past the kinks around a stall.
             self.stalls += 1;
@@ -598,6 +607,22 @@ fn robust_cost(data: &Data, motion: &Motion) -> f64 {
         count * ODD_MEAN_SQUARE * (logs / count).exp_m1()
     } else {
         0.0
+    }
+}
+
+/// Change of [`robust_cost`] for a change of the squared residuals as [`window_weights`] weigh them.
+fn robust_scale(data: &Data, motion: &Motion) -> f64 {
+    let (mut logs, mut count) = (0.0, 0.0);
+    for (cost, n) in fitted_windows(data, motion) {
+        if n > 0.0 {
+            logs += n * (cost / (n * ODD_MEAN_SQUARE)).ln_1p();
+            count += n;
+        }
+    }
+    if count > 0.0 {
+        (logs / count).exp()
+    } else {
+        1.0
     }
 }
 
