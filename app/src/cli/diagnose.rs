@@ -36,6 +36,10 @@ pub(super) struct Arguments {
     /// What is known of the model: parameters that are fixed or roughly known, effects that it has already
     #[arg(long, value_name = "M.toml")]
     model: Option<PathBuf>,
+    /// An effect of your own to be tried: a force as a formula of x, v, u, t (a process: y, u, t) with parameters
+    /// to fit, and where they start if you like: "bump: -a*exp(-((x-b)/c)^2); b = 0.5"
+    #[arg(long, value_name = "NAME: FORMULA", allow_hyphen_values = true)]
+    effect: Vec<String>,
     /// Write the model with the effects that were found to this file, for --model
     #[arg(long, value_name = "OUT.toml")]
     save_model: Option<PathBuf>,
@@ -227,10 +231,15 @@ pub(super) fn one(
     let started = Instant::now();
     let (measurement, bytes) = read(file, arguments)?;
     let name = measurement.name.clone();
-    let blank = UserModel::blank(measurement.kind);
-    let given = setup.model.as_ref().unwrap_or(&blank);
+    let blank = || UserModel::blank(measurement.kind);
+    let mut given = setup.model.clone().unwrap_or_else(blank);
+    for effect in &arguments.effect {
+        given
+            .add_candidate(effect)
+            .map_err(|e| format!("--effect: {e}"))?;
+    }
     let mut job =
-        DiagnosisJob::with_model(&measurement, given).map_err(|e| format!("{name}: {e}"))?;
+        DiagnosisJob::with_model(&measurement, &given).map_err(|e| format!("{name}: {e}"))?;
     loop {
         match job.advance() {
             Progress::Running { fraction, text } => show(fraction, &text),
@@ -244,13 +253,13 @@ pub(super) fn one(
                         first_atlas: &first.atlas,
                         last,
                         verdict: Some(&diagnosis.verdict),
-                        model: setup.model.as_ref(),
+                        model: (given != blank()).then_some(&given),
                         provenance: &provenance(file, arguments, &bytes),
                     }))
                 });
                 let last = diagnosis.steps.last();
                 let model = last.filter(|_| arguments.save_model.is_some()).map(|step| {
-                    UserModel::from_step(measurement.kind, step, setup.model.as_ref()).to_toml()
+                    UserModel::from_step(measurement.kind, step, Some(&given)).to_toml()
                 });
                 return Ok(Report {
                     name,
@@ -288,6 +297,9 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
         if let Some(value) = value {
             command.push_str(&format!(" {option} {}", report::shell_word(value)));
         }
+    }
+    for effect in &arguments.effect {
+        command.push_str(&format!(" --effect {}", report::shell_word(effect)));
     }
     Provenance {
         command,

@@ -3,7 +3,7 @@
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
 use super::{Diagnosis, Step, StepReport};
-use crate::effect::EffectId;
+use crate::effect::{EffectId, FormulaError};
 use crate::measurement::Measurement;
 use crate::user_model::UserModel;
 
@@ -72,6 +72,14 @@ pub enum CriticismError {
         said: String,
         /// Unit with this measurement.
         unit: String,
+    },
+    /// An effect of the user's own that cannot be made.
+    #[error("{name}, {error}")]
+    OwnEffect {
+        /// Its name.
+        name: String,
+        /// What is wrong with its formula.
+        error: FormulaError,
     },
     /// An effect that makes no sense for this kind of system.
     #[error("{effect} cannot be added to this kind of system")]

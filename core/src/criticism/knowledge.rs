@@ -32,7 +32,7 @@ impl Knowledge {
             known.iter().map(|k| (id, k.clone())).collect()
         };
         let mut entries = own(None, &model.parameters);
-        for effect in &model.effects {
+        for effect in model.effects.iter().chain(&model.candidates) {
             entries.extend(own(Some(effect.id), &effect.parameters));
         }
         Self {

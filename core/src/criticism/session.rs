@@ -8,7 +8,9 @@ use super::knowledge::{self, Knowledge};
 use super::locate::locate;
 use super::select::is_noise;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
-use crate::effect::{Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales};
+use crate::effect::{
+    self, Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales,
+};
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::user_model::{Status, UserModel};
 
@@ -34,6 +36,8 @@ pub(super) struct Session {
     pub baseline: Option<Score>,
     /// What the user knows beforehand.
     pub knowledge: Knowledge,
+    /// Effects of the user's own.
+    own: Vec<&'static dyn Effect>,
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
@@ -56,6 +60,15 @@ impl Session {
             scales,
             scout: compared.scout(),
             knowledge: Knowledge::of(model),
+            own: model
+                .formulas()
+                .map(|formula| {
+                    formula.effect(model.kind).map_err(|error| {
+                        let name = formula.name.clone();
+                        CriticismError::OwnEffect { name, error }
+                    })
+                })
+                .collect::<Result<_, _>>()?,
             baseline: None,
             full: (compared.used() < data.used()).then_some(data),
             data: compared,
@@ -67,6 +80,16 @@ impl Session {
                 .map(|c| (c.quantity, c.name.clone(), c.unit.clone()))
                 .collect(),
         })
+    }
+
+    /// Effects that may be in a model: those of the library and the user's own.
+    pub fn library(&self) -> impl Iterator<Item = &'static dyn Effect> {
+        effect::for_kind(self.kind()).chain(self.own.iter().copied())
+    }
+
+    /// One of them.
+    pub fn find(&self, id: EffectId) -> Option<&'static dyn Effect> {
+        self.library().find(|e| e.id() == id)
     }
 
     /// Checks the units that the user's model says, its effects being among `effects`.
@@ -99,6 +122,21 @@ impl Session {
     /// Unit of a parameter; without a dimension that of a process gain.
     pub fn unit_of(&self, dimension: Option<Dimension>) -> String {
         let output = self.outputs.first().map_or("1", |o| o.2.as_str());
+        if let Some(Dimension::Compound {
+            force,
+            position,
+            output: power,
+            time,
+        }) = dimension
+        {
+            let unit = |d: Dimension| baseline::unit(d, self.motion, &self.input_unit);
+            return compound(&[
+                (unit(Dimension::Force), force),
+                (unit(Dimension::Position), position),
+                (output.to_owned(), power),
+                ("s".to_owned(), time),
+            ]);
+        }
         dimension.map_or_else(
             || baseline::gain_unit(&self.input_unit, output),
             |d| baseline::unit(d, self.motion, &self.input_unit),
@@ -279,5 +317,29 @@ impl Session {
                 .collect(),
             window_starts: self.whole().windows.clone(),
         }
+    }
+}
+
+/// A product of powers of units, such as `N m s^2/rad`.
+fn compound(parts: &[(String, i8)]) -> String {
+    let side = |sign: i8| -> Vec<String> {
+        let own = parts
+            .iter()
+            .filter(|(unit, power)| power * sign > 0 && unit != "1");
+        own.map(|(unit, power)| match power.abs() {
+            1 => unit.clone(),
+            n if unit.contains(' ') => format!("({unit})^{n}"),
+            n => format!("{unit}^{n}"),
+        })
+        .collect()
+    };
+    let (above, below) = (side(1).join(" "), side(-1));
+    match (above.as_str(), below.as_slice()) {
+        ("", []) => "1".to_owned(),
+        (above, []) => above.to_owned(),
+        ("", [one]) => format!("1/{one}"),
+        ("", many) => format!("1/({})", many.join(" ")),
+        (above, [one]) => format!("{above}/{one}"),
+        (above, many) => format!("{above}/({})", many.join(" ")),
     }
 }

@@ -69,8 +69,8 @@ impl StepJob {
             .chain(added)
             .filter(|id| **id != effect::VISCOUS_FRICTION)
             .map(|id| {
-                effect::find(*id)
-                    .filter(|e| e.kinds().contains(&measurement.kind))
+                session
+                    .find(*id)
                     .ok_or(CriticismError::WrongEffect { effect: *id })
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -103,7 +103,8 @@ impl StepJob {
 
     /// Effects that could be added: not in the model, nor contained in one that is.
     fn others(&self) -> Vec<&'static dyn Effect> {
-        effect::for_kind(self.session.kind())
+        self.session
+            .library()
             .filter(|e| {
                 self.wanted
                     .iter()
@@ -116,7 +117,8 @@ impl StepJob {
     /// contains may be enough.
     fn rivals(&self, place: usize) -> Vec<&'static dyn Effect> {
         let own = self.wanted.get(place);
-        effect::for_kind(self.session.kind())
+        self.session
+            .library()
             .filter(|e| {
                 own.is_some_and(|own| !nested(*own, *e) || own.contains().contains(&e.id()))
                     && self

@@ -192,7 +192,11 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
 }
 
 fn in_registry_order(mut ids: Vec<EffectId>) -> Vec<EffectId> {
-    ids.sort_by_key(|id| effect::registry().iter().position(|e| e.id() == *id));
+    // Effects of the user's own come last.
+    ids.sort_by_key(|id| {
+        let at = effect::registry().iter().position(|e| e.id() == *id);
+        at.unwrap_or(usize::MAX)
+    });
     ids
 }
 

@@ -29,6 +29,13 @@ pub(super) fn equations(input: &ReportInput) -> String {
     for id in added(&input.last.step) {
         let _ = writeln!(out, "<h3>{}</h3>", escape(&name_of(id)));
         let Some(effect) = effect::find(id) else {
+            if let Some(formula) = input.model.and_then(|m| m.formula(id)) {
+                let _ = writeln!(
+                    out,
+                    "<p>An effect of your own.</p>\n<pre><code>F = {}</code></pre>",
+                    escape(formula)
+                );
+            }
             continue;
         };
         let _ = writeln!(

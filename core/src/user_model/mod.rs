@@ -10,9 +10,13 @@
 //! [[effects]]                                      # already in the model
 //! id = "coulomb_friction"
 //! parameters.c = { value = 0.05, status = "free" } # free: the fit only starts there
+//!
+//! [[candidates]]                                   # of one's own, tried like those of the library
+//! id = "bump"
+//! formula = "-a*exp(-((x-b)/c)^2)"                 # x, v, u, t of a drive; y, u, t of a process
 //! ```
 //!
-//! What is not mentioned is free. `status` ("fixed", "prior", "free") says it outright; `unit`, if it is
+//! An effect with a `formula` may stand under `[[effects]]` as well. What is not mentioned is free. `status` ("fixed", "prior", "free") says it outright; `unit`, if it is
 //! there, must be the one that the parameter has in the measurement.
 
 mod read;
@@ -21,7 +25,7 @@ mod write;
 use serde::{Deserialize, Serialize};
 
 use crate::criticism::Step;
-use crate::effect::{EffectId, VISCOUS_FRICTION};
+use crate::effect::{EffectId, Formula, VISCOUS_FRICTION};
 use crate::measurement::Kind;
 
 pub use read::ModelFileError;
@@ -70,8 +74,10 @@ pub struct Known {
 /// An effect that is in the model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Present {
-    /// Which.
+    /// Which; a name of the user's own where there is a formula.
     pub id: EffectId,
+    /// The force, if the effect is the user's own.
+    pub formula: Option<String>,
     /// What is known of its parameters.
     pub parameters: Vec<Known>,
 }
@@ -85,6 +91,8 @@ pub struct UserModel {
     pub parameters: Vec<Known>,
     /// Effects on top of it, in order.
     pub effects: Vec<Present>,
+    /// Effects of the user's own that are tried like those of the library.
+    pub candidates: Vec<Present>,
 }
 
 impl UserModel {
@@ -94,6 +102,7 @@ impl UserModel {
             kind,
             parameters: Vec::new(),
             effects: Vec::new(),
+            candidates: Vec::new(),
         }
     }
 
@@ -130,9 +139,17 @@ impl UserModel {
                 .filter(|id| **id != VISCOUS_FRICTION)
                 .map(|id| Present {
                     id: *id,
+                    formula: given.and_then(|g| g.formula(*id)).map(str::to_owned),
                     parameters: known(Some(*id)),
                 })
                 .collect(),
+            candidates: given.map_or_else(Vec::new, |g| {
+                let tried = g.candidates.iter();
+                tried
+                    .filter(|c| !step.effects.contains(&c.id))
+                    .cloned()
+                    .collect()
+            }),
         }
     }
 
@@ -140,12 +157,87 @@ impl UserModel {
     pub fn known(&self, effect: Option<EffectId>) -> &[Known] {
         match effect {
             None => &self.parameters,
-            Some(id) => self
-                .effects
-                .iter()
-                .find(|e| e.id == id)
-                .map_or(&[], |e| e.parameters.as_slice()),
+            Some(id) => self.find(id).map_or(&[], |e| e.parameters.as_slice()),
         }
+    }
+
+    /// An effect or a candidate.
+    pub fn find(&self, id: EffectId) -> Option<&Present> {
+        let all = self.effects.iter().chain(&self.candidates);
+        all.into_iter().find(|e| e.id == id)
+    }
+
+    /// The formula of an effect of the user's own.
+    pub fn formula(&self, id: EffectId) -> Option<&str> {
+        self.find(id)?.formula.as_deref()
+    }
+
+    /// Every effect of the user's own.
+    pub fn formulas(&self) -> impl Iterator<Item = Formula> {
+        let all = self.effects.iter().chain(&self.candidates);
+        all.filter_map(|e| {
+            Some(Formula {
+                name: e.id.as_str().to_owned(),
+                text: e.formula.clone()?,
+            })
+        })
+    }
+
+    /// Adds a candidate written as `name: formula` or `name: formula; a = 0.05, b = 1`, where the values are
+    /// those that a fit starts from.
+    ///
+    /// # Errors
+    /// One sentence that says what is wrong and what would be right.
+    pub fn add_candidate(&mut self, text: &str) -> Result<(), String> {
+        let (name, rest) = text
+            .split_once(':')
+            .ok_or("write it as \"name: formula\", such as \"bump: -a*exp(-((x-b)/c)^2)\"")?;
+        let (formula, values) = rest.split_once(';').unwrap_or((rest, ""));
+        let (name, formula) = (name.trim(), formula.trim());
+        let id = EffectId::own(name)
+            .ok_or_else(|| format!("'{name}' is no name for an effect: {}", EffectId::OWN_NAMES))?;
+        if self.find(id).is_some() {
+            return Err(format!("{name} is there twice: give it another name"));
+        }
+        if self.candidates.len() + self.effects.len() >= MAX_PRESENT {
+            return Err(format!("too many effects: at most {MAX_PRESENT}"));
+        }
+        let symbols = Formula {
+            name: name.to_owned(),
+            text: formula.to_owned(),
+        }
+        .parameters(self.kind)
+        .map_err(|e| format!("{name}, {e}"))?;
+        let mut parameters = Vec::new();
+        for part in values.split(',').filter(|p| !p.trim().is_empty()) {
+            let value = part.split_once('=').and_then(|(symbol, value)| {
+                let symbol = symbols.iter().find(|s| *s == symbol.trim())?;
+                Some((
+                    symbol,
+                    value.trim().parse::<f64>().ok().filter(|v| v.is_finite())?,
+                ))
+            });
+            let (symbol, value) = value.ok_or_else(|| {
+                format!(
+                    "'{}' is no starting value: write such as {} = 0.05",
+                    part.trim(),
+                    symbols.first().map_or("a", String::as_str)
+                )
+            })?;
+            parameters.push(Known {
+                symbol: symbol.clone(),
+                value,
+                status: Status::Free,
+                std_error: None,
+                unit: None,
+            });
+        }
+        self.candidates.push(Present {
+            id,
+            formula: Some(formula.to_owned()),
+            parameters,
+        });
+        Ok(())
     }
 
     /// Ids of the effects in the model.

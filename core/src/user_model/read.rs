@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Known, MAX_BYTES, MAX_PRESENT, Present, Status, UserModel};
 use crate::criticism::baseline_symbols;
-use crate::effect::{self, EffectId, VISCOUS_FRICTION};
+use crate::effect::{self, EffectId, Formula, VISCOUS_FRICTION};
 use crate::measurement::Kind;
 
 /// Why a text is no model.
@@ -82,7 +82,11 @@ impl Reader<'_> {
     }
 
     fn model(&self, file: &DeTable) -> Result<UserModel, ModelFileError> {
-        let entry = self.entries(file, "here", &["kind", "parameters", "effects"])?;
+        let entry = self.entries(
+            file,
+            "here",
+            &["kind", "parameters", "effects", "candidates"],
+        )?;
         let kind = match entry("kind") {
             None => {
                 return Err(
@@ -121,38 +125,53 @@ impl Reader<'_> {
                 }
             }
         }
-        if let Some(value) = entry("effects") {
-            let Some(effects) = value.get_ref().as_array() else {
-                return Err(self.error(&value.span(), "effects must be written as [[effects]]"));
+        for (title, own) in [("effects", false), ("candidates", true)] {
+            let Some(value) = entry(title) else {
+                continue;
             };
-            if effects.len() > MAX_PRESENT {
+            let Some(effects) = value.get_ref().as_array() else {
                 return Err(self.error(
                     &value.span(),
-                    format!(
-                        "{} effects are too many: at most {MAX_PRESENT}",
-                        effects.len()
-                    ),
+                    format!("{title} must be written as [[{title}]]"),
                 ));
+            };
+            if model.effects.len() + effects.len() > MAX_PRESENT {
+                let text = format!(
+                    "{} effects are too many: at most {MAX_PRESENT}",
+                    effects.len()
+                );
+                return Err(self.error(&value.span(), text));
             }
             for effect in effects.iter() {
-                let present = self.effect(effect, kind)?;
-                if model.present().contains(&present.id) {
-                    return Err(self.error(
-                        &effect.span(),
-                        format!("{} is there twice: once is enough", present.id),
-                    ));
+                let present = self.effect(effect, kind, own)?;
+                if model.find(present.id).is_some() {
+                    let text = format!("{} is there twice: once is enough", present.id);
+                    return Err(self.error(&effect.span(), text));
                 }
-                model.effects.push(present);
+                if own {
+                    model.candidates.push(present);
+                } else {
+                    model.effects.push(present);
+                }
             }
         }
         Ok(model)
     }
 
-    fn effect(&self, value: &Value, kind: Kind) -> Result<Present, ModelFileError> {
+    /// An effect; with `own` one that must have a formula.
+    fn effect(&self, value: &Value, kind: Kind, own: bool) -> Result<Present, ModelFileError> {
         let Some(table) = value.get_ref().as_table() else {
             return Err(self.error(&value.span(), "an effect must be written as [[effects]]"));
         };
-        let entry = self.entries(table, "in an effect", &["id", "parameters"])?;
+        let entry = self.entries(table, "in an effect", &["id", "formula", "parameters"])?;
+        if let (Some(id), Some(formula)) = (entry("id"), entry("formula")) {
+            return self.own_effect(id, formula, entry("parameters"), kind);
+        }
+        if own {
+            let text =
+                "a candidate needs an id and a formula: those of the library are tried anyway";
+            return Err(self.error(&value.span(), text));
+        }
         let known: Vec<&str> = effect::for_kind(kind).map(|e| e.id().as_str()).collect();
         let id = entry("id").ok_or_else(|| {
             self.error(
@@ -202,6 +221,44 @@ impl Reader<'_> {
         };
         Ok(Present {
             id: effect.id(),
+            formula: None,
+            parameters,
+        })
+    }
+
+    /// An effect of the user's own.
+    fn own_effect(
+        &self,
+        id: &Value,
+        formula: &Value,
+        parameters: Option<&Value>,
+        kind: Kind,
+    ) -> Result<Present, ModelFileError> {
+        let name = id.get_ref().as_str().unwrap_or("");
+        let own = EffectId::own(name).ok_or_else(|| {
+            let why = format!(
+                "'{}' is no name for an effect: {}",
+                shown(name),
+                EffectId::OWN_NAMES
+            );
+            self.error(&id.span(), why)
+        })?;
+        let text = formula.get_ref().as_str().unwrap_or("");
+        let written = Formula {
+            name: name.to_owned(),
+            text: text.to_owned(),
+        };
+        let symbols = written
+            .parameters(kind)
+            .map_err(|e| self.error(&formula.span(), format!("formula, {e}")))?;
+        let symbols: Vec<&str> = symbols.iter().map(String::as_str).collect();
+        let parameters = match parameters {
+            None => Vec::new(),
+            Some(value) => self.parameters(value, name, &symbols)?,
+        };
+        Ok(Present {
+            id: own,
+            formula: Some(text.to_owned()),
             parameters,
         })
     }

@@ -21,11 +21,17 @@ impl UserModel {
             out.push_str("\n[parameters]\n");
             lines(&mut out, &self.parameters);
         }
-        for effect in &self.effects {
-            let _ = writeln!(out, "\n[[effects]]\nid = {}", quoted(effect.id.as_str()));
-            if !effect.parameters.is_empty() {
-                out.push_str("[effects.parameters]\n");
-                lines(&mut out, &effect.parameters);
+        for (title, list) in [("effects", &self.effects), ("candidates", &self.candidates)] {
+            for effect in list {
+                let id = quoted(effect.id.as_str());
+                let _ = writeln!(out, "\n[[{title}]]\nid = {id}");
+                if let Some(formula) = &effect.formula {
+                    let _ = writeln!(out, "formula = {}", quoted(formula));
+                }
+                if !effect.parameters.is_empty() {
+                    let _ = writeln!(out, "[{title}.parameters]");
+                    lines(&mut out, &effect.parameters);
+                }
             }
         }
         out
