@@ -316,3 +316,22 @@ fn a_model_is_read_and_saved() {
         &["the model is of a process, the measurement of a drive"],
     );
 }
+
+#[test]
+fn an_effect_of_ones_own_is_tried() {
+    let run = |effect: &str| {
+        let mut command = hysteron();
+        command.arg("diagnose").arg(data("process-02.csv"));
+        command.args(["--effect", effect]).output().unwrap()
+    };
+    let output = run("drift: -a*t; a = 0.001");
+    assert_eq!(output.status.code(), Some(0));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("  drift "), "{text}");
+    assert!(text.contains("Missing: Input delay"), "{text}");
+    refused(
+        &run("drift: -a*x"),
+        &["--effect: drift, column 4", "y, u and t"],
+    );
+    refused(&run("-a*t"), &["name: formula"]);
+}

@@ -146,6 +146,35 @@ fn a_model_from_a_file_is_where_compare_begins() {
 }
 
 #[test]
+fn an_effect_of_ones_own_is_typed_and_added() {
+    let mut harness = app("compare");
+    harness.step();
+    harness.get_by_label("Open process-02").click();
+    harness.step();
+    wait_until_idle(&mut harness);
+    // It stands below the fold.
+    harness
+        .get_by_label("An effect of your own")
+        .click_accesskit();
+    harness.run();
+    harness.get_by_label_contains("a process has no x");
+    let field = harness.get_by_label("F =");
+    field.focus();
+    harness.step();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.step();
+    harness.get_by_label("F =").type_text("a*t");
+    harness.run();
+    harness.get_by_label("To be fitted: a");
+    harness.get_by_label("Add your effect").click_accesskit();
+    harness.step();
+    wait_until_idle(&mut harness);
+    let state = harness.state().hook_state()["compare"].clone();
+    assert_eq!(state["effects"], serde_json::json!(["bump"]), "{state}");
+    assert_eq!(state["message"], serde_json::Value::Null);
+}
+
+#[test]
 fn explore_opens_on_an_oscillating_loop() {
     let mut harness = app("explore");
     harness.step();

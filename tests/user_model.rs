@@ -249,6 +249,20 @@ fn what_is_wrong_in_a_file_is_said_with_its_line() {
         4,
         &["twice"],
     );
+    let own = "kind = \"drive\"\n[[candidates]]\nid = \"bump\"\n";
+    refused(own, 2, &["id and a formula"]);
+    refused(
+        &format!("{own}formula = \"a*(x\"\n"),
+        4,
+        &["formula, column 5", "')'"],
+    );
+    refused(
+        &format!("{own}formula = \"a*x\"\nparameters.b = 1\n"),
+        5,
+        &["'b'", "expected a"],
+    );
+    let taken = own.replace("bump", "cogging") + "formula = \"a*x\"\n";
+    refused(&taken, 3, &["not a name of the library"]);
     refused("kind = \"drive\"\neffects = 3\n", 2, &["[[effects]]"]);
     refused("kind = \"drive\"\nkind = \"drive\"\n", 2, &[]);
     refused("kind = [[[[[[[[\n", 1, &[]);

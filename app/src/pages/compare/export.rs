@@ -37,7 +37,7 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
         first_atlas: first.map_or(&[], |r| r.atlas.as_slice()),
         last,
         verdict: last.verdict.as_ref(),
-        model: None,
+        model: page.model.as_ref(),
         provenance: &Provenance {
             command: command(page, &measurement.name),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -56,9 +56,9 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
 /// What to type for the same diagnosis.
 fn command(page: &Compare, file: &str) -> String {
     let mut command = format!("hysteron diagnose {}", report::shell_word(file));
-    if let Some((name, _)) = &page.model {
-        command.push_str(" --model ");
-        command.push_str(&report::shell_word(name));
+    let file = page.model_file.iter().map(|name| ("--model", name));
+    for (option, value) in file.chain(page.own.iter().map(|line| ("--effect", line))) {
+        command.push_str(&format!(" {option} {}", report::shell_word(value)));
     }
     command
 }
@@ -66,8 +66,7 @@ fn command(page: &Compare, file: &str) -> String {
 /// The model on screen as a file.
 pub(super) fn model(page: &Compare) -> Option<Document> {
     let (measurement, last) = (page.measurement.as_ref()?, page.report()?);
-    let given = page.model.as_ref().map(|(_, model)| model);
-    let model = UserModel::from_step(measurement.kind, &last.step, given);
+    let model = UserModel::from_step(measurement.kind, &last.step, page.model.as_ref());
     Some(Document {
         name: format!("{}.toml", stem(&measurement.name)),
         kind: "Model",

@@ -2,6 +2,7 @@
 
 mod export;
 mod missing;
+mod own;
 mod plots;
 mod side;
 
@@ -56,8 +57,14 @@ type Arrival = (String, Result<Vec<u8>, String>);
 pub struct Compare {
     measurement: Option<Arc<Measurement>>,
     source: export::Source,
-    /// What the user knows of the model, and the file that says it.
-    model: Option<(String, UserModel)>,
+    /// What the user knows of the model.
+    model: Option<UserModel>,
+    /// The file that says it.
+    model_file: Option<String>,
+    /// Effects of the user's own that were added here, as the command line takes them.
+    own: Vec<String>,
+    /// The formula in the editor.
+    typed: own::Typed,
     /// Effects on top of the baseline, in the order in which they were added.
     effects: Vec<EffectId>,
     /// Finished steps by their effects, so that undo is instant.
@@ -80,6 +87,9 @@ impl Default for Compare {
             measurement: None,
             source: export::Source::default(),
             model: None,
+            model_file: None,
+            own: Vec::new(),
+            typed: own::Typed::default(),
             effects: Vec::new(),
             reports: HashMap::new(),
             shown: None,
@@ -94,7 +104,7 @@ impl Default for Compare {
 }
 
 /// What a click asks for; carried out once, after drawing.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Command {
     OpenBuiltIn(usize),
     OpenDialog,
@@ -108,6 +118,8 @@ enum Command {
     SaveModel,
     OpenModel,
     DropModel,
+    Type(own::Typed),
+    AddOwn(own::Typed),
 }
 
 impl Compare {
@@ -122,12 +134,8 @@ impl Compare {
                 self.measurement = Some(Arc::new(measurement));
                 self.source = export::Source::of(bytes);
                 let kind = self.measurement.as_ref().map(|m| m.kind);
-                if self
-                    .model
-                    .as_ref()
-                    .is_some_and(|(_, m)| Some(m.kind) != kind)
-                {
-                    self.model = None;
+                if self.model.as_ref().is_some_and(|m| Some(m.kind) != kind) {
+                    self.forget_model();
                 }
                 self.restart(ctx);
             }
@@ -152,9 +160,36 @@ impl Compare {
             }
             (Ok(model), _) => {
                 self.message = None;
-                self.model = Some((name.to_owned(), model));
+                self.forget_model();
+                self.model = Some(model);
+                self.model_file = Some(name.to_owned());
                 self.restart(ctx);
             }
+        }
+    }
+
+    fn forget_model(&mut self) {
+        self.model = None;
+        self.model_file = None;
+        self.own.clear();
+    }
+
+    /// Adds an effect of the user's own to the model.
+    fn add_own(&mut self, ctx: &egui::Context, typed: &own::Typed) {
+        let Some(measurement) = &self.measurement else {
+            return;
+        };
+        let blank = || UserModel::blank(measurement.kind);
+        let mut model = self.model.clone().unwrap_or_else(blank);
+        match model.add_candidate(&typed.line()) {
+            Ok(()) => {
+                self.message = None;
+                self.effects.extend(model.candidates.last().map(|c| c.id));
+                self.model = Some(model);
+                self.own.push(typed.line());
+                self.start(ctx);
+            }
+            Err(error) => self.message = Some(error),
         }
     }
 
@@ -239,7 +274,7 @@ impl Compare {
             self.shown = Some(self.effects.clone());
         } else if let Some(measurement) = &self.measurement {
             self.progress = (0.0, "Starting".to_owned());
-            let model = self.model.as_ref().map(|(_, model)| model);
+            let model = self.model.as_ref();
             self.job = Some(Job::start(ctx, measurement, &self.effects, model));
         }
     }
@@ -296,8 +331,10 @@ impl Compare {
             }
             Command::OpenDialog => self.open_dialog(ctx, "Measurement", &["csv", "txt", "tsv"]),
             Command::OpenModel => self.open_dialog(ctx, "Model", &["toml"]),
+            Command::Type(typed) => self.typed = typed,
+            Command::AddOwn(typed) => self.add_own(ctx, &typed),
             Command::DropModel => {
-                self.model = None;
+                self.forget_model();
                 self.restart(ctx);
             }
             Command::Close => {
@@ -380,8 +417,8 @@ impl Compare {
         let text = match self.report() {
             None => "Fitting the simplest model ...".to_owned(),
             Some(report) => {
-                let model = self.model.as_ref().map(|(_, model)| model.present());
-                answer(report, &model.unwrap_or_default())
+                let present = self.model.as_ref().map(UserModel::present);
+                answer(report, &present.unwrap_or_default())
             }
         };
         theme::answer_ui(ui, &text);
@@ -416,7 +453,7 @@ impl Compare {
                 r.step.candidates.iter().map(|c| serde_json::json!({"effects": c.effects, "error": c.error})).collect()
             }),
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
-            "model": self.model.as_ref().map(|(name, _)| name.clone()),
+            "model": self.model_file,
             "message": self.message,
         })
     }

@@ -4,7 +4,7 @@ use egui::{Color32, RichText};
 use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
 
-use super::{Command, Compare, missing, name_of, times_noise};
+use super::{Command, Compare, missing, name_of, own, times_noise};
 use crate::hook::Targets;
 use crate::theme;
 
@@ -36,6 +36,7 @@ pub(super) fn ui(
     }
     missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
+    own::ui(page, ui, targets, commands);
     ui.collapsing("Parameters of the model", |ui| parameters_ui(report, ui));
 }
 
@@ -69,7 +70,7 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &
         if save.clicked() {
             commands.push(Command::SaveModel);
         }
-        if let Some((name, _)) = &page.model {
+        if let Some(name) = &page.model_file {
             ui.label(format!("Begins with {name}"));
             if ui.small_button("Forget it").clicked() {
                 commands.push(Command::DropModel);
@@ -102,7 +103,7 @@ fn waterfall_ui(
     let steps: Vec<(String, &StepReport)> = (0..=shown.len())
         .filter_map(|n| {
             let report = page.reports.get(&shown[..n])?;
-            let first = if page.model.is_some() {
+            let first = if page.model_file.is_some() {
                 "Your model"
             } else {
                 "Baseline"
@@ -186,15 +187,22 @@ fn card_ui(
     let Some(id) = candidate.effects.first().copied() else {
         return;
     };
-    let Some(effect) = effect::find(id) else {
-        return;
+    let formula = page.model.as_ref().and_then(|m| m.formula(id));
+    let (sentence, equation, source) = match (effect::find(id), formula) {
+        (Some(e), _) => (e.sentence(), e.equation().to_owned(), e.source()),
+        (None, Some(f)) => (
+            "An effect of your own.",
+            format!("F = {f}"),
+            "your own formula",
+        ),
+        (None, None) => return,
     };
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
             let add = ui.add_enabled(
                 page.job.is_none(),
-                egui::Button::new(format!("Add {}", effect.name())),
+                egui::Button::new(format!("Add {}", name_of(id))),
             );
             targets.note(format!("add:{id}"), ui, &add);
             if add.clicked() {
@@ -209,7 +217,7 @@ fn card_ui(
             report.step.error.max(2.0),
             theme::MODEL,
         );
-        ui.label(effect.sentence());
+        ui.label(sentence);
         if !candidate.equivalent_to.is_empty() {
             let names: Vec<&str> = candidate
                 .equivalent_to
@@ -224,8 +232,8 @@ fn card_ui(
         egui::CollapsingHeader::new("Equation")
             .id_salt(id.as_str())
             .show(ui, |ui| {
-                ui.monospace(effect.equation());
-                ui.small(effect.source());
+                ui.monospace(&equation);
+                ui.small(source);
                 for p in &candidate.parameters {
                     ui.label(format!(
                         "{} ({}) = {}",
