@@ -230,7 +230,8 @@ impl Flow {
         } else {
             ratio.ln_1p() / self.lambda
         };
-        time.clamp(0.0, until)
+        // Not clamp: a wild trial of a fit may bring times that are no numbers.
+        time.max(0.0).min(until)
     }
 
     /// Acceleration in state `m`.
