@@ -257,3 +257,81 @@ fn an_unfinished_diagnosis_can_be_shown() {
     diagnosis.noise_floor = f64::INFINITY;
     assert!(render(&diagnosis, "rig.csv", &[]).contains("unknown"));
 }
+
+#[test]
+fn a_report_is_written_beside_the_answer() {
+    let page = Path::new(env!("CARGO_TARGET_TMPDIR")).join("process-02.html");
+    let _ = std::fs::remove_file(&page);
+    let output = hysteron()
+        .args(["diagnose", "--kind", "process", "--report"])
+        .args([&page, &data("process-02.csv")])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
+    assert!(
+        page.contains("process-02.csv --kind process"),
+        "how to make it again"
+    );
+    let run = |arguments: &[&Path]| hysteron().arg("diagnose").args(arguments).output().unwrap();
+    let (file, option) = (data("process-02.csv"), Path::new("--report"));
+    refused(
+        &run(&[&file, option, Path::new("/no/such/folder/out.html")]),
+        &["out.html", "cannot be written"],
+    );
+    refused(
+        &run(&[
+            &file,
+            &data("process-01.csv"),
+            option,
+            Path::new("out.html"),
+        ]),
+        &["--report", "one FILE"],
+    );
+}
+
+#[test]
+fn a_model_is_read_and_saved() {
+    let saved = Path::new(env!("CARGO_TARGET_TMPDIR")).join("saved.toml");
+    let run = |arguments: &[&Path]| hysteron().arg("diagnose").args(arguments).output().unwrap();
+    let (file, model) = (data("process-02.csv"), Path::new("--model"));
+    let output = run(&[&file, Path::new("--save-model"), &saved]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("Missing: Input delay"));
+    let output = run(&[&file, model, &saved]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("Nothing is missing"), "{text}");
+    let bad = written("bad.toml", b"kind = \"process\"\n[parameters]\nJ1 = 3\n");
+    refused(
+        &run(&[&file, model, &bad]),
+        &["bad.toml, line 3: 'J1'", "K or T"],
+    );
+    refused(
+        &run(&[&file, model, Path::new("none.toml")]),
+        &["none.toml cannot be read"],
+    );
+    refused(
+        &run(&[&data("drive-01.csv"), model, &saved]),
+        &["the model is of a process, the measurement of a drive"],
+    );
+}
+
+#[test]
+fn an_effect_of_ones_own_is_tried() {
+    let run = |effect: &str| {
+        let mut command = hysteron();
+        command.arg("diagnose").arg(data("process-02.csv"));
+        command.args(["--effect", effect]).output().unwrap()
+    };
+    let output = run("drift: -a*t; a = 0.001");
+    assert_eq!(output.status.code(), Some(0));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("  drift "), "{text}");
+    assert!(text.contains("Missing: Input delay"), "{text}");
+    refused(
+        &run("drift: -a*x"),
+        &["--effect: drift, column 4", "y, u and t"],
+    );
+    refused(&run("-a*t"), &["name: formula"]);
+}

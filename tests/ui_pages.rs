@@ -117,6 +117,64 @@ fn a_bad_file_gives_one_sentence_and_loses_nothing() {
 }
 
 #[test]
+fn a_model_from_a_file_is_where_compare_begins() {
+    let mut harness = app("compare");
+    harness.step();
+    harness.get_by_label("Open drive-02").click();
+    harness.step();
+    let ctx = harness.ctx.clone();
+    let mut open = |text: &str| {
+        let state = harness.state_mut();
+        state.open(&ctx, "rig.toml", text.as_bytes());
+        wait_until_idle(&mut harness);
+        harness.state().hook_state()["compare"].clone()
+    };
+    let bad = open("kind = \"drive\"\n[parameters]\nJ9 = 1\n");
+    let message = bad["message"].as_str().expect("a sentence");
+    assert!(message.contains("rig.toml, line 3"), "{message}");
+    assert_eq!(bad["model"], serde_json::Value::Null);
+    let good = open("kind = \"drive\"\n[[effects]]\nid = \"coulomb_friction\"\n");
+    assert_eq!(good["model"], "rig.toml");
+    assert!(good["error"].as_f64().expect("an error") < 1.2, "{good}");
+    let verdict = good["verdict"].as_str().expect("a verdict");
+    assert!(verdict.contains("Nothing is missing"), "{verdict}");
+    harness.get_by_label("Begins with rig.toml");
+    harness.get_by_label("Forget it").click();
+    harness.step();
+    wait_until_idle(&mut harness);
+    assert!(error(&harness) > 2.0, "the baseline again");
+}
+
+#[test]
+fn an_effect_of_ones_own_is_typed_and_added() {
+    let mut harness = app("compare");
+    harness.step();
+    harness.get_by_label("Open process-02").click();
+    harness.step();
+    wait_until_idle(&mut harness);
+    // It stands below the fold.
+    harness
+        .get_by_label("An effect of your own")
+        .click_accesskit();
+    harness.run();
+    harness.get_by_label_contains("a process has no x");
+    let field = harness.get_by_label("F =");
+    field.focus();
+    harness.step();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.step();
+    harness.get_by_label("F =").type_text("a*t");
+    harness.run();
+    harness.get_by_label("To be fitted: a");
+    harness.get_by_label("Add your effect").click_accesskit();
+    harness.step();
+    wait_until_idle(&mut harness);
+    let state = harness.state().hook_state()["compare"].clone();
+    assert_eq!(state["effects"], serde_json::json!(["bump"]), "{state}");
+    assert_eq!(state["message"], serde_json::Value::Null);
+}
+
+#[test]
 fn explore_opens_on_an_oscillating_loop() {
     let mut harness = app("explore");
     harness.step();

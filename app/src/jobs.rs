@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Measurement;
+use hysteron_core::user_model::UserModel;
 
 pub use crate::tasks::News;
 use crate::tasks::{StepTask, Task};
@@ -24,17 +25,19 @@ impl<T: Task> Job<T> {
 }
 
 impl Job {
-    /// Criticises the baseline with `effects` on `measurement`.
+    /// Criticises the baseline, or the user's `model`, with `effects` on `measurement`.
     pub fn start(
         ctx: &egui::Context,
         measurement: &Arc<Measurement>,
         effects: &[EffectId],
+        model: Option<&UserModel>,
     ) -> Self {
         Self::run(
             ctx,
             StepTask {
                 measurement: Box::new((**measurement).clone()),
                 effects: effects.to_vec(),
+                model: model.cloned(),
             },
         )
     }

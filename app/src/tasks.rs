@@ -6,6 +6,7 @@ use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, MapJob, Tile};
 use hysteron_core::measurement::Measurement;
 use hysteron_core::tuning::{TuningInput, TuningReport, tune};
+use hysteron_core::user_model::UserModel;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +46,8 @@ pub struct StepTask {
     pub measurement: Box<Measurement>,
     /// Effects on top of the baseline.
     pub effects: Vec<EffectId>,
+    /// What the user knows of the model.
+    pub model: Option<UserModel>,
 }
 
 impl Task for StepTask {
@@ -52,7 +55,9 @@ impl Task for StepTask {
     type Report = StepReport;
 
     fn run(self, say: Say<'_, StepReport>) {
-        let mut job = match StepJob::new(&self.measurement, &self.effects) {
+        let blank = UserModel::blank(self.measurement.kind);
+        let model = self.model.as_ref().unwrap_or(&blank);
+        let mut job = match StepJob::with_model(&self.measurement, &self.effects, model) {
             Ok(job) => job,
             Err(error) => {
                 say(News::Failed(error.to_string()));

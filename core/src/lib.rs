@@ -18,7 +18,9 @@
 //! | [`measurement`] | what was measured? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
+//! | [`user_model`] | what does the user know of the model? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
+//! | [`report`] | what was found, on one page |
 #![warn(missing_docs)]
 
 pub mod criticism;
@@ -31,6 +33,8 @@ pub mod measurement;
 pub mod model;
 pub mod plant;
 pub mod relay;
+pub mod report;
 pub mod scenario;
 pub mod simulate;
 pub mod tuning;
+pub mod user_model;

@@ -163,6 +163,8 @@ pub enum Stranger {
     Warming { factor: f64 },
     /// One hard spot: drag of this torque (N m) within so many rad of the position.
     HardSpot { torque: f64, at: f64, width: f64 },
+    /// A torque that pushes back at one position: `-torque exp(-((x - at)/width)^2)`, N m and rad.
+    PositionBump { torque: f64, at: f64, width: f64 },
 }
 
 /// Which outputs are recorded.
@@ -312,6 +314,9 @@ impl DriveRig {
             Some(Stranger::Spring { stiffness }) => -stiffness * mid.x1,
             Some(Stranger::Warming { factor }) => {
                 -self.viscous * factor * t / (self.samples as f64 * SAMPLING) * mid.v1
+            }
+            Some(Stranger::PositionBump { torque, at, width }) => {
+                -torque * (-((mid.x1 - at) / width).powi(2)).exp()
             }
             Some(Stranger::HardSpot { torque, at, width }) => {
                 -(mid.v1 / 0.05).tanh() * torque * (-((mid.x1 - at) / width).powi(2)).exp()

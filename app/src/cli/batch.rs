@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError, mpsc};
 
 use serde::Serialize;
 
-use super::diagnose::{Arguments, Format, Report, one};
+use super::diagnose::{Arguments, Format, Report, Setup, one};
 
 /// A file that could not be diagnosed, as a line of JSON.
 #[derive(Serialize)]
@@ -24,8 +24,8 @@ struct BadFile<'a> {
 }
 
 /// Diagnoses all files, some at a time.
-pub(super) fn run(arguments: &Arguments) -> ExitCode {
-    match Batch::new(arguments).and_then(|batch| batch.run(arguments)) {
+pub(super) fn run(setup: &Setup) -> ExitCode {
+    match Batch::new(setup.arguments).and_then(|batch| batch.run(setup)) {
         Ok(code) => code,
         Err(Stop::BadInput(line)) => super::fail(&line, 2),
         Err(Stop::Output(error)) => super::write_error(&error),
@@ -81,7 +81,8 @@ impl Batch {
         })
     }
 
-    fn run(mut self, arguments: &Arguments) -> Result<ExitCode, Stop> {
+    fn run(mut self, setup: &Setup) -> Result<ExitCode, Stop> {
+        let arguments = setup.arguments;
         if self.skipped > 0 {
             let skipped = self.skipped;
             self.progress
@@ -99,7 +100,7 @@ impl Batch {
                 let (queue, sender) = (&queue, sender.clone());
                 scope.spawn(move || {
                     while let Some(file) = next(queue) {
-                        let report = one(&file, arguments, |_, _| {});
+                        let report = one(&file, setup, |_, _| {});
                         if sender.send((file, report)).is_err() {
                             return;
                         }

@@ -3,12 +3,15 @@
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::time::Instant;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
 use hysteron_core::measurement::{
     self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
 };
+use hysteron_core::report::{self, Provenance, ReportInput};
+use hysteron_core::user_model::UserModel;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -22,14 +25,27 @@ pub(super) struct Arguments {
     /// Which column is what: t, u, x1, v1, x2, v2 or y, its name in the file (- before it turns the sign), its
     /// unit; such as "t=time [ms],u=-current [A],x1=enc [counts:4096]"
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
-    map: Option<Mapping>,
+    map: Option<AsWritten<Mapping>>,
     /// What a current or voltage as input becomes, such as "0.05 N m/A"; without it all torques stand in
     /// multiples of it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    torque_constant: Option<TorqueConstant>,
+    torque_constant: Option<AsWritten<TorqueConstant>>,
     /// For a person or for a program; of many files one block or one line of JSON each
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
+    /// What is known of the model: parameters that are fixed or roughly known, effects that it has already
+    #[arg(long, value_name = "M.toml")]
+    model: Option<PathBuf>,
+    /// An effect of your own to be tried: a force as a formula of x, v, u, t (a process: y, u, t) with parameters
+    /// to fit, and where they start if you like: "bump: -a*exp(-((x-b)/c)^2); b = 0.5"
+    #[arg(long, value_name = "NAME: FORMULA", allow_hyphen_values = true)]
+    effect: Vec<String>,
+    /// Write the model with the effects that were found to this file, for --model
+    #[arg(long, value_name = "OUT.toml")]
+    save_model: Option<PathBuf>,
+    /// Write what was found to this file as a page with pictures, for a browser or a printer
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
     /// Add each result to this file as a line of JSON, and skip files whose result is there
     #[arg(long, value_name = "OUT")]
     pub resume: Option<PathBuf>,
@@ -54,20 +70,74 @@ pub(super) enum Format {
     Json,
 }
 
-/// One file by the contract of a single one; many files, or a file to resume from, as a batch.
-pub(super) fn run(arguments: &Arguments) -> ExitCode {
-    match (arguments.files.as_slice(), &arguments.resume) {
-        ([file], None) => super::finish(single(file, arguments)),
-        _ => super::batch::run(arguments),
+/// A value of an option and how it was written.
+#[derive(Clone, Debug)]
+pub(super) struct AsWritten<T> {
+    text: String,
+    value: T,
+}
+
+impl<T: FromStr> FromStr for AsWritten<T> {
+    type Err = T::Err;
+
+    fn from_str(text: &str) -> Result<Self, T::Err> {
+        Ok(Self {
+            text: text.to_owned(),
+            value: text.parse()?,
+        })
     }
 }
 
+/// One file by the contract of a single one; many files, or a file to resume from, as a batch.
+pub(super) fn run(arguments: &Arguments) -> ExitCode {
+    let model = match arguments.model.as_deref().map(read_model).transpose() {
+        Ok(model) => model,
+        Err(line) => return super::finish(Err(line)),
+    };
+    let setup = Setup { arguments, model };
+    match (arguments.files.as_slice(), &arguments.resume) {
+        ([file], None) => super::finish(single(file, &setup)),
+        _ if arguments.report.is_some() || arguments.save_model.is_some() => {
+            super::finish(Err(
+                "--report and --save-model write the result of one file: give one FILE, without --resume"
+                    .to_owned(),
+            ))
+        }
+        _ => super::batch::run(&setup),
+    }
+}
+
+/// What is asked, and the model that it begins with.
+pub(super) struct Setup<'a> {
+    pub arguments: &'a Arguments,
+    model: Option<UserModel>,
+}
+
+fn read_model(path: &Path) -> Result<UserModel, String> {
+    let shown = path.display();
+    let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let text =
+        str::from_utf8(&bytes).map_err(|_| format!("{shown}: a model must be UTF-8 text"))?;
+    UserModel::from_toml(text).map_err(|e| format!("{shown}, {e}"))
+}
+
 /// The report, or one line that says what is wrong with the input.
-fn single(file: &Path, arguments: &Arguments) -> Result<String, String> {
+fn single(file: &Path, setup: &Setup) -> Result<String, String> {
+    let arguments = setup.arguments;
     let mut line = ProgressLine::new();
-    let report = one(file, arguments, |fraction, text| line.show(fraction, text));
+    let report = one(file, setup, |fraction, text| line.show(fraction, text));
     line.clear();
     let report = report?;
+    let files = [
+        (&arguments.report, &report.page),
+        (&arguments.save_model, &report.model),
+    ];
+    for (path, text) in files {
+        if let (Some(path), Some(text)) = (path, text) {
+            std::fs::write(path, text)
+                .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
+        }
+    }
     match arguments.format {
         Format::Text => Ok(report.text(&report.name)),
         Format::Json => report.json().map_err(|e| {
@@ -85,6 +155,10 @@ pub(super) struct Report {
     /// What the import had to assume or leave out.
     notes: Vec<String>,
     diagnosis: Diagnosis,
+    /// As an HTML page, if that is wanted.
+    page: Option<String>,
+    /// The last model as a file, if that is wanted.
+    model: Option<String>,
 }
 
 /// A diagnosis as JSON, with what belongs to the file and not to it.
@@ -150,29 +224,93 @@ impl Report {
 /// Diagnoses one file; `show` hears of progress.
 pub(super) fn one(
     file: &Path,
-    arguments: &Arguments,
+    setup: &Setup,
     mut show: impl FnMut(f64, &str),
 ) -> Result<Report, String> {
+    let arguments = setup.arguments;
     let started = Instant::now();
-    let measurement = read(file, arguments)?;
+    let (measurement, bytes) = read(file, arguments)?;
     let name = measurement.name.clone();
-    let mut job = DiagnosisJob::new(&measurement).map_err(|e| format!("{name}: {e}"))?;
+    let blank = || UserModel::blank(measurement.kind);
+    let mut given = setup.model.clone().unwrap_or_else(blank);
+    for effect in &arguments.effect {
+        given
+            .add_candidate(effect)
+            .map_err(|e| format!("--effect: {e}"))?;
+    }
+    let mut job =
+        DiagnosisJob::with_model(&measurement, &given).map_err(|e| format!("{name}: {e}"))?;
     loop {
         match job.advance() {
             Progress::Running { fraction, text } => show(fraction, &text),
             Progress::Done(mut diagnosis) => {
                 diagnosis.seconds = started.elapsed().as_secs_f64();
+                let page = arguments.report.as_ref().and_then(|_| {
+                    let (first, last) = job.evidence()?;
+                    Some(report::html(&ReportInput {
+                        measurement: &measurement,
+                        steps: &diagnosis.steps,
+                        first_atlas: &first.atlas,
+                        last,
+                        verdict: Some(&diagnosis.verdict),
+                        model: (given != blank()).then_some(&given),
+                        provenance: &provenance(file, arguments, &bytes),
+                    }))
+                });
+                let last = diagnosis.steps.last();
+                let model = last.filter(|_| arguments.save_model.is_some()).map(|step| {
+                    UserModel::from_step(measurement.kind, step, Some(&given)).to_toml()
+                });
                 return Ok(Report {
                     name,
                     notes: measurement.warnings,
                     diagnosis,
+                    page,
+                    model,
                 });
             }
         }
     }
 }
 
-fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
+/// How the diagnosis of this file can be made again.
+fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
+    let mut command = format!(
+        "hysteron diagnose {}",
+        report::shell_word(&file.to_string_lossy())
+    );
+    let kind = arguments.kind.map(|kind| match kind {
+        Kind::Drive => "drive",
+        Kind::Process => "process",
+    });
+    let model = arguments.model.as_ref().map(|m| m.to_string_lossy());
+    let options = [
+        ("--kind", kind),
+        ("--model", model.as_deref()),
+        ("--map", arguments.map.as_ref().map(|m| m.text.as_str())),
+        (
+            "--torque-constant",
+            arguments.torque_constant.as_ref().map(|m| m.text.as_str()),
+        ),
+    ];
+    for (option, value) in options {
+        if let Some(value) = value {
+            command.push_str(&format!(" {option} {}", report::shell_word(value)));
+        }
+    }
+    for effect in &arguments.effect {
+        command.push_str(&format!(" --effect {}", report::shell_word(effect)));
+    }
+    Provenance {
+        command,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        bytes: bytes.len(),
+        sha256: report::sha256(bytes),
+    }
+}
+
+/// The measurement and the bytes that it was read from.
+fn read(path: &Path, arguments: &Arguments) -> Result<(Measurement, Vec<u8>), String> {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
@@ -190,10 +328,14 @@ fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
     });
     let options = ImportOptions {
         kind,
-        mapping: arguments.map.clone().unwrap_or_default(),
-        torque_constant: arguments.torque_constant,
+        mapping: arguments
+            .map
+            .as_ref()
+            .map_or_else(Mapping::default, |m| m.value.clone()),
+        torque_constant: arguments.torque_constant.as_ref().map(|c| c.value),
     };
-    import(&name, &bytes, &options).map_err(|e| e.to_string())
+    let measurement = import(&name, &bytes, &options).map_err(|e| e.to_string())?;
+    Ok((measurement, bytes))
 }
 
 /// One line on stderr that is written over again and again; nothing where stderr is no terminal.

@@ -98,7 +98,11 @@ impl Fit {
     ) -> Self {
         structure.clamp(&mut values, scales);
         let motion = simulate(data, &structure, &values, &starts);
+<<<<<<< HEAD
         let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE);
+=======
+        let cost = robust_cost(data, &motion) + structure.prior_cost(&values);
+>>>>>>> files
         let p = values.len();
         Self {
             structure,
@@ -124,9 +128,25 @@ impl Fit {
         let p = self.values.len();
         let steps = self.difference_steps(data, scales);
         let columns = self.columns(data, &steps, scales);
+<<<<<<< HEAD
         let scale = oddness(data, &self.motion);
         let (matrix, gradient, windows) = self.normal_equations(data, &columns, scale);
         let present = robust_cost(data, &self.motion, scale);
+=======
+        let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns);
+        let priors = self.structure.priors();
+        // The equations of the data stand for their cost divided by this.
+        let scale = if priors.is_empty() {
+            1.0
+        } else {
+            robust_scale(data, &self.motion)
+        };
+        for (j, value, tolerance) in &priors {
+            let weight = 1.0 / (scale * tolerance * tolerance);
+            matrix[(*j, *j)] += weight;
+            gradient[*j] += weight * (value - self.values[*j]);
+        }
+>>>>>>> files
         let mut lowered = false;
         while self.damping < MAX_DAMPING {
             let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
@@ -134,20 +154,30 @@ impl Fit {
                 self.damping *= 10.0;
                 continue;
             };
+<<<<<<< HEAD
             let (starts, motion) = self.motion_from(data, &values, starts, scale);
             let cost = robust_cost(data, &motion, scale);
             if cost <= present {
                 let fall = (present - cost) / present.max(f64::MIN_POSITIVE);
                 self.cost = robust_cost(data, &motion, ODD_MEAN_SQUARE);
                 (self.values, self.starts, self.motion) = (values, starts, motion);
+=======
+            let (starts, motion) = self.motion_from(data, &values, starts);
+            let cost = robust_cost(data, &motion) + self.structure.prior_cost(&values);
+            if cost <= self.cost {
+                let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
+                (self.values, self.starts, self.motion, self.cost) = (values, starts, motion, cost);
+>>>>>>> files
                 self.damping = (self.damping * 0.2).max(1e-9);
                 lowered = fall > COST_TOLERANCE;
                 break;
             }
             self.damping *= 6.0;
         }
-        let schur = reduced(&matrix, &gradient, &windows, data, p).0;
-        self.information = schur;
+        self.information = reduced(&matrix, &gradient, &windows, data, p).0;
+        for (j, _, tolerance) in &priors {
+            self.information[(*j, *j)] += (1.0 - 1.0 / scale) / (tolerance * tolerance);
+        }
         if !lowered {
             // Once more with long difference steps, which see past the kinks around a stall.
             self.stalls += 1;
@@ -178,7 +208,11 @@ impl Fit {
         scale: f64,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
+<<<<<<< HEAD
         if robust_cost(data, &moved, scale) <= robust_cost(data, &self.motion, scale) {
+=======
+        if robust_cost(data, &moved) + self.structure.prior_cost(values) <= self.cost {
+>>>>>>> files
             return (starts, moved);
         }
         let stayed = simulate(data, &self.structure, values, &self.starts);
@@ -219,12 +253,23 @@ impl Fit {
             position: slope(&moved.position, &self.motion.position, step),
             velocity: slope(&moved.velocity, &self.motion.velocity, step),
         };
+        let n = data.len();
+        let still = || Motion {
+            position: vec![0.0; n],
+            velocity: vec![0.0; n],
+        };
+        let fixed = self.structure.fixed();
         let mut columns: Vec<Motion> = steps
             .iter()
             .enumerate()
             .map(|(j, step)| {
+<<<<<<< HEAD
                 if j >= self.held {
                     return Motion::still(data.len());
+=======
+                if fixed[j] {
+                    return still();
+>>>>>>> files
                 }
                 let mut values = self.values.clone();
                 values[j] += step;
@@ -251,7 +296,11 @@ impl Fit {
         if data.has_position {
             columns.push(difference(moved(dx, 0.0), dx));
         } else {
+<<<<<<< HEAD
             columns.push(Motion::still(data.len()));
+=======
+            columns.push(still());
+>>>>>>> files
         }
         columns.push(difference(moved(0.0, dv), dv));
         columns
@@ -365,7 +414,8 @@ impl Fit {
         scales: &Scales,
     ) -> Option<Vec<f64>> {
         let p = self.values.len();
-        let mut fixed: Vec<Option<f64>> = vec![None; p];
+        let known = self.structure.fixed();
+        let mut fixed: Vec<Option<f64>> = known.iter().map(|f| f.then_some(0.0)).collect();
         loop {
             let free: Vec<usize> = (0..p).filter(|j| fixed[*j].is_none()).collect();
             let part = DMatrix::from_fn(free.len(), free.len(), |a, b| matrix[(free[a], free[b])]);
@@ -414,7 +464,11 @@ impl Fit {
             }
         }
         self.motion = simulate(data, &self.structure, &self.values, &self.starts);
+<<<<<<< HEAD
         self.cost = robust_cost(data, &self.motion, ODD_MEAN_SQUARE);
+=======
+        self.cost = robust_cost(data, &self.motion) + self.structure.prior_cost(&self.values);
+>>>>>>> files
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
@@ -447,33 +501,41 @@ impl Fit {
             }
             self.motion = simulate(data, &self.structure, &self.values, &self.starts);
         }
+<<<<<<< HEAD
         self.cost = robust_cost(data, &self.motion, ODD_MEAN_SQUARE);
+=======
+        self.cost = robust_cost(data, &self.motion) + self.structure.prior_cost(&self.values);
+>>>>>>> files
     }
 
-    /// Standard errors of the values: noise as found, with `inflation` of the variance.
+    /// Standard errors of the values: noise as found, with `inflation` of the variance; 0 for fixed ones.
     pub fn standard_errors(&self, inflation: f64) -> Vec<f64> {
         let p = self.values.len();
-        let mut scaled = self.information.clone();
-        let d: Vec<f64> = (0..p)
-            .map(|j| self.information[(j, j)].max(f64::MIN_POSITIVE).sqrt())
-            .collect();
-        for a in 0..p {
-            for b in 0..p {
-                scaled[(a, b)] /= d[a] * d[b];
-            }
+        let mut information = self.information.clone();
+        // The tolerance of a prior is as the user says: it does not grow with the residuals.
+        for (j, _, tolerance) in self.structure.priors() {
+            information[(j, j)] += (inflation - 1.0) / (tolerance * tolerance);
         }
-        for j in 0..p {
+        let fixed = self.structure.fixed();
+        let free: Vec<usize> = (0..p).filter(|j| !fixed[*j]).collect();
+        let d: Vec<f64> = free
+            .iter()
+            .map(|j| information[(*j, *j)].max(f64::MIN_POSITIVE).sqrt())
+            .collect();
+        let mut scaled = DMatrix::from_fn(free.len(), free.len(), |a, b| {
+            information[(free[a], free[b])] / (d[a] * d[b])
+        });
+        for j in 0..free.len() {
             scaled[(j, j)] += 1e-12;
         }
-        match scaled.cholesky() {
-            Some(c) => {
-                let inverse = c.inverse();
-                (0..p)
-                    .map(|j| (inverse[(j, j)] * inflation).sqrt() / d[j])
-                    .collect()
-            }
-            None => vec![f64::INFINITY; p],
+        let mut errors = vec![0.0; p];
+        let inverse = scaled.cholesky().map(|c| c.inverse());
+        for (a, j) in free.into_iter().enumerate() {
+            errors[j] = inverse
+                .as_ref()
+                .map_or(f64::INFINITY, |i| (i[(a, a)] * inflation).sqrt() / d[a]);
         }
+        errors
     }
 }
 
@@ -630,6 +692,22 @@ fn robust_cost(data: &Data, motion: &Motion, scale: f64) -> f64 {
     }
 }
 
+/// Change of [`robust_cost`] for a change of the squared residuals as [`window_weights`] weigh them.
+fn robust_scale(data: &Data, motion: &Motion) -> f64 {
+    let (mut logs, mut count) = (0.0, 0.0);
+    for (cost, n) in fitted_windows(data, motion) {
+        if n > 0.0 {
+            logs += n * (cost / (n * ODD_MEAN_SQUARE)).ln_1p();
+            count += n;
+        }
+    }
+    if count > 0.0 {
+        (logs / count).exp()
+    } else {
+        1.0
+    }
+}
+
 /// Weight of each window in the normal equations, from the derivative of [`robust_cost`].
 fn window_weights(data: &Data, motion: &Motion, scale: f64) -> Vec<f64> {
     fitted_windows(data, motion)
@@ -699,7 +777,7 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
         .map(|b| ((b.to - b.from) as f64 * outputs - own_states).max(1.0));
     let fit_cost = fit_cost(data, &fit.motion);
     let held_count = (count(true) - own(false)).max(1.0);
-    let fit_count = (count(false) - own(true) - fit.values.len() as f64).max(1.0);
+    let fit_count = (count(false) - own(true) - fit.structure.free_count() as f64).max(1.0);
     Score {
         error: (held_blocks.iter().sum::<f64>() / held_count).sqrt(),
         error_fit: (fit_cost / fit_count).sqrt(),

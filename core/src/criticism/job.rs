@@ -2,9 +2,10 @@
 
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
-use super::{Diagnosis, Step};
-use crate::effect::EffectId;
+use super::{Diagnosis, Step, StepReport};
+use crate::effect::{EffectId, FormulaError};
 use crate::measurement::Measurement;
+use crate::user_model::UserModel;
 
 /// Most effects that a diagnosis adds; a model that needs more is not this one.
 const MAX_EFFECTS: usize = 6;
@@ -54,6 +55,32 @@ pub enum CriticismError {
         /// Its name in the file.
         name: String,
     },
+    /// A model of another kind of system.
+    #[error("the model is of a {model}, the measurement of a {measured}")]
+    WrongKind {
+        /// What the model is of.
+        model: &'static str,
+        /// What was measured.
+        measured: &'static str,
+    },
+    /// A known parameter in another unit than this measurement gives it.
+    #[error("the model gives {symbol} in {said}, but with this measurement it is in {unit}")]
+    WrongUnit {
+        /// Symbol of the parameter.
+        symbol: String,
+        /// Unit in the model.
+        said: String,
+        /// Unit with this measurement.
+        unit: String,
+    },
+    /// An effect of the user's own that cannot be made.
+    #[error("{name}, {error}")]
+    OwnEffect {
+        /// Its name.
+        name: String,
+        /// What is wrong with its formula.
+        error: FormulaError,
+    },
     /// An effect that makes no sense for this kind of system.
     #[error("{effect} cannot be added to this kind of system")]
     WrongEffect {
@@ -80,15 +107,27 @@ pub struct DiagnosisJob {
     detours_taken: usize,
     /// Whether the present way began with an effect that was not seen clearly.
     bold: bool,
-    /// The best that came to an end without explaining everything.
-    unfinished: Option<Diagnosis>,
+    /// The best that came to an end without explaining everything, and the report on its last model.
+    unfinished: Option<(Diagnosis, Option<StepReport>)>,
+    /// Report on the baseline, without its curves.
+    first: Option<StepReport>,
+    /// Report on the last model.
+    last: Option<StepReport>,
 }
 
 impl DiagnosisJob {
     /// Prepares a diagnosis.
     pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
+        Self::with_model(measurement, &UserModel::blank(measurement.kind))
+    }
+
+    /// Prepares a diagnosis that begins with what the user knows.
+    pub fn with_model(
+        measurement: &Measurement,
+        model: &UserModel,
+    ) -> Result<Self, CriticismError> {
         Ok(Self {
-            job: Some(StepJob::new(measurement, &[])?),
+            job: Some(StepJob::with_model(measurement, &[], model)?),
             diagnosis: Diagnosis {
                 schema: 1,
                 kind: measurement.kind,
@@ -100,6 +139,7 @@ impl DiagnosisJob {
                     complete: false,
                     unknown: false,
                     next_experiment: None,
+                    contradicted: Vec::new(),
                     text: String::new(),
                 },
                 seconds: 0.0,
@@ -108,6 +148,8 @@ impl DiagnosisJob {
             detours_taken: 0,
             bold: false,
             unfinished: None,
+            first: None,
+            last: None,
         })
     }
 
@@ -127,7 +169,10 @@ impl DiagnosisJob {
         };
         let effects = report.step.effects.len();
         let before = self.diagnosis.steps.len();
-        self.diagnosis.steps.push(report.step);
+        self.diagnosis.steps.push(report.step.clone());
+        if self.first.is_none() {
+            self.first = Some(without_curves(&report));
+        }
         let Some(job) = self.job.take() else {
             return Progress::Done(self.diagnosis.clone());
         };
@@ -151,13 +196,21 @@ impl DiagnosisJob {
         }
         let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
-        match (report.verdict, next) {
+        let verdict = report.verdict.clone();
+        if verdict.as_ref().is_some_and(|v| !v.contradicted.is_empty()) {
+            // Wrong values are to be put right; no other way round them is looked for.
+            self.detours.clear();
+            self.unfinished = None;
+        }
+        self.last = Some(report);
+        match (verdict, next) {
             (_, Some(model)) if !ended => {
                 self.job = Some(StepJob::from_fit(session, model));
             }
             (verdict, _) => {
-                self.diagnosis.verdict =
-                    verdict.unwrap_or_else(|| super::verdict::undecided(&self.diagnosis.steps));
+                self.diagnosis.verdict = verdict.unwrap_or_else(|| {
+                    super::verdict::undecided(&self.diagnosis.steps, session.knowledge.present())
+                });
                 if let Some(done) = self.end_of_way(session) {
                     return Progress::Done(done);
                 }
@@ -176,13 +229,13 @@ impl DiagnosisJob {
         let better = self
             .unfinished
             .take()
-            .filter(|other| self.bold || DETOUR_GAIN * error(other) <= error(&self.diagnosis));
+            .filter(|other| self.bold || DETOUR_GAIN * error(&other.0) <= error(&self.diagnosis));
         let best = match better {
             Some(other) if !self.diagnosis.verdict.complete => other,
-            _ => self.diagnosis.clone(),
+            _ => (self.diagnosis.clone(), self.last.take()),
         };
-        if best.verdict.complete || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
-            self.diagnosis = best;
+        if best.0.verdict.complete || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
+            (self.diagnosis, self.last) = best;
             return Some(self.diagnosis.clone());
         }
         self.unfinished = Some(best);
@@ -192,5 +245,26 @@ impl DiagnosisJob {
         self.bold = detour.bold;
         self.job = Some(StepJob::from_fit(session, detour.model));
         None
+    }
+
+    /// Once it is done: the reports on the baseline (without its curves) and on the last model.
+    pub fn evidence(&self) -> Option<(&StepReport, &StepReport)> {
+        self.first.as_ref().zip(self.last.as_ref())
+    }
+}
+
+/// The report without what is as long as the measurement.
+fn without_curves(report: &StepReport) -> StepReport {
+    StepReport {
+        step: report.step.clone(),
+        replay: super::Replay {
+            channels: Vec::new(),
+            window_starts: Vec::new(),
+        },
+        atlas: report.atlas.clone(),
+        verdict: report.verdict.clone(),
+        needless: report.needless.clone(),
+        missing: report.missing.clone(),
+        ..*report
     }
 }

@@ -21,9 +21,9 @@ const MAX_FINDINGS: usize = 4;
 const RELAY_LEVELS: usize = 6;
 
 /// One axis: a value for every sample, `NaN` where it has none.
-struct Axis {
-    name: &'static str,
-    values: Vec<f64>,
+pub(super) struct Axis {
+    pub name: &'static str,
+    pub values: Vec<f64>,
     say: fn(f64, f64, bool) -> String,
 }
 
@@ -61,7 +61,8 @@ pub(super) fn locate(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<F
     findings
 }
 
-fn axes(data: &Data, motion: &Motion) -> Vec<Axis> {
+/// Every axis on which the residual is looked at.
+pub(super) fn axes(data: &Data, motion: &Motion) -> Vec<Axis> {
     let time = &data.time;
     let switches: Vec<bool> = (0..data.len())
         .map(|i| i > 0 && data.input[i] != data.input[i - 1])

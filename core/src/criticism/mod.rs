@@ -1,10 +1,13 @@
 //! Where does the model fail, which effect is missing, how much, how sure?
 
+mod atlas;
 mod baseline;
 mod data;
 mod fit;
 mod job;
+mod knowledge;
 mod locate;
+mod missing;
 mod noise;
 mod race;
 mod report;
@@ -15,10 +18,14 @@ mod step;
 mod structure;
 mod verdict;
 
+pub use atlas::{Profile, ProfileBin};
 pub use job::{CriticismError, DiagnosisJob, Progress};
+pub use knowledge::baseline_symbols;
+pub use missing::MissingPart;
 pub use noise::noise_level;
 pub use report::{
-    Candidate, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step, StepReport, Verdict,
+    Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
+    StepReport, Verdict,
 };
 pub use step::StepJob;
 pub use verdict::with_error;

@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{MissingPart, Profile};
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Quantity};
+use crate::user_model::Status;
 
 /// A fitted parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,6 +22,28 @@ pub struct Parameter {
     pub std_error: f64,
     /// SI unit.
     pub unit: String,
+    /// Whether it was fitted freely, with a prior, or not at all.
+    #[serde(default, skip_serializing_if = "Status::is_free")]
+    pub status: Status,
+}
+
+/// A known value that the data contradict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contradiction {
+    /// The effect that it belongs to; `None` for the baseline model.
+    pub effect: Option<EffectId>,
+    /// Its symbol.
+    pub name: String,
+    /// The value that the user's model holds, in `unit`.
+    pub held: f64,
+    /// The value that the data want, in `unit`.
+    pub wanted: f64,
+    /// Standard error of the latter.
+    pub std_error: f64,
+    /// SI unit.
+    pub unit: String,
+    /// Held-back error with the known values released, in noise units.
+    pub error: f64,
 }
 
 /// A region in which the error concentrates.
@@ -88,6 +112,9 @@ pub struct Verdict {
     pub unknown: bool,
     /// The experiment that would separate the classes, in words.
     pub next_experiment: Option<String>,
+    /// Known values that the data contradict; nothing is added before they are right.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contradicted: Vec<Contradiction>,
     /// The verdict in plain words.
     pub text: String,
 }
@@ -144,10 +171,15 @@ pub struct StepReport {
     pub noise_floor: f64,
     /// Curves for the plots.
     pub replay: Replay,
+    /// The residual over every axis.
+    pub atlas: Vec<Profile>,
     /// The effect that data say should be added next, if any.
     pub suggestion: Option<EffectId>,
     /// Effects in the model that data say are not needed.
     pub needless: Vec<EffectId>,
+    /// Where the verdict is unknown: what is missing, estimated without a model, the likeliest first.
+    #[serde(default)]
+    pub missing: Vec<MissingPart>,
     /// Present when nothing should be added: what is missing from the baseline, and how sure.
     pub verdict: Option<Verdict>,
 }

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use super::baseline;
 use super::data::Data;
 use super::fit::Fit;
+use super::knowledge::Knowledge;
 use super::structure::Structure;
 use crate::effect::{Effect, Probe, Scales};
 use crate::model::Start;
@@ -52,11 +53,12 @@ pub(super) struct Search {
 
 impl Search {
     /// Fits the baseline from a regression.
-    pub fn baseline(data: &Data) -> Self {
-        let structure = Structure::new(data.kind, Vec::new());
+    pub fn baseline(data: &Data, knowledge: &Knowledge) -> Self {
+        let structure = Structure::new(data.kind, Vec::new(), knowledge.clone());
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
         let guess = baseline::guess(data, &data.excitation.effective_input(&plain));
-        let values = guess.unwrap_or_else(|| vec![1.0, 1.0]);
+        let mut values = guess.unwrap_or_else(|| vec![1.0, 1.0]);
+        structure.begin(&mut values, 0);
         Self::from_points(
             structure,
             vec![(values, data.guessed_starts())],
@@ -104,6 +106,7 @@ impl Search {
         for start in effect.starts(probe) {
             let mut values = kept.clone();
             values.extend(&start);
+            structure.begin(&mut values, kept.len());
             points.push((values.clone(), fit.starts.clone()));
             points.extend(Self::regressed(data, fit, &structure, values));
         }

@@ -1,13 +1,18 @@
 //! What all fits on one measurement share: its data, sizes, units, and how a fit becomes a report.
 
+use super::atlas::atlas;
 use super::baseline;
 use super::data::Data;
 use super::fit::{Fit, Score, score};
+use super::knowledge::{self, Knowledge};
 use super::locate::locate;
 use super::select::is_noise;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
-use crate::effect::{EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales};
+use crate::effect::{
+    self, Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales,
+};
 use crate::measurement::{Kind, Measurement, Quantity};
+use crate::user_model::{Status, UserModel};
 
 /// A fit with its score.
 #[derive(Clone)]
@@ -29,6 +34,10 @@ pub(super) struct Session {
     full: Option<Data>,
     /// Score of the baseline, once it is fitted.
     pub baseline: Option<Score>,
+    /// What the user knows beforehand.
+    pub knowledge: Knowledge,
+    /// Effects of the user's own.
+    own: Vec<&'static dyn Effect>,
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
@@ -38,7 +47,8 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
+    pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
+        knowledge::check(model, measurement)?;
         let data = Data::new(measurement)?;
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
         let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
@@ -49,6 +59,16 @@ impl Session {
         Ok(Self {
             scales,
             scout: compared.scout(),
+            knowledge: Knowledge::of(model),
+            own: model
+                .formulas()
+                .map(|formula| {
+                    formula.effect(model.kind).map_err(|error| {
+                        let name = formula.name.clone();
+                        CriticismError::OwnEffect { name, error }
+                    })
+                })
+                .collect::<Result<_, _>>()?,
             baseline: None,
             full: (compared.used() < data.used()).then_some(data),
             data: compared,
@@ -62,9 +82,74 @@ impl Session {
         })
     }
 
+    /// Effects that may be in a model: those of the library and the user's own.
+    pub fn library(&self) -> impl Iterator<Item = &'static dyn Effect> {
+        effect::for_kind(self.kind()).chain(self.own.iter().copied())
+    }
+
+    /// One of them.
+    pub fn find(&self, id: EffectId) -> Option<&'static dyn Effect> {
+        self.library().find(|e| e.id() == id)
+    }
+
+    /// Checks the units that the user's model says, its effects being among `effects`.
+    pub fn check_units(&self, effects: &[&'static dyn Effect]) -> Result<(), CriticismError> {
+        let baseline = baseline::parameters(self.kind())
+            .iter()
+            .map(|p| (None, p.symbol, self.unit_of(p.dimension)));
+        let own = effects.iter().flat_map(|e| {
+            e.parameters().iter().map(|spec| {
+                (
+                    Some(e.id()),
+                    spec.symbol,
+                    self.unit_of(Some(spec.dimension)),
+                )
+            })
+        });
+        for (owner, symbol, unit) in baseline.chain(own) {
+            let said = self.knowledge.find(owner, symbol);
+            if let Some(said) = said.and_then(|k| k.unit.as_ref()).filter(|u| **u != unit) {
+                return Err(CriticismError::WrongUnit {
+                    symbol: symbol.to_owned(),
+                    said: said.clone(),
+                    unit,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Unit of a parameter; without a dimension that of a process gain.
+    pub fn unit_of(&self, dimension: Option<Dimension>) -> String {
+        let output = self.outputs.first().map_or("1", |o| o.2.as_str());
+        if let Some(Dimension::Compound {
+            force,
+            position,
+            output: power,
+            time,
+        }) = dimension
+        {
+            let unit = |d: Dimension| baseline::unit(d, self.motion, &self.input_unit);
+            return compound(&[
+                (unit(Dimension::Force), force),
+                (unit(Dimension::Position), position),
+                (output.to_owned(), power),
+                ("s".to_owned(), time),
+            ]);
+        }
+        dimension.map_or_else(
+            || baseline::gain_unit(&self.input_unit, output),
+            |d| baseline::unit(d, self.motion, &self.input_unit),
+        )
+    }
+
     /// What `fit` leaves unexplained, as a force.
     pub fn probe(&self, fit: &Fit) -> Probe {
-        let data = &self.data;
+        self.probe_of(&self.data, fit)
+    }
+
+    /// The same of a fit on these data.
+    pub fn probe_of(&self, data: &Data, fit: &Fit) -> Probe {
         let model = fit.structure.model(&fit.values);
         let outputs: Vec<ProbeOutput> = data
             .outputs
@@ -160,7 +245,8 @@ impl Session {
         let Scored { fit, score } = scored;
         let inflation = score.error_fit.powi(2).max(1.0) * score.correlation.max(1.0);
         let errors = fit.standard_errors(inflation);
-        let output_unit = self.outputs.first().map_or("1", |o| o.2.as_str());
+        let known = fit.structure.known();
+        let status = |j: usize| known[j].map_or(Status::Free, |k| k.status);
         let mut parameters: Vec<Parameter> = baseline::parameters(self.kind())
             .iter()
             .enumerate()
@@ -170,10 +256,8 @@ impl Session {
                 label: p.label.to_owned(),
                 value: fit.values[j],
                 std_error: errors[j],
-                unit: p.dimension.map_or_else(
-                    || baseline::gain_unit(&self.input_unit, output_unit),
-                    |d| baseline::unit(d, self.motion, &self.input_unit),
-                ),
+                status: status(j),
+                unit: self.unit_of(p.dimension),
             })
             .collect();
         for (index, effect) in fit.structure.effects.iter().enumerate() {
@@ -184,7 +268,8 @@ impl Session {
                     label: spec.label.to_owned(),
                     value: fit.values[j],
                     std_error: errors[j],
-                    unit: baseline::unit(spec.dimension, self.motion, &self.input_unit),
+                    status: status(j),
+                    unit: self.unit_of(Some(spec.dimension)),
                 });
             }
         }
@@ -196,12 +281,27 @@ impl Session {
         if is_noise(&scored.score, self.first(scored)) {
             return Vec::new();
         }
-        let unit = self
-            .outputs
+        locate(self.whole(), &scored.fit.motion, self.output_unit())
+    }
+
+    /// The residual over every axis.
+    pub fn atlas(&self, fit: &Fit) -> Vec<super::Profile> {
+        atlas(self.whole(), &fit.motion, self.output_unit())
+    }
+
+    /// Unit of the velocity, or of the output of a process.
+    pub fn output_unit(&self) -> &str {
+        self.outputs
             .iter()
             .find(|o| o.0 != Quantity::Position)
-            .map_or_else(|| self.velocity_unit(), |o| o.2.as_str());
-        locate(self.whole(), &scored.fit.motion, unit)
+            .map_or_else(|| self.velocity_unit(), |o| o.2.as_str())
+    }
+
+    /// Name and unit of an output.
+    pub fn output_name(&self, index: usize) -> (&str, &str) {
+        self.outputs
+            .get(index)
+            .map_or(("output", "1"), |(_, name, unit)| (name, unit))
     }
 
     fn velocity_unit(&self) -> &'static str {
@@ -229,5 +329,29 @@ impl Session {
                 .collect(),
             window_starts: self.whole().windows.clone(),
         }
+    }
+}
+
+/// A product of powers of units, such as `N m s^2/rad`.
+fn compound(parts: &[(String, i8)]) -> String {
+    let side = |sign: i8| -> Vec<String> {
+        let own = parts
+            .iter()
+            .filter(|(unit, power)| power * sign > 0 && unit != "1");
+        own.map(|(unit, power)| match power.abs() {
+            1 => unit.clone(),
+            n if unit.contains(' ') => format!("({unit})^{n}"),
+            n => format!("{unit}^{n}"),
+        })
+        .collect()
+    };
+    let (above, below) = (side(1).join(" "), side(-1));
+    match (above.as_str(), below.as_slice()) {
+        ("", []) => "1".to_owned(),
+        (above, []) => above.to_owned(),
+        ("", [one]) => format!("1/{one}"),
+        ("", many) => format!("1/({})", many.join(" ")),
+        (above, [one]) => format!("{above}/{one}"),
+        (above, many) => format!("{above}/({})", many.join(" ")),
     }
 }

@@ -1,13 +1,16 @@
 //! One step of a diagnosis: fits one model and tries every effect on top of it.
 
+use super::knowledge::contradictions;
+use super::missing::missing_parts;
 use super::race::Race;
 use super::search::Search;
 use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same};
 use super::session::{Scored, Session};
-use super::verdict::{Class, verdict};
-use super::{Candidate, CriticismError, Progress, Step, StepReport};
+use super::verdict::{Class, add_idle, verdict};
+use super::{Candidate, Contradiction, CriticismError, Progress, Step, StepReport};
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::{Kind, Measurement};
+use crate::user_model::UserModel;
 
 /// Error of a perfect model in noise units.
 pub(super) const NOISE_FLOOR: f64 = 1.0;
@@ -38,6 +41,8 @@ pub struct StepJob {
     tried: Vec<(&'static dyn Effect, Scored)>,
     without: Vec<Scored>,
     classes: Vec<Class>,
+    /// Known values that the data contradict.
+    contradicted: Vec<Contradiction>,
     /// The model with an effect replaced by a part of it that does as well.
     simpler: Option<Scored>,
 }
@@ -50,17 +55,30 @@ fn nested(a: &dyn Effect, b: &dyn Effect) -> bool {
 impl StepJob {
     /// The baseline plus `effects` (in the order in which the user added them) on `measurement`.
     pub fn new(measurement: &Measurement, effects: &[EffectId]) -> Result<Self, CriticismError> {
-        let session = Session::new(measurement)?;
-        let wanted = effects
+        Self::with_model(measurement, effects, &UserModel::blank(measurement.kind))
+    }
+
+    /// The same on top of what the user knows: its effects come first and are never taken out.
+    pub fn with_model(
+        measurement: &Measurement,
+        effects: &[EffectId],
+        model: &UserModel,
+    ) -> Result<Self, CriticismError> {
+        let session = Session::new(measurement, model)?;
+        let present = model.present();
+        let added = effects.iter().filter(|id| !present.contains(id));
+        let wanted = present
             .iter()
+            .chain(added)
             .filter(|id| **id != effect::VISCOUS_FRICTION)
             .map(|id| {
-                effect::find(*id)
-                    .filter(|e| e.kinds().contains(&measurement.kind))
+                session
+                    .find(*id)
                     .ok_or(CriticismError::WrongEffect { effect: *id })
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let search = Search::baseline(&session.data);
+        session.check_units(&wanted)?;
+        let search = Search::baseline(&session.data, &session.knowledge);
         Ok(Self::of(session, wanted, Stage::Build { search, next: 0 }))
     }
 
@@ -73,6 +91,7 @@ impl StepJob {
             tried: Vec::new(),
             without: Vec::new(),
             classes: Vec::new(),
+            contradicted: Vec::new(),
             simpler: None,
         }
     }
@@ -87,7 +106,8 @@ impl StepJob {
 
     /// Effects that could be added: not in the model, nor contained in one that is.
     fn others(&self) -> Vec<&'static dyn Effect> {
-        effect::for_kind(self.session.kind())
+        self.session
+            .library()
             .filter(|e| {
                 self.wanted
                     .iter()
@@ -100,7 +120,8 @@ impl StepJob {
     /// contains may be enough.
     fn rivals(&self, place: usize) -> Vec<&'static dyn Effect> {
         let own = self.wanted.get(place);
-        effect::for_kind(self.session.kind())
+        self.session
+            .library()
             .filter(|e| {
                 own.is_some_and(|own| !nested(*own, *e) || own.contains().contains(&e.id()))
                     && self
@@ -173,6 +194,7 @@ impl StepJob {
                     .into_iter()
                     .map(|(effect, fit)| (effect, self.session.scored(fit)))
                     .collect();
+                self.contradicted = self.contradictions();
                 self.remove_stage(0)
             }
             Stage::Remove { index, search } => {
@@ -210,9 +232,15 @@ impl StepJob {
         let Some(model) = &self.model else {
             return Stage::Report;
         };
-        if self.suggestion(model).is_some() || !self.needless(model).is_empty() {
+        if !self.contradicted.is_empty()
+            || self.suggestion(model).is_some()
+            || !self.needless(model).is_empty()
+        {
             return Stage::Report;
         }
+        // What the user says is in the model is not up for exchange.
+        let mut rest = (place..self.wanted.len()).skip_while(|k| self.is_present(*k));
+        let place = rest.next().unwrap_or(self.wanted.len());
         match self.without.get(place) {
             Some(without) => Stage::Swap {
                 place,
@@ -225,6 +253,12 @@ impl StepJob {
             },
             None => Stage::Report,
         }
+    }
+
+    /// Whether the effect at `place` is part of the user's model.
+    fn is_present(&self, place: usize) -> bool {
+        let id = self.wanted.get(place).map(|e| e.id());
+        id.is_some_and(|id| self.session.knowledge.has(id))
     }
 
     fn judge_swaps(&mut self, place: usize, fits: Vec<(&'static dyn Effect, super::fit::Fit)>) {
@@ -248,9 +282,23 @@ impl StepJob {
         self.classes.push(class);
     }
 
+    /// Known values that the data contradict more than they want any effect.
+    fn contradictions(&self) -> Vec<Contradiction> {
+        let Some(model) = &self.model else {
+            return Vec::new();
+        };
+        let best = self
+            .suggestion(model)
+            .map_or(f64::INFINITY, |(_, s)| s.score.error);
+        contradictions(&self.session, model, best)
+    }
+
     /// The effect to add next: the best that helps; of equals the one with fewer parameters, or that stands
     /// first in the registry.
     fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
+        if !self.contradicted.is_empty() {
+            return None;
+        }
         // A part of an effect that leaves nothing but noise is not widened to the whole.
         let settled = is_plain_noise(&model.score);
         let widens = |e: &dyn Effect| self.wanted.iter().any(|w| e.contains().contains(&w.id()));
@@ -273,14 +321,23 @@ impl StepJob {
             .or(Some(best))
     }
 
-    /// Effects without which the held-back error does not rise.
+    /// Effects without which the held-back error does not rise; those of the user's model stay.
     fn needless(&self, model: &Scored) -> Vec<EffectId> {
+        if !self.contradicted.is_empty() {
+            return Vec::new();
+        }
+        let (_, own) = self.idle(model);
+        own
+    }
+
+    /// Effects without which the held-back error does not rise: of the user's model, and others.
+    fn idle(&self, model: &Scored) -> (Vec<EffectId>, Vec<EffectId>) {
         self.wanted
             .iter()
             .zip(&self.without)
             .filter(|(_, without)| !helps(&without.score, &model.score))
             .map(|(e, _)| e.id())
-            .collect()
+            .partition(|id| self.session.knowledge.has(*id))
     }
 
     fn progress(&self) -> (f64, String) {
@@ -310,15 +367,33 @@ impl StepJob {
         let whole = self.session.completed(model);
         let parameters = self.session.parameters(&whole);
         let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
-            verdict(
-                &self.wanted,
-                &self.classes,
+            let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
+            let (added, classes): (Vec<_>, Vec<_>) = places
+                .map(|k| {
+                    (
+                        self.wanted[k],
+                        self.classes.get(k).cloned().unwrap_or_default(),
+                    )
+                })
+                .unzip();
+            let mut verdict = verdict(
+                &added,
+                &classes,
                 &parameters,
                 &whole,
                 is_noise(&whole.score, self.session.first(&whole)),
-            )
+                self.contradicted.clone(),
+            );
+            add_idle(&mut verdict, &self.idle(model).0);
+            verdict
         });
+        let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
         Some(StepReport {
+            missing: if unknown {
+                missing_parts(&self.session, &whole)
+            } else {
+                Vec::new()
+            },
             step: Step {
                 effects: self.session.effects(&model.fit),
                 error: whole.score.error,
@@ -329,6 +404,7 @@ impl StepJob {
             },
             noise_floor: NOISE_FLOOR,
             replay: self.session.replay(&whole.fit),
+            atlas: self.session.atlas(&whole.fit),
             suggestion,
             needless,
             verdict,
@@ -412,7 +488,7 @@ impl StepJob {
     /// Models with an effect that lowers the error much, though not beyond chance while the rest is as
     /// correlated as it is: the best first. Two missing effects may hide each other so.
     pub(super) fn faint(&self, count: usize) -> Vec<Scored> {
-        let Some(model) = &self.model else {
+        let Some(model) = self.model.as_ref().filter(|_| self.contradicted.is_empty()) else {
             return Vec::new();
         };
         let mut seen: Vec<&Scored> = self

@@ -1,9 +1,11 @@
 //! A model structure: which baseline, which effects, and how a vector of values becomes a model.
 
 use super::baseline;
+use super::knowledge::Knowledge;
 use crate::effect::{Effect, Scales};
 use crate::measurement::Kind;
 use crate::model::Model;
+use crate::user_model::Status;
 
 /// Share of a parameter, or of its typical size, by which it is moved for a finite difference: large
 /// enough to average over the kinks that switching makes in the error, small against its curvature.
@@ -20,11 +22,16 @@ const STEP_FACTOR: f64 = 4.0;
 pub(super) struct Structure {
     pub kind: Kind,
     pub effects: Vec<&'static dyn Effect>,
+    pub knowledge: Knowledge,
 }
 
 impl Structure {
-    pub fn new(kind: Kind, effects: Vec<&'static dyn Effect>) -> Self {
-        Self { kind, effects }
+    pub fn new(kind: Kind, effects: Vec<&'static dyn Effect>, knowledge: Knowledge) -> Self {
+        Self {
+            kind,
+            effects,
+            knowledge,
+        }
     }
 
     /// The same with one more effect.
@@ -84,6 +91,11 @@ impl Structure {
             let range = self.range(index);
             for (value, spec) in values[range].iter_mut().zip(effect.parameters()) {
                 *value = spec.clamp(*value, scales);
+            }
+        }
+        for (value, known) in values.iter_mut().zip(self.known()) {
+            if let Some(known) = known.filter(|k| k.status == Status::Fixed) {
+                *value = known.value;
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::session::Scored;
-use super::{Parameter, Step, Verdict};
+use super::{Contradiction, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId};
 
 /// Effects that could stand in the place of one in the model.
@@ -16,6 +16,7 @@ pub(super) fn verdict(
     parameters: &[Parameter],
     model: &Scored,
     complete: bool,
+    contradicted: Vec<Contradiction>,
 ) -> Verdict {
     let missing: Vec<Vec<EffectId>> = wanted
         .iter()
@@ -35,6 +36,9 @@ pub(super) fn verdict(
             .collect();
         format!("Missing: {}. ", list.join("; "))
     };
+    if !contradicted.is_empty() {
+        return contradiction(missing, contradicted, text, model.score.error);
+    }
     text.push_str(match (missing.is_empty(), complete) {
         (true, true) => "Nothing is missing: what the model leaves is measurement noise.",
         (false, true) => "With that, what is left is measurement noise.",
@@ -57,8 +61,58 @@ pub(super) fn verdict(
         complete,
         unknown: !complete,
         next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
+        contradicted,
         text,
     }
+}
+
+/// The verdict where the data contradict what the user's model holds.
+fn contradiction(
+    missing: Vec<Vec<EffectId>>,
+    contradicted: Vec<Contradiction>,
+    mut text: String,
+    error: f64,
+) -> Verdict {
+    for c in &contradicted {
+        let unit = if c.unit == "1" { "" } else { &c.unit };
+        let _ = write!(
+            text,
+            "The model holds {} = {:.4e} {unit}, but these data want {}. ",
+            c.name,
+            c.held,
+            with_error(c.wanted, c.std_error, unit)
+        );
+    }
+    let released = contradicted.first().map_or(error, |c| c.error);
+    let _ = write!(
+        text,
+        "With the known values released the error falls from {error:.2} to {released:.2} times the noise: correct or \
+         free them before looking for effects."
+    );
+    Verdict {
+        missing,
+        complete: false,
+        unknown: false,
+        next_experiment: None,
+        contradicted,
+        text,
+    }
+}
+
+/// Says which effects of the user's model the data do not need.
+pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId]) {
+    if idle.is_empty() {
+        return;
+    }
+    let names: Vec<&str> = idle
+        .iter()
+        .map(|id| effect::find(*id).map_or(id.as_str(), |e| e.name()))
+        .collect();
+    let _ = write!(
+        verdict.text,
+        " In the model, but without a trace in these data: {}.",
+        names.join(", ")
+    );
 }
 
 /// For effects that act alike in one experiment.
@@ -66,12 +120,12 @@ const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than
     staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
 
 /// The verdict where a diagnosis was stopped before it settled.
-pub(super) fn undecided(steps: &[Step]) -> Verdict {
+pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
     let last = steps.iter().min_by(|a, b| a.error.total_cmp(&b.error));
     let missing = last.map_or_else(Vec::new, |step| {
         step.effects
             .iter()
-            .filter(|e| **e != effect::VISCOUS_FRICTION)
+            .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
             .map(|e| vec![*e])
             .collect()
     });
@@ -80,6 +134,7 @@ pub(super) fn undecided(steps: &[Step]) -> Verdict {
         complete: false,
         unknown: true,
         next_experiment: None,
+        contradicted: Vec::new(),
         text: "Many effects help a little and none explains the rest: the model structure itself may be wrong.".to_owned(),
     }
 }
@@ -137,7 +192,11 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
 }
 
 fn in_registry_order(mut ids: Vec<EffectId>) -> Vec<EffectId> {
-    ids.sort_by_key(|id| effect::registry().iter().position(|e| e.id() == *id));
+    // Effects of the user's own come last.
+    ids.sort_by_key(|id| {
+        let at = effect::registry().iter().position(|e| e.id() == *id);
+        at.unwrap_or(usize::MAX)
+    });
     ids
 }
 

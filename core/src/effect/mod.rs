@@ -6,6 +6,7 @@ mod cogging;
 mod constant_load;
 mod coulomb_friction;
 mod dead_zone;
+mod formula;
 mod gain_asymmetry;
 mod id;
 mod input_delay;
@@ -21,7 +22,9 @@ mod spec;
 mod static_curvature;
 mod stribeck_friction;
 
+pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub use id::{EffectId, VISCOUS_FRICTION};
+pub use probe::{Place, StepPart, Steps};
 pub use probe::{Probe, ProbeInput, ProbeOutput, Regression};
 pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales};
 

@@ -7,11 +7,14 @@
 //! inertia or viscous friction, and a constant force can explain: a score test (Rao 1948), one linear
 //! regression instead of a fit.
 
+mod steps;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::Scales;
 use crate::measurement::Kind;
-use crate::model::{Load, free_body, load_torque};
+use crate::model::{Instant, Load, free_body, load_torque};
+pub use steps::{Place, StepPart, Steps};
 
 /// Samples at most that are looked at.
 const MAX_SAMPLES: usize = 200_000;
@@ -50,6 +53,8 @@ pub struct Probe {
     position: Vec<f64>,
     velocity: Vec<f64>,
     input: Vec<f64>,
+    /// Input that reaches the body, one value per interval.
+    acting: Vec<f64>,
     /// First sample and end of each window.
     spans: Vec<(usize, usize)>,
     /// Whether an output is a velocity, and one over its noise.
@@ -139,6 +144,7 @@ impl Probe {
             position: input.position[..n].to_vec(),
             velocity: input.velocity[..n].to_vec(),
             input: input.input[..n].to_vec(),
+            acting: input.acting.iter().take(n).copied().collect(),
             spans,
             outputs,
             body: FreeBody { decay, phi1, phi2 },
@@ -246,6 +252,36 @@ impl Probe {
             .map(|s| -> Box<dyn Fn(usize) -> f64> { Box::new(|k| 0.5 * (s[k] + s[k + 1])) })
             .collect();
         self.regress_forces(&forces, 1)
+    }
+
+    /// The same for forces by position, velocity, acting input and time, on a part of a long record.
+    pub(super) fn regress_instants(
+        &self,
+        forces: &[&dyn Fn(&Instant) -> f64],
+    ) -> Option<Regression> {
+        let middle = |values: &[f64], k: usize| 0.5 * (values[k] + values[k + 1]);
+        let at = |k: usize| Instant {
+            position: middle(&self.position, k),
+            velocity: middle(&self.velocity, k),
+            input: self.acting.get(k).copied().unwrap_or(self.input[k]),
+            time: self.scales.step * (k as f64 + 0.5),
+        };
+        let stride = spans_stride(&self.spans, SCANNED);
+        let own: Vec<Box<dyn Fn(usize) -> f64 + '_>> = forces
+            .iter()
+            .map(|f| -> Box<dyn Fn(usize) -> f64> { Box::new(move |k| f(&at(k))) })
+            .collect();
+        self.regress_forces(&own, stride)
+    }
+
+    /// Lowest and highest measured position.
+    pub fn position_range(&self) -> (f64, f64) {
+        extent(&self.position)
+    }
+
+    /// Lowest and highest measured velocity, or output of a process.
+    pub fn velocity_range(&self) -> (f64, f64) {
+        extent(&self.velocity)
     }
 
     /// The same for forces as functions of the interval, on one window in `stride`.
@@ -399,6 +435,11 @@ impl Probe {
 fn spans_stride(spans: &[(usize, usize)], samples: usize) -> usize {
     let total: usize = spans.iter().map(|(from, to)| to - from).sum();
     total.div_ceil(samples).clamp(1, spans.len().max(1))
+}
+
+fn extent(values: &[f64]) -> (f64, f64) {
+    let both = |(low, high): (f64, f64), v: &f64| (low.min(*v), high.max(*v));
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), both)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -43,6 +43,19 @@ pub enum Dimension {
     Rise,
     /// Inverse of the unit of a process output.
     PerOutput,
+    /// A product of powers of force, position, process output and time.
+    Compound {
+        /// Power of the force, or of the input of a process.
+        force: i8,
+        /// Power of the position.
+        position: i8,
+        /// Power of the output of a process.
+        output: i8,
+        /// Power of the time.
+        time: i8,
+    },
+    /// A formula does not tell it.
+    Undetermined,
 }
 
 impl Dimension {
@@ -69,6 +82,7 @@ impl Dimension {
             (Self::PerPosition, Motion::Translational) => "1/m",
             (Self::Rise, Motion::Rotational) => "N m/s",
             (Self::Rise, Motion::Translational) => "N/s",
+            (Self::Compound { .. } | Self::Undetermined, _) => "?",
             (Self::Ratio | Self::PerOutput, _) | (_, Motion::None) => "1",
         }
     }
@@ -95,6 +109,20 @@ pub enum Range {
     Short,
     /// At least [`RIGID_CROSSINGS`] times [`Scales::crossed`].
     Long,
+}
+
+impl Range {
+    /// What a value would have to be, if it cannot be in the range whatever the sizes of the experiment.
+    pub fn refuses(self, value: f64) -> Option<&'static str> {
+        let (right, wanted) = match self {
+            Self::Signed => (value.is_finite(), "finite"),
+            Self::NonNegative => (value >= 0.0, "at least 0"),
+            Self::Fraction => ((-0.9..=0.9).contains(&value), "between -0.9 and 0.9"),
+            Self::UnitInterval => ((0.0..=1.0).contains(&value), "between 0 and 1"),
+            _ => (value > 0.0, "above 0"),
+        };
+        (!right).then_some(wanted)
+    }
 }
 
 /// A parameter of an effect.
@@ -194,7 +222,24 @@ impl Scales {
             Dimension::Stiffness => self.inertia.abs() / (self.step * self.step),
             Dimension::Drag => self.force / (self.speed * self.speed),
             Dimension::PerPosition => 1.0 / self.travel,
-            Dimension::Ratio | Dimension::Phase => 1.0,
+            Dimension::Ratio | Dimension::Phase | Dimension::Undetermined => 1.0,
+            Dimension::Compound {
+                force,
+                position,
+                output,
+                time,
+            } => {
+                let period = (self.step * self.duration).sqrt();
+                [
+                    (self.force, force),
+                    (self.travel, position),
+                    (self.speed, output),
+                    (period, time),
+                ]
+                .into_iter()
+                .map(|(size, power)| size.powi(i32::from(power)))
+                .product()
+            }
             Dimension::Rise => self.force / self.duration,
             Dimension::PerOutput => 1.0 / self.speed,
         }

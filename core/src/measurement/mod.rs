@@ -29,6 +29,16 @@ pub enum Kind {
     Process,
 }
 
+impl Kind {
+    /// Its name in files and sentences.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Drive => "drive",
+            Self::Process => "process",
+        }
+    }
+}
+
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

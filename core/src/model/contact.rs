@@ -93,12 +93,25 @@ impl Contact {
     ) {
         // The stiffness stays, so a lower level is reached at a smaller deflection.
         let limit = level / self.stiffness;
+<<<<<<< HEAD
         *deflection = deflection.max(-limit).min(limit);
         let acting = Acting { w, force, level };
         let mut left = h;
         for _ in 0..MAX_PIECES {
             // Also where a wild state has made it no number.
             if left.is_nan() || left <= 0.0 {
+=======
+        if limit.is_nan() {
+            // A wild trial of a fit; its motion is no number any more.
+            return;
+        }
+        *deflection = deflection.clamp(-limit, limit);
+        let acting = Acting { w, force, level };
+        let mut left = h;
+        for _ in 0..MAX_PIECES {
+            // Not so either where a wild motion has used a time that is no number.
+            if !(left > 0.0 && motion.v.is_finite()) {
+>>>>>>> files
                 return;
             }
             let direction = if motion.v == 0.0 {
@@ -266,6 +279,33 @@ mod tests {
                 motion.v,
                 exact[1]
             );
+        }
+    }
+
+    #[test]
+    fn a_wild_state_ends_without_a_panic() {
+        let mut model = Model::body(9e-4, 2e-3);
+        model.friction = DryFriction {
+            level: 0.05,
+            presliding: 2e-5,
+            contact_damping: 0.2,
+            ..DryFriction::default()
+        };
+        let contact = Contact::new(&model).unwrap();
+        let free = Flow::new(model.inertia, model.viscous, None);
+        let wild = [f64::NAN, f64::INFINITY, -1e308, 1e200, 0.0];
+        for v in wild {
+            for u in wild {
+                for start in wild {
+                    let mut motion = Motion {
+                        v,
+                        z: u,
+                        ..Motion::default()
+                    };
+                    let mut z = start;
+                    contact.advance(&free, &mut motion, &mut z, u, 0.05, u, 2e-4);
+                }
+            }
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The hybrid engine: exact flow between events, modes for sticking, slipping and contact.
 
-use super::Model;
 use super::contact::Contact;
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
 use super::load::Follower;
+use super::{Instant, Model};
 
 /// Halvings of an interval at most.
 const MAX_HALVINGS: u32 = 6;
@@ -139,6 +139,7 @@ impl<'m> Engine<'m> {
                 .map_or(f64::INFINITY, |load| load.longest_step(model.inertia)),
             plain: model.load.is_none()
                 && model.forces.is_empty()
+                && model.own_forces.is_empty()
                 && model.late_load().1 == 0.0
                 && model.friction.static_excess == 0.0,
             model,
@@ -212,10 +213,10 @@ impl<'m> Engine<'m> {
 
     /// Halvings that the smooth forces ask for: their change over half a step must be small.
     fn smooth_halvings(&self, state: &State, h: f64) -> u32 {
-        if self.model.forces.is_empty() {
+        if self.model.forces.is_empty() && self.model.own_forces.is_empty() {
             return 0;
         }
-        let force = |x: f64, v: f64| -> f64 { self.model.forces.iter().map(|f| f(x, v)).sum() };
+        let force = |x: f64, v: f64| self.smooth_force(state, x, v);
         let Motion { x, v, .. } = state.motion;
         let before = force(x, v);
         (0..MAX_HALVINGS)
@@ -227,6 +228,21 @@ impl<'m> Engine<'m> {
             .unwrap_or(MAX_HALVINGS)
     }
 
+    /// Sum of the smooth forces in a state moved to `x` and `v`.
+    fn smooth_force(&self, state: &State, x: f64, v: f64) -> f64 {
+        let force: f64 = self.model.forces.iter().map(|f| f(x, v)).sum();
+        if self.model.own_forces.is_empty() {
+            return force;
+        }
+        let at = Instant {
+            position: x,
+            velocity: v,
+            input: state.motion.z,
+            time: state.time,
+        };
+        force + self.model.own_forces.iter().map(|f| f(&at)).sum::<f64>()
+    }
+
     /// Forces in a state.
     fn held(&self, state: &State) -> Held {
         let Motion { x, v, .. } = state.motion;
@@ -234,7 +250,7 @@ impl<'m> Engine<'m> {
         let between = model.load.map_or(0.0, |load| {
             load.coupling.force(state.twist, v - state.load.v)
         });
-        let own: f64 = model.forces.iter().map(|f| f(x, v)).sum();
+        let own = self.smooth_force(state, x, v);
         let (constant, rise) = model.late_load();
         Held {
             body: constant + rise * state.time + own - between,

@@ -230,6 +230,7 @@ impl Flow {
         } else {
             ratio.ln_1p() / self.lambda
         };
+        // Not clamp: a wild trial of a fit may bring times that are no numbers.
         time.max(0.0).min(until)
     }
 

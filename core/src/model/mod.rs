@@ -24,6 +24,22 @@ pub type StaticMap = Box<dyn Fn(f64) -> f64 + Send + Sync>;
 /// A force on the body as a function of its position and velocity, added to the input.
 pub type BodyForce = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 
+/// Where the body is, and what acts on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// Position of a drive, rad or m.
+    pub position: f64,
+    /// Velocity of a drive, rad/s or m/s; the output of a process.
+    pub velocity: f64,
+    /// Input that reaches the body, after its path.
+    pub input: f64,
+    /// Time since the first sample, s.
+    pub time: f64,
+}
+
+/// A force on the body that may depend on everything, added to the input.
+pub type OwnForce = Box<dyn Fn(&Instant) -> f64 + Send + Sync>;
+
 /// Dry friction at the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DryFriction {
@@ -80,6 +96,8 @@ pub struct Model {
     pub friction: DryFriction,
     /// Further forces on the body.
     pub forces: Vec<BodyForce>,
+    /// Forces of the user's own making.
+    pub own_forces: Vec<OwnForce>,
     /// A second body behind a joint or a gap.
     pub load: Option<Load>,
     /// Static maps of the output (the velocity), in order.
@@ -103,6 +121,7 @@ impl Model {
             load_before_lag: false,
             friction: DryFriction::default(),
             forces: Vec::new(),
+            own_forces: Vec::new(),
             load: None,
             output_maps: Vec::new(),
             sensor_lag: None,
@@ -151,6 +170,7 @@ impl std::fmt::Debug for Model {
             .field("load_before_lag", &self.load_before_lag)
             .field("friction", &self.friction)
             .field("forces", &self.forces.len())
+            .field("own_forces", &self.own_forces.len())
             .field("load", &self.load)
             .field("output_maps", &self.output_maps.len())
             .field("sensor_lag", &self.sensor_lag)

@@ -1,5 +1,8 @@
 //! What is missing from the model? A measurement, the model's replay, and the effects that could be added.
 
+mod export;
+mod missing;
+mod own;
 mod plots;
 mod side;
 
@@ -10,10 +13,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use hysteron_core::criticism::{StepReport, with_error};
 use hysteron_core::effect::{self, Effect, EffectId};
 use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::user_model::UserModel;
 
 use super::{Desk, View};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::save::save;
 use crate::theme;
 
 /// A measurement that comes with the app.
@@ -51,6 +56,15 @@ type Arrival = (String, Result<Vec<u8>, String>);
 /// The page.
 pub struct Compare {
     measurement: Option<Arc<Measurement>>,
+    source: export::Source,
+    /// What the user knows of the model.
+    model: Option<UserModel>,
+    /// The file that says it.
+    model_file: Option<String>,
+    /// Effects of the user's own that were added here, as the command line takes them.
+    own: Vec<String>,
+    /// The formula in the editor.
+    typed: own::Typed,
     /// Effects on top of the baseline, in the order in which they were added.
     effects: Vec<EffectId>,
     /// Finished steps by their effects, so that undo is instant.
@@ -63,12 +77,19 @@ pub struct Compare {
     /// The finding that is shaded.
     finding: usize,
     arrivals: (Sender<Arrival>, Receiver<Arrival>),
+    /// What saving a file has to say.
+    saved: (Sender<String>, Receiver<String>),
 }
 
 impl Default for Compare {
     fn default() -> Self {
         Self {
             measurement: None,
+            source: export::Source::default(),
+            model: None,
+            model_file: None,
+            own: Vec::new(),
+            typed: own::Typed::default(),
             effects: Vec::new(),
             reports: HashMap::new(),
             shown: None,
@@ -77,12 +98,13 @@ impl Default for Compare {
             message: None,
             finding: 0,
             arrivals: channel(),
+            saved: channel(),
         }
     }
 }
 
 /// What a click asks for; carried out once, after drawing.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Command {
     OpenBuiltIn(usize),
     OpenDialog,
@@ -92,23 +114,92 @@ enum Command {
     Cancel,
     Shade(usize),
     Dismiss,
+    ExportReport,
+    SaveModel,
+    OpenModel,
+    DropModel,
+    Type(own::Typed),
+    AddOwn(own::Typed),
 }
 
 impl Compare {
-    /// Opens a measurement from the bytes of a file; a bad one leaves everything as it was.
+    /// Opens a measurement, or a model (TOML), from the bytes of a file; a bad one leaves everything as it was.
     pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        if name.to_ascii_lowercase().ends_with(".toml") {
+            return self.open_model(ctx, name, bytes);
+        }
         match import_csv(name, bytes, None) {
             Ok(measurement) => {
                 self.message = measurement.warnings.first().cloned();
                 self.measurement = Some(Arc::new(measurement));
-                self.effects.clear();
-                self.reports.clear();
-                self.shown = None;
-                self.finding = 0;
-                self.start(ctx);
+                self.source = export::Source::of(bytes);
+                let kind = self.measurement.as_ref().map(|m| m.kind);
+                if self.model.as_ref().is_some_and(|m| Some(m.kind) != kind) {
+                    self.forget_model();
+                }
+                self.restart(ctx);
             }
             Err(error) => self.message = Some(error.to_string()),
         }
+    }
+
+    /// Takes a model and begins anew with it.
+    fn open_model(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        let read = str::from_utf8(bytes)
+            .map_err(|_| "a model must be UTF-8 text".to_owned())
+            .and_then(|text| UserModel::from_toml(text).map_err(|e| e.to_string()));
+        match (read, &self.measurement) {
+            (Err(error), _) => self.message = Some(format!("{name}, {error}")),
+            (Ok(model), Some(measurement)) if model.kind != measurement.kind => {
+                self.message = Some(format!(
+                    "{name} is the model of a {}, but {} is the measurement of a {}.",
+                    model.kind.name(),
+                    measurement.name,
+                    measurement.kind.name()
+                ));
+            }
+            (Ok(model), _) => {
+                self.message = None;
+                self.forget_model();
+                self.model = Some(model);
+                self.model_file = Some(name.to_owned());
+                self.restart(ctx);
+            }
+        }
+    }
+
+    fn forget_model(&mut self) {
+        self.model = None;
+        self.model_file = None;
+        self.own.clear();
+    }
+
+    /// Adds an effect of the user's own to the model.
+    fn add_own(&mut self, ctx: &egui::Context, typed: &own::Typed) {
+        let Some(measurement) = &self.measurement else {
+            return;
+        };
+        let blank = || UserModel::blank(measurement.kind);
+        let mut model = self.model.clone().unwrap_or_else(blank);
+        match model.add_candidate(&typed.line()) {
+            Ok(()) => {
+                self.message = None;
+                self.effects.extend(model.candidates.last().map(|c| c.id));
+                self.model = Some(model);
+                self.own.push(typed.line());
+                self.start(ctx);
+            }
+            Err(error) => self.message = Some(error),
+        }
+    }
+
+    /// Begins with the first model again.
+    fn restart(&mut self, ctx: &egui::Context) {
+        self.effects.clear();
+        self.reports.clear();
+        self.shown = None;
+        self.finding = 0;
+        self.start(ctx);
     }
 
     /// Opens a file that was dropped on the window.
@@ -131,9 +222,9 @@ impl Compare {
         });
     }
 
-    fn open_dialog(&self, ctx: &egui::Context) {
+    fn open_dialog(&self, ctx: &egui::Context, kind: &str, endings: &[&str]) {
         let (sender, ctx) = (self.arrivals.0.clone(), ctx.clone());
-        let dialog = rfd::AsyncFileDialog::new().add_filter("Measurement", &["csv", "txt", "tsv"]);
+        let dialog = rfd::AsyncFileDialog::new().add_filter(kind, endings);
         let pick = async move {
             if let Some(file) = dialog.pick_file().await {
                 let bytes = file.read().await;
@@ -154,6 +245,9 @@ impl Compare {
                 Ok(bytes) => self.open(ctx, &name, &bytes),
                 Err(error) => self.message = Some(format!("{name}: cannot be read ({error})")),
             }
+        }
+        if let Some(text) = self.saved.1.try_iter().last() {
+            self.message = Some(text);
         }
         let news = self.job.as_mut().map(Job::news).unwrap_or_default();
         for news in news {
@@ -180,7 +274,8 @@ impl Compare {
             self.shown = Some(self.effects.clone());
         } else if let Some(measurement) = &self.measurement {
             self.progress = (0.0, "Starting".to_owned());
-            self.job = Some(Job::start(ctx, measurement, &self.effects));
+            let model = self.model.as_ref();
+            self.job = Some(Job::start(ctx, measurement, &self.effects, model));
         }
     }
 
@@ -234,7 +329,14 @@ impl Compare {
                     self.open(ctx, built_in.id, built_in.csv);
                 }
             }
-            Command::OpenDialog => self.open_dialog(ctx),
+            Command::OpenDialog => self.open_dialog(ctx, "Measurement", &["csv", "txt", "tsv"]),
+            Command::OpenModel => self.open_dialog(ctx, "Model", &["toml"]),
+            Command::Type(typed) => self.typed = typed,
+            Command::AddOwn(typed) => self.add_own(ctx, &typed),
+            Command::DropModel => {
+                self.forget_model();
+                self.restart(ctx);
+            }
             Command::Close => {
                 let arrivals = std::mem::replace(&mut self.arrivals, channel());
                 *self = Self {
@@ -259,6 +361,16 @@ impl Compare {
             }
             Command::Shade(index) => self.finding = index,
             Command::Dismiss => self.message = None,
+            Command::ExportReport => {
+                if let Some(document) = export::report(self) {
+                    save(ctx, document, &self.saved.0);
+                }
+            }
+            Command::SaveModel => {
+                if let Some(document) = export::model(self) {
+                    save(ctx, document, &self.saved.0);
+                }
+            }
         }
     }
 
@@ -304,7 +416,10 @@ impl Compare {
     fn answer_ui(&self, ui: &mut egui::Ui) {
         let text = match self.report() {
             None => "Fitting the simplest model ...".to_owned(),
-            Some(report) => answer(report),
+            Some(report) => {
+                let present = self.model.as_ref().map(UserModel::present);
+                answer(report, &present.unwrap_or_default())
+            }
         };
         theme::answer_ui(ui, &text);
     }
@@ -338,6 +453,7 @@ impl Compare {
                 r.step.candidates.iter().map(|c| serde_json::json!({"effects": c.effects, "error": c.error})).collect()
             }),
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
+            "model": self.model_file,
             "message": self.message,
         })
     }
@@ -393,13 +509,13 @@ fn times_noise(error: f64) -> String {
     }
 }
 
-/// The page's answer in one or two sentences.
-fn answer(report: &StepReport) -> String {
+/// The page's answer in one or two sentences; `present` are the effects of the user's model.
+fn answer(report: &StepReport, present: &[EffectId]) -> String {
     let step = &report.step;
     let added: Vec<String> = step
         .effects
         .iter()
-        .filter(|e| **e != effect::VISCOUS_FRICTION)
+        .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
         .map(|id| {
             let main = step.parameters.iter().find(|p| p.effect == Some(*id));
             main.map_or_else(
@@ -426,6 +542,14 @@ fn answer(report: &StepReport) -> String {
         }
         (Some(verdict), true) if verdict.complete => {
             "Nothing is missing: what the model leaves is measurement noise.".to_owned()
+        }
+        (Some(verdict), _) if !verdict.contradicted.is_empty() => {
+            let names: Vec<&str> = verdict
+                .contradicted
+                .iter()
+                .map(|c| c.name.as_str())
+                .collect();
+            format!("The data contradict the known {}.", names.join(" and "))
         }
         _ => format!(
             "The model misses by {} times the noise.",

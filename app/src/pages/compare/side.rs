@@ -4,7 +4,7 @@ use egui::{Color32, RichText};
 use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
 
-use super::{Command, Compare, name_of, times_noise};
+use super::{Command, Compare, missing, name_of, own, times_noise};
 use crate::hook::Targets;
 use crate::theme;
 
@@ -17,7 +17,7 @@ pub(super) fn ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    file_ui(page, ui, commands);
+    file_ui(page, ui, targets, commands);
     progress_ui(page, ui, commands);
     let Some(report) = page.report() else {
         return;
@@ -34,11 +34,13 @@ pub(super) fn ui(
             }
         });
     }
+    missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
+    own::ui(page, ui, targets, commands);
     ui.collapsing("Parameters of the model", |ui| parameters_ui(report, ui));
 }
 
-fn file_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if let Some(m) = &page.measurement {
             ui.strong(&m.name);
@@ -46,6 +48,33 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         }
         if ui.button("Open another").clicked() {
             commands.push(Command::Close);
+        }
+        let export = ui
+            .add_enabled(page.report().is_some(), egui::Button::new("Export report"))
+            .on_hover_text("One page with pictures, equations, parameters and the verdict");
+        targets.note("export:report", ui, &export);
+        if export.clicked() {
+            commands.push(Command::ExportReport);
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        let load = ui.button("Load model ...").on_hover_text(
+            "What is known beforehand: parameters, effects already in the model (TOML)",
+        );
+        targets.note("model:load", ui, &load);
+        if load.clicked() {
+            commands.push(Command::OpenModel);
+        }
+        let save = ui.add_enabled(page.report().is_some(), egui::Button::new("Save model"));
+        targets.note("model:save", ui, &save);
+        if save.clicked() {
+            commands.push(Command::SaveModel);
+        }
+        if let Some(name) = &page.model_file {
+            ui.label(format!("Begins with {name}"));
+            if ui.small_button("Forget it").clicked() {
+                commands.push(Command::DropModel);
+            }
         }
     });
 }
@@ -74,9 +103,14 @@ fn waterfall_ui(
     let steps: Vec<(String, &StepReport)> = (0..=shown.len())
         .filter_map(|n| {
             let report = page.reports.get(&shown[..n])?;
-            let label = n.checked_sub(1).map_or("Baseline".to_owned(), |i| {
-                format!("+ {}", name_of(shown[i]))
-            });
+            let first = if page.model_file.is_some() {
+                "Your model"
+            } else {
+                "Baseline"
+            };
+            let label = n
+                .checked_sub(1)
+                .map_or(first.to_owned(), |i| format!("+ {}", name_of(shown[i])));
             Some((label, report))
         })
         .collect();
@@ -153,15 +187,22 @@ fn card_ui(
     let Some(id) = candidate.effects.first().copied() else {
         return;
     };
-    let Some(effect) = effect::find(id) else {
-        return;
+    let formula = page.model.as_ref().and_then(|m| m.formula(id));
+    let (sentence, equation, source) = match (effect::find(id), formula) {
+        (Some(e), _) => (e.sentence(), e.equation().to_owned(), e.source()),
+        (None, Some(f)) => (
+            "An effect of your own.",
+            format!("F = {f}"),
+            "your own formula",
+        ),
+        (None, None) => return,
     };
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
             let add = ui.add_enabled(
                 page.job.is_none(),
-                egui::Button::new(format!("Add {}", effect.name())),
+                egui::Button::new(format!("Add {}", name_of(id))),
             );
             targets.note(format!("add:{id}"), ui, &add);
             if add.clicked() {
@@ -176,7 +217,7 @@ fn card_ui(
             report.step.error.max(2.0),
             theme::MODEL,
         );
-        ui.label(effect.sentence());
+        ui.label(sentence);
         if !candidate.equivalent_to.is_empty() {
             let names: Vec<&str> = candidate
                 .equivalent_to
@@ -191,8 +232,8 @@ fn card_ui(
         egui::CollapsingHeader::new("Equation")
             .id_salt(id.as_str())
             .show(ui, |ui| {
-                ui.monospace(effect.equation());
-                ui.small(effect.source());
+                ui.monospace(&equation);
+                ui.small(source);
                 for p in &candidate.parameters {
                     ui.label(format!(
                         "{} ({}) = {}",

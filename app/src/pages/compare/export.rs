@@ -1,0 +1,84 @@
+//! Files that the page can give away.
+
+use hysteron_core::criticism::Step;
+use hysteron_core::report::{self, Provenance, ReportInput};
+use hysteron_core::user_model::UserModel;
+
+use super::Compare;
+use crate::save::Document;
+
+/// Where the measurement on screen comes from.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Source {
+    bytes: usize,
+    sha256: String,
+}
+
+impl Source {
+    pub fn of(bytes: &[u8]) -> Self {
+        Self {
+            bytes: bytes.len(),
+            sha256: report::sha256(bytes),
+        }
+    }
+}
+
+/// The model on screen as a report.
+pub(super) fn report(page: &Compare) -> Option<Document> {
+    let (measurement, last) = (page.measurement.as_ref()?, page.report()?);
+    let shown = page.shown.as_deref().unwrap_or_default();
+    let steps: Vec<Step> = (0..=shown.len())
+        .filter_map(|n| Some(page.reports.get(&shown[..n])?.step.clone()))
+        .collect();
+    let first = page.reports.get(&[][..]);
+    let text = report::html(&ReportInput {
+        measurement,
+        steps: &steps,
+        first_atlas: first.map_or(&[], |r| r.atlas.as_slice()),
+        last,
+        verdict: last.verdict.as_ref(),
+        model: page.model.as_ref(),
+        provenance: &Provenance {
+            command: command(page, &measurement.name),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            bytes: page.source.bytes,
+            sha256: page.source.sha256.clone(),
+        },
+    });
+    Some(Document {
+        name: format!("{}.html", stem(&measurement.name)),
+        kind: "Web page",
+        media: "text/html;charset=utf-8",
+        text,
+    })
+}
+
+/// What to type for the same diagnosis.
+fn command(page: &Compare, file: &str) -> String {
+    let mut command = format!("hysteron diagnose {}", report::shell_word(file));
+    let file = page.model_file.iter().map(|name| ("--model", name));
+    for (option, value) in file.chain(page.own.iter().map(|line| ("--effect", line))) {
+        command.push_str(&format!(" {option} {}", report::shell_word(value)));
+    }
+    command
+}
+
+/// The model on screen as a file.
+pub(super) fn model(page: &Compare) -> Option<Document> {
+    let (measurement, last) = (page.measurement.as_ref()?, page.report()?);
+    let model = UserModel::from_step(measurement.kind, &last.step, page.model.as_ref());
+    Some(Document {
+        name: format!("{}.toml", stem(&measurement.name)),
+        kind: "Model",
+        media: "application/toml;charset=utf-8",
+        text: model.to_toml(),
+    })
+}
+
+/// The name of a file without its ending.
+fn stem(name: &str) -> &str {
+    match name.rsplit_once('.') {
+        Some((stem, _)) if !stem.is_empty() => stem,
+        _ => name,
+    }
+}

@@ -1,0 +1,89 @@
+//! The user's own effect as a formula.
+
+use hysteron_core::effect::{EffectId, Formula};
+use hysteron_core::measurement::Kind;
+
+use super::{Command, Compare};
+use crate::hook::Targets;
+
+/// What is typed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Typed {
+    pub name: String,
+    pub formula: String,
+}
+
+impl Default for Typed {
+    fn default() -> Self {
+        Self {
+            name: "bump".to_owned(),
+            formula: "-a*exp(-((x-b)/c)^2)".to_owned(),
+        }
+    }
+}
+
+impl Typed {
+    /// As the command line takes it.
+    pub fn line(&self) -> String {
+        format!("{}: {}", self.name.trim(), self.formula.trim())
+    }
+
+    /// Names of the parameters, or what is wrong.
+    fn check(&self, kind: Kind) -> Result<Vec<String>, String> {
+        if EffectId::own(self.name.trim()).is_none() {
+            return Err(format!("name: {}", EffectId::OWN_NAMES));
+        }
+        let formula = Formula {
+            name: self.name.trim().to_owned(),
+            text: self.formula.trim().to_owned(),
+        };
+        formula.parameters(kind).map_err(|e| e.to_string())
+    }
+}
+
+pub(super) fn ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    let Some(measurement) = &page.measurement else {
+        return;
+    };
+    let mut typed = page.typed.clone();
+    egui::CollapsingHeader::new("An effect of your own").show(ui, |ui| {
+        let variables = match measurement.kind {
+            Kind::Drive => "A force as a formula of x, v, u, t; every other name is fitted.",
+            Kind::Process => "An input as a formula of y, u, t; every other name is fitted.",
+        };
+        ui.label(variables);
+        egui::Grid::new("own effect").num_columns(2).show(ui, |ui| {
+            let label = ui.label("Name");
+            ui.add(egui::TextEdit::singleline(&mut typed.name).desired_width(120.0))
+                .labelled_by(label.id);
+            ui.end_row();
+            let label = ui.label("F =");
+            ui.add(
+                egui::TextEdit::singleline(&mut typed.formula)
+                    .desired_width(240.0)
+                    .font(egui::TextStyle::Monospace),
+            )
+            .labelled_by(label.id);
+            ui.end_row();
+        });
+        let checked = typed.check(measurement.kind);
+        match &checked {
+            Ok(names) => ui.label(format!("To be fitted: {}", names.join(", "))),
+            Err(error) => ui.colored_label(ui.visuals().warn_fg_color, error),
+        };
+        let ready = checked.is_ok() && page.job.is_none() && page.report().is_some();
+        let add = ui.add_enabled(ready, egui::Button::new("Add your effect"));
+        targets.note("own:add", ui, &add);
+        if add.clicked() {
+            commands.push(Command::AddOwn(typed.clone()));
+        }
+    });
+    if typed != page.typed {
+        commands.push(Command::Type(typed));
+    }
+}

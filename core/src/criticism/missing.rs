@@ -1,0 +1,130 @@
+//! What is missing where no effect explains it: a force, an input or an error of an output, against velocity,
+//! position and time.
+
+use serde::{Deserialize, Serialize};
+
+use super::session::{Scored, Session};
+use super::verdict::with_error;
+use crate::effect::{Dimension, Place, StepPart};
+use crate::measurement::Kind;
+
+/// Estimates that explain less than this share of the squared error are not shown.
+const LEAST_EXPLAINED: f64 = 0.02;
+
+/// Standard errors by which a part must stand out to be named.
+const CLEAR: f64 = 3.0;
+
+/// An estimate without a model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MissingPart {
+    /// `force`, `input` or `output`.
+    pub what: String,
+    /// Its unit.
+    pub unit: String,
+    /// What it may depend on: `velocity`, `position`, `time`, `input` or `output`.
+    pub axis: String,
+    /// Unit of the axis.
+    pub axis_unit: String,
+    /// Along the axis, from low to high.
+    pub parts: Vec<StepPart>,
+    /// Share of the squared error left that it would explain, 0 to 1.
+    pub explained: f64,
+    /// In a sentence with numbers.
+    pub text: String,
+}
+
+/// Estimates for what `fit` leaves, the one that explains most first.
+pub(super) fn missing_parts(session: &Session, scored: &Scored) -> Vec<MissingPart> {
+    let data = session.whole();
+    let probe = session.probe_of(data, &scored.fit);
+    let velocity = data.velocity_estimate();
+    let force = session.unit_of(Some(Dimension::Force));
+    let first = data.time.first().copied().unwrap_or(0.0);
+    let time: Vec<f64> = data.time.iter().map(|t| t - first).collect();
+    let speed = session.output_unit().to_owned();
+    let mut axes: Vec<(&str, &str, String, Vec<f64>)> =
+        vec![("force", "time", "s".to_owned(), time)];
+    match data.kind {
+        Kind::Drive => {
+            let position = session.unit_of(Some(Dimension::Position));
+            axes.push(("force", "velocity", speed, velocity));
+            axes.push(("force", "position", position, data.position_estimate()));
+        }
+        Kind::Process => {
+            axes[0].0 = "input";
+            axes.push(("input", "output", speed, velocity));
+        }
+    }
+    axes.push(("input", "input", force.clone(), data.input.clone()));
+    let mut found: Vec<MissingPart> = axes
+        .into_iter()
+        .filter_map(|(what, axis, axis_unit, values)| {
+            let steps = probe.steps(&values, Place::Force)?;
+            Some(part(
+                what,
+                &force,
+                axis,
+                &axis_unit,
+                steps.parts,
+                steps.explained,
+            ))
+        })
+        .collect();
+    for (index, output) in data.outputs.iter().enumerate() {
+        let steps = probe.steps(&output.values, Place::Output(index));
+        let (name, unit) = session.output_name(index);
+        found.extend(steps.map(|s| part("output", unit, name, unit, s.parts, s.explained)));
+    }
+    found.retain(|m| m.explained > LEAST_EXPLAINED);
+    found.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    found
+}
+
+fn part(
+    what: &str,
+    unit: &str,
+    axis: &str,
+    axis_unit: &str,
+    parts: Vec<StepPart>,
+    explained: f64,
+) -> MissingPart {
+    let shown = |unit: &str| {
+        if unit == "1" {
+            String::new()
+        } else {
+            format!(" {unit}")
+        }
+    };
+    let article = match what {
+        "force" => "A force",
+        "input" => "A further input",
+        _ => "An error of the sensor",
+    };
+    let mut text = format!(
+        "{article} that depends on the {axis} alone would explain {:.0} % of what is left",
+        100.0 * explained
+    );
+    let strongest = parts
+        .iter()
+        .filter(|p| p.value.abs() > CLEAR * p.std_error)
+        .max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    if let Some(p) = strongest {
+        text.push_str(&format!(
+            "; it is strongest from {:.3} to {:.3}{}, with {}",
+            p.from,
+            p.to,
+            shown(axis_unit),
+            with_error(p.value, p.std_error, unit)
+        ));
+    }
+    text.push('.');
+    MissingPart {
+        what: what.to_owned(),
+        unit: unit.to_owned(),
+        axis: axis.to_owned(),
+        axis_unit: axis_unit.to_owned(),
+        parts,
+        explained,
+        text,
+    }
+}

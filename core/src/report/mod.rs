@@ -1,0 +1,281 @@
+//! A diagnosis as one self-contained page: text, tables and pictures (SVG), without scripts or requests.
+//!
+//! The page is made from finished data alone, so that the command line, the app and a batch write the
+//! same one. Everything that comes from a file is escaped.
+
+mod html;
+mod model;
+mod pictures;
+mod sha256;
+mod svg;
+
+use std::fmt::Write as _;
+
+use crate::criticism::{Profile, Step, StepReport, Verdict};
+use crate::effect::{self, Effect, EffectId};
+use crate::measurement::{Kind, Measurement};
+use crate::user_model::UserModel;
+use html::{escape, figure, legend, section};
+pub use sha256::sha256;
+
+/// Where a report comes from and how to make it again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Provenance {
+    /// Command line that gives the same diagnosis.
+    pub command: String,
+    /// Version of the program.
+    pub version: String,
+    /// Size of the file, bytes.
+    pub bytes: usize,
+    /// Its [`sha256`].
+    pub sha256: String,
+}
+
+/// What a report is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportInput<'a> {
+    /// The measurement.
+    pub measurement: &'a Measurement,
+    /// From the baseline to the model that is reported.
+    pub steps: &'a [Step],
+    /// The residual of the baseline over every axis; may be empty.
+    pub first_atlas: &'a [Profile],
+    /// The model that is reported, with its curves.
+    pub last: &'a StepReport,
+    /// What the data say, if they have been heard to the end.
+    pub verdict: Option<&'a Verdict>,
+    /// The model that the user brought, if any.
+    pub model: Option<&'a UserModel>,
+    /// Where it comes from.
+    pub provenance: &'a Provenance,
+}
+
+/// The report as an HTML page.
+pub fn html(input: &ReportInput) -> String {
+    let name = escape(&input.measurement.name);
+    let mut out = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"generator\" content=\"Hysteron {}\">\n<title>{name} - Hysteron</title>\n\
+         <style>{}</style>\n</head>\n<body>\n<main>\n",
+        escape(&input.provenance.version),
+        html::STYLE
+    );
+    answer(&mut out, input);
+    section(
+        &mut out,
+        "How the error fell",
+        &pictures::waterfall(input.steps, input.last.noise_floor),
+    );
+    section(&mut out, "Measured and modelled", &curves(input));
+    section(&mut out, "Where the models fail", &places(input));
+    if !input.last.missing.is_empty() {
+        section(&mut out, "What is missing", &missing(input));
+    }
+    section(&mut out, "The model", &model::equations(input));
+    section(
+        &mut out,
+        "Parameters",
+        &model::parameters(&input.last.step.parameters),
+    );
+    section(
+        &mut out,
+        "What else was tried",
+        &model::candidates(input.steps),
+    );
+    section(&mut out, "How to reproduce this", &reproduce(input));
+    out.push_str("</main>\n</body>\n</html>\n");
+    out
+}
+
+/// The page's question and its answer.
+fn answer(out: &mut String, input: &ReportInput) {
+    let measurement = input.measurement;
+    let step = &input.last.step;
+    let text = input.verdict.map_or_else(
+        || {
+            format!(
+                "The model misses the measurement by {} times its noise.",
+                short(step.error)
+            )
+        },
+        |v| v.text.clone(),
+    );
+    let kind = match measurement.kind {
+        Kind::Drive => "drive",
+        Kind::Process => "process",
+    };
+    let duration = match (measurement.time.first(), measurement.time.last()) {
+        (Some(first), Some(last)) => last - first,
+        _ => 0.0,
+    };
+    let _ = write!(
+        out,
+        "<header>\n<h1>What is missing from the model of {}?</h1>\n<p class=\"answer\">{}</p>\n\
+         <p class=\"facts\">{} samples of a {kind} over {} s. Error of the model on held-back data: {} times the \
+         measurement noise; a perfect model would leave {}.</p>\n",
+        escape(&measurement.name),
+        escape(&text),
+        measurement.len(),
+        short(duration),
+        short(step.error),
+        short(input.last.noise_floor),
+    );
+    if let Some(next) = input.verdict.and_then(|v| v.next_experiment.as_ref()) {
+        let _ = writeln!(
+            out,
+            "<p class=\"next\"><strong>Next experiment:</strong> {}</p>",
+            escape(next)
+        );
+    }
+    for note in &measurement.warnings {
+        let _ = writeln!(out, "<p class=\"small\">{}</p>", escape(note));
+    }
+    out.push_str("</header>\n");
+}
+
+fn curves(input: &ReportInput) -> String {
+    let mut out = String::new();
+    legend(
+        &mut out,
+        &[
+            ("measured", "measured"),
+            ("model", "model"),
+            ("residual", "measured less model"),
+            ("noise", "twice the noise"),
+        ],
+    );
+    for (index, channel) in input.last.replay.channels.iter().enumerate() {
+        let Some(output) = input.measurement.outputs.get(index) else {
+            continue;
+        };
+        pictures::output(
+            &mut out,
+            &input.measurement.time,
+            output,
+            channel,
+            &input.last.step.findings,
+        );
+    }
+    out.push_str(
+        "<p class=\"small\">The model is driven by the measured input and restarted in short windows from estimated \
+         states.</p>\n",
+    );
+    out
+}
+
+/// Sentences and pictures: where the baseline failed and the last model does.
+fn places(input: &ReportInput) -> String {
+    let mut out = String::new();
+    let (first, last) = (input.steps.first(), &input.last.step);
+    let more = input.steps.len() > 1;
+    for (title, step) in [("The baseline", first), ("The last model", Some(last))] {
+        let Some(step) = step.filter(|_| more || title == "The last model") else {
+            continue;
+        };
+        let _ = writeln!(out, "<h3>{title}</h3>");
+        if step.findings.is_empty() {
+            out.push_str("<p>What it leaves is measurement noise, wherever one looks.</p>\n");
+            continue;
+        }
+        out.push_str("<ul>\n");
+        for finding in &step.findings {
+            let _ = writeln!(out, "<li>{}</li>", escape(&finding.text));
+        }
+        out.push_str("</ul>\n");
+    }
+    let wanted: Vec<&str> = last
+        .findings
+        .iter()
+        .chain(first.into_iter().flat_map(|s| &s.findings))
+        .map(|f| f.axis.as_str())
+        .collect();
+    let first_atlas = if more { input.first_atlas } else { &[] };
+    let charts = pictures::profiles(input.measurement, &wanted, first_atlas, &input.last.atlas);
+    if !charts.is_empty() {
+        let mut entries = vec![("residual", "last model"), ("noise", "noise")];
+        if more {
+            entries.insert(0, ("before", "baseline"));
+        }
+        legend(&mut out, &entries);
+        out.push_str("<div class=\"pair\">\n");
+        for (svg, caption) in &charts {
+            figure(&mut out, svg, caption);
+        }
+        out.push_str("</div>\n");
+    }
+    out
+}
+
+/// What no effect of the library explains.
+fn missing(input: &ReportInput) -> String {
+    let mut out = String::from(
+        "<p>No effect of the library explains what is left. These are forces, inputs or errors of sensors that would, \
+         estimated without a model: steps over one axis at a time, with a band of two standard errors.</p>\n<div class=\"pair\">\n",
+    );
+    for (svg, caption) in pictures::missing(&input.last.missing) {
+        figure(&mut out, &svg, &caption);
+    }
+    out.push_str("</div>\n");
+    out
+}
+
+/// The command, the version, the file, and the model that the user brought.
+fn reproduce(input: &ReportInput) -> String {
+    let Provenance {
+        command,
+        version,
+        bytes,
+        sha256,
+    } = input.provenance;
+    let mut out = format!(
+        "<pre><code>{}</code></pre>\n<p>Hysteron {}. The same file gives the same answer, on any machine.</p>\n\
+         <p>File: {}, {bytes} bytes, SHA-256 <code>{}</code></p>\n",
+        escape(command),
+        escape(version),
+        escape(&input.measurement.name),
+        escape(sha256),
+    );
+    if let Some(model) = input.model {
+        let lines: Vec<String> = model.to_toml().lines().map(escape).collect();
+        let _ = writeln!(
+            out,
+            "<p>The model that it began with:</p>\n<pre><code>{}</code></pre>",
+            lines.join("\n")
+        );
+    }
+    out
+}
+
+/// A word of a command line, quoted if a shell would take it apart.
+pub fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
+/// A number with three or four digits.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if !value.is_finite() {
+        "?".to_owned()
+    } else if size >= 1e6 || (size < 1e-3 && size > 0.0) {
+        format!("{value:.2e}")
+    } else if size >= 100.0 {
+        format!("{value:.0}")
+    } else if size >= 10.0 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.2}")
+    }
+}
+
+/// Name of an effect on screen.
+fn name_of(id: EffectId) -> String {
+    effect::find(id)
+        .map_or(id.as_str(), Effect::name)
+        .to_owned()
+}

@@ -1,0 +1,161 @@
+//! The model in equations and numbers.
+
+use std::fmt::Write as _;
+
+use super::html::{Cell, escape, table};
+use super::{ReportInput, name_of, short};
+use crate::criticism::{Parameter, Step, with_error};
+use crate::effect::{self, EffectId, VISCOUS_FRICTION};
+use crate::measurement::Kind;
+use crate::user_model::Status;
+
+/// Equations of the baseline; `F` is the sum of what the effects add.
+fn baseline(kind: Kind) -> [&'static str; 2] {
+    match kind {
+        Kind::Drive => ["J1 dv1/dt = u_acting - d1 v1 + F", "dx1/dt = v1"],
+        Kind::Process => ["T dy/dt + y = K (u_acting + F)", ""],
+    }
+}
+
+/// The baseline, and one block for each effect on top of it.
+pub(super) fn equations(input: &ReportInput) -> String {
+    let mut out = String::from("<pre><code>");
+    for line in baseline(input.measurement.kind) {
+        if !line.is_empty() {
+            let _ = writeln!(out, "{}", escape(line));
+        }
+    }
+    out.push_str("</code></pre>\n<p class=\"small\">u_acting is the input that reaches the body (u, unless an effect changes it); F the forces of the effects.</p>\n");
+    for id in added(&input.last.step) {
+        let _ = writeln!(out, "<h3>{}</h3>", escape(&name_of(id)));
+        let Some(effect) = effect::find(id) else {
+            if let Some(formula) = input.model.and_then(|m| m.formula(id)) {
+                let _ = writeln!(
+                    out,
+                    "<p>An effect of your own.</p>\n<pre><code>F = {}</code></pre>",
+                    escape(formula)
+                );
+            }
+            continue;
+        };
+        let _ = writeln!(
+            out,
+            "<p>{}</p>\n<pre><code>{}</code></pre>\n<p class=\"small\">{}</p>",
+            escape(effect.sentence()),
+            escape(effect.equation()),
+            escape(effect.source())
+        );
+    }
+    out
+}
+
+/// Effects that are not in the baseline.
+fn added(step: &Step) -> Vec<EffectId> {
+    step.effects
+        .iter()
+        .copied()
+        .filter(|id| *id != VISCOUS_FRICTION)
+        .collect()
+}
+
+pub(super) fn parameters(parameters: &[Parameter]) -> String {
+    let mut out = String::new();
+    let rows: Vec<Vec<Cell>> = parameters
+        .iter()
+        .map(|p| {
+            let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
+            vec![
+                Cell::Code(p.name.clone()),
+                Cell::Text(p.label.clone()),
+                Cell::Number(with_error(p.value, p.std_error, unit)),
+                Cell::Text(
+                    match p.status {
+                        Status::Free => "",
+                        Status::Prior(_) => "known roughly",
+                        Status::Fixed => "fixed",
+                    }
+                    .to_owned(),
+                ),
+                Cell::Text(
+                    p.effect
+                        .filter(|id| *id != VISCOUS_FRICTION)
+                        .map_or_else(|| "baseline".to_owned(), name_of),
+                ),
+            ]
+        })
+        .collect();
+    table(
+        &mut out,
+        &[
+            "symbol",
+            "meaning",
+            "value ± standard error",
+            "",
+            "belongs to",
+        ],
+        &rows,
+    );
+    out.push_str(
+        "<p class=\"small\">Standard errors are widened where the residuals are correlated.</p>\n",
+    );
+    out
+}
+
+/// A table for each step that had candidates.
+pub(super) fn candidates(steps: &[Step]) -> String {
+    let mut out = String::new();
+    for step in steps.iter().filter(|s| !s.candidates.is_empty()) {
+        let names: Vec<String> = added(step).into_iter().map(name_of).collect();
+        let on = if names.is_empty() {
+            "On top of the baseline".to_owned()
+        } else {
+            format!("On top of {}", names.join(" + "))
+        };
+        let _ = writeln!(
+            out,
+            "<h3>{} (error {})</h3>",
+            escape(&on),
+            short(step.error)
+        );
+        let rows: Vec<Vec<Cell>> = step
+            .candidates
+            .iter()
+            .map(|c| {
+                let ids: Vec<String> = c.effects.iter().map(|e| name_of(*e)).collect();
+                let note = if !c.equivalent_to.is_empty() {
+                    let others: Vec<String> = c.equivalent_to.iter().map(|e| name_of(*e)).collect();
+                    format!("cannot be told from {}", others.join(", "))
+                } else if c.significant {
+                    "helps".to_owned()
+                } else {
+                    "too little to add it".to_owned()
+                };
+                // What does not help has values that mean nothing.
+                let shown = c.parameters.iter().filter(|_| c.significant);
+                let values: Vec<String> = shown
+                    .map(|p| {
+                        let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
+                        format!("{} = {}", p.name, with_error(p.value, p.std_error, unit))
+                    })
+                    .collect();
+                vec![
+                    Cell::Text(ids.join(" + ")),
+                    Cell::Number(short(c.error)),
+                    Cell::Number(format!("{:.1}", c.delta_bic)),
+                    Cell::Text(note),
+                    Cell::Text(values.join(", ")),
+                ]
+            })
+            .collect();
+        table(
+            &mut out,
+            &["effect", "error", "evidence", "", "its parameters"],
+            &rows,
+        );
+    }
+    out.push_str(
+        "<p class=\"small\">Error: on held-back data after a refit, in units of the noise. Evidence: change of the \
+         Bayesian information criterion on the fitted data, negative is better.</p>\n",
+    );
+    out
+}

@@ -1,0 +1,151 @@
+//! The report stands alone: well-formed, without scripts or requests, and it says what the diagnosis says.
+
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepReport};
+use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::report::{Provenance, ReportInput, html, sha256};
+
+fn bytes(name: &str) -> Vec<u8> {
+    std::fs::read(format!(
+        "{}/../tests/data/{name}.csv",
+        env!("CARGO_MANIFEST_DIR")
+    ))
+    .unwrap()
+}
+
+fn diagnose(measurement: &Measurement) -> (Diagnosis, StepReport, StepReport) {
+    let mut job = DiagnosisJob::new(measurement).unwrap();
+    loop {
+        if let Progress::Done(diagnosis) = job.advance() {
+            let (first, last) = job.evidence().unwrap();
+            return (diagnosis, first.clone(), last.clone());
+        }
+    }
+}
+
+fn page(measurement: &Measurement, command: &str) -> (Diagnosis, String) {
+    let (diagnosis, first, last) = diagnose(measurement);
+    assert_eq!(
+        last.step.effects,
+        diagnosis.steps.last().unwrap().effects,
+        "the curves are those of the last model"
+    );
+    let text = html(&ReportInput {
+        measurement,
+        steps: &diagnosis.steps,
+        first_atlas: &first.atlas,
+        last: &last,
+        verdict: Some(&diagnosis.verdict),
+        model: None,
+        provenance: &Provenance {
+            command: command.to_owned(),
+            version: "1.2.3".to_owned(),
+            bytes: 4711,
+            sha256: sha256(b"abc"),
+        },
+    });
+    (diagnosis, text)
+}
+
+/// The page apart from its style sheet, as tags with the text that follows each.
+fn tags(page: &str) -> Vec<(&str, &str)> {
+    let (before, rest) = page.split_once("<style>").unwrap();
+    let (_, after) = rest.split_once("</style>").unwrap();
+    let split = |part| str::split(part, '<').skip(1);
+    split(before)
+        .chain(split(after))
+        .map(|piece| piece.split_once('>').expect("a tag ends"))
+        .collect()
+}
+
+/// Every tag that opens closes, in order.
+fn check_well_formed(page: &str) {
+    let mut open: Vec<String> = Vec::new();
+    for (tag, text) in tags(page) {
+        assert!(!text.contains('>'), "stray > in: {text}");
+        if tag.starts_with('!') || tag.ends_with('/') {
+            continue;
+        }
+        let name = tag.split_whitespace().next().unwrap().to_owned();
+        if let Some(closed) = name.strip_prefix('/') {
+            assert_eq!(open.pop().as_deref(), Some(closed), "in {tag}");
+        } else if name != "meta" {
+            open.push(name);
+        }
+    }
+    assert_eq!(open, Vec::<String>::new());
+}
+
+/// No script, no other file, no handler of events: only elements and attributes that draw.
+fn check_self_contained(page: &str) {
+    let elements = "html head meta title style body main header section h1 h2 h3 p ul li div span figure figcaption \
+                    table thead tbody tr th td code pre strong svg path rect text";
+    let attributes = "lang charset name content class viewBox width height aria-hidden role x y rx d text-anchor transform";
+    for (tag, _) in tags(page) {
+        let tag = tag.trim_start_matches('/').trim_end_matches('/');
+        if tag == "!doctype html" {
+            continue;
+        }
+        let (name, rest) = tag.split_once(' ').unwrap_or((tag, ""));
+        assert!(elements.split_whitespace().any(|e| e == name), "<{tag}>");
+        // Every second piece between quotes is a value.
+        for attribute in rest.split('"').step_by(2).filter(|a| !a.is_empty()) {
+            let attribute = attribute.trim().trim_end_matches('=');
+            assert!(
+                attributes.split_whitespace().any(|a| a == attribute),
+                "{attribute} in <{tag}>"
+            );
+        }
+    }
+    let style = page.split_once("<style>").unwrap().1;
+    let style = style.split_once("</style>").unwrap().0;
+    for forbidden in ["url(", "@import", "://"] {
+        assert!(!style.contains(forbidden), "{forbidden}");
+    }
+}
+
+#[test]
+fn a_report_says_what_the_diagnosis_says() {
+    let measurement = import_csv("process-02", &bytes("process-02"), None).unwrap();
+    let (diagnosis, page) = page(&measurement, "hysteron diagnose process-02.csv");
+    check_well_formed(&page);
+    check_self_contained(&page);
+    let last = diagnosis.steps.last().unwrap();
+    for text in [
+        diagnosis.verdict.text.as_str(),
+        "u_acting(t) = u(t - tau)",
+        "T dy/dt + y = K (u_acting + F)",
+        "hysteron diagnose process-02.csv",
+        "4711 bytes",
+        &sha256(b"abc"),
+        "Hysteron 1.2.3",
+        "prefers-color-scheme: dark",
+        "@media print",
+        &last
+            .findings
+            .first()
+            .map_or_else(String::new, |f| f.text.clone()),
+        &diagnosis.steps[0].findings[0].text,
+    ] {
+        assert!(page.contains(text), "'{text}' is missing");
+    }
+    // Detail, its residual, the whole residual; one picture an axis at least; the waterfall.
+    assert!(page.matches("<figure>").count() >= 5);
+    for parameter in &last.parameters {
+        let cell = format!("<code>{}</code>", parameter.name);
+        assert!(page.contains(&cell), "{cell} is missing");
+    }
+}
+
+#[test]
+fn text_from_a_file_never_becomes_markup() {
+    let text = String::from_utf8(bytes("process-02")).unwrap();
+    let hostile = "\"><script>alert(1)</script><img src=x onerror=alert(1)>&amp;";
+    let mut measurement = import_csv(hostile, text.as_bytes(), None).unwrap();
+    measurement.warnings.push(hostile.to_owned());
+    measurement.outputs[0].name = hostile.to_owned();
+    measurement.outputs[0].unit = hostile.to_owned();
+    measurement.input.unit = hostile.to_owned();
+    let (_, page) = page(&measurement, hostile);
+    check_well_formed(&page);
+    check_self_contained(&page);
+}
