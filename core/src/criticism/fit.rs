@@ -98,11 +98,7 @@ impl Fit {
     ) -> Self {
         structure.clamp(&mut values, scales);
         let motion = simulate(data, &structure, &values, &starts);
-<<<<<<< HEAD
-        let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE);
-=======
-        let cost = robust_cost(data, &motion) + structure.prior_cost(&values);
->>>>>>> files
+        let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE) + structure.prior_cost(&values);
         let p = values.len();
         Self {
             structure,
@@ -128,25 +124,21 @@ impl Fit {
         let p = self.values.len();
         let steps = self.difference_steps(data, scales);
         let columns = self.columns(data, &steps, scales);
-<<<<<<< HEAD
         let scale = oddness(data, &self.motion);
-        let (matrix, gradient, windows) = self.normal_equations(data, &columns, scale);
-        let present = robust_cost(data, &self.motion, scale);
-=======
-        let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns);
+        let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns, scale);
+        let present = self.objective(data, &self.motion, &self.values, scale);
         let priors = self.structure.priors();
         // The equations of the data stand for their cost divided by this.
-        let scale = if priors.is_empty() {
+        let share = if priors.is_empty() {
             1.0
         } else {
-            robust_scale(data, &self.motion)
+            robust_share(data, &self.motion, scale)
         };
         for (j, value, tolerance) in &priors {
-            let weight = 1.0 / (scale * tolerance * tolerance);
+            let weight = 1.0 / (share * tolerance * tolerance);
             matrix[(*j, *j)] += weight;
             gradient[*j] += weight * (value - self.values[*j]);
         }
->>>>>>> files
         let mut lowered = false;
         while self.damping < MAX_DAMPING {
             let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
@@ -154,20 +146,12 @@ impl Fit {
                 self.damping *= 10.0;
                 continue;
             };
-<<<<<<< HEAD
             let (starts, motion) = self.motion_from(data, &values, starts, scale);
-            let cost = robust_cost(data, &motion, scale);
+            let cost = self.objective(data, &motion, &values, scale);
             if cost <= present {
                 let fall = (present - cost) / present.max(f64::MIN_POSITIVE);
-                self.cost = robust_cost(data, &motion, ODD_MEAN_SQUARE);
+                self.cost = self.objective(data, &motion, &values, ODD_MEAN_SQUARE);
                 (self.values, self.starts, self.motion) = (values, starts, motion);
-=======
-            let (starts, motion) = self.motion_from(data, &values, starts);
-            let cost = robust_cost(data, &motion) + self.structure.prior_cost(&values);
-            if cost <= self.cost {
-                let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
-                (self.values, self.starts, self.motion, self.cost) = (values, starts, motion, cost);
->>>>>>> files
                 self.damping = (self.damping * 0.2).max(1e-9);
                 lowered = fall > COST_TOLERANCE;
                 break;
@@ -176,7 +160,7 @@ impl Fit {
         }
         self.information = reduced(&matrix, &gradient, &windows, data, p).0;
         for (j, _, tolerance) in &priors {
-            self.information[(*j, *j)] += (1.0 - 1.0 / scale) / (tolerance * tolerance);
+            self.information[(*j, *j)] += (1.0 - 1.0 / share) / (tolerance * tolerance);
         }
         if !lowered {
             // Once more with long difference steps, which see past the kinks around a stall.
@@ -184,6 +168,11 @@ impl Fit {
             self.damping = RESTART_DAMPING;
         }
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
+    }
+
+    /// What a step must lower: the cost of the data and of what the user knows before.
+    fn objective(&self, data: &Data, motion: &Motion, values: &[f64], scale: f64) -> f64 {
+        robust_cost(data, motion, scale) + self.structure.prior_cost(values)
     }
 
     /// Fits the baseline alone, the effects as they are: with a wrong body the values of a new effect
@@ -208,11 +197,8 @@ impl Fit {
         scale: f64,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-<<<<<<< HEAD
-        if robust_cost(data, &moved, scale) <= robust_cost(data, &self.motion, scale) {
-=======
-        if robust_cost(data, &moved) + self.structure.prior_cost(values) <= self.cost {
->>>>>>> files
+        let present = self.objective(data, &self.motion, &self.values, scale);
+        if self.objective(data, &moved, values, scale) <= present {
             return (starts, moved);
         }
         let stayed = simulate(data, &self.structure, values, &self.starts);
@@ -253,23 +239,13 @@ impl Fit {
             position: slope(&moved.position, &self.motion.position, step),
             velocity: slope(&moved.velocity, &self.motion.velocity, step),
         };
-        let n = data.len();
-        let still = || Motion {
-            position: vec![0.0; n],
-            velocity: vec![0.0; n],
-        };
         let fixed = self.structure.fixed();
         let mut columns: Vec<Motion> = steps
             .iter()
             .enumerate()
             .map(|(j, step)| {
-<<<<<<< HEAD
-                if j >= self.held {
+                if j >= self.held || fixed[j] {
                     return Motion::still(data.len());
-=======
-                if fixed[j] {
-                    return still();
->>>>>>> files
                 }
                 let mut values = self.values.clone();
                 values[j] += step;
@@ -296,11 +272,7 @@ impl Fit {
         if data.has_position {
             columns.push(difference(moved(dx, 0.0), dx));
         } else {
-<<<<<<< HEAD
             columns.push(Motion::still(data.len()));
-=======
-            columns.push(still());
->>>>>>> files
         }
         columns.push(difference(moved(0.0, dv), dv));
         columns
@@ -464,11 +436,7 @@ impl Fit {
             }
         }
         self.motion = simulate(data, &self.structure, &self.values, &self.starts);
-<<<<<<< HEAD
-        self.cost = robust_cost(data, &self.motion, ODD_MEAN_SQUARE);
-=======
-        self.cost = robust_cost(data, &self.motion) + self.structure.prior_cost(&self.values);
->>>>>>> files
+        self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
@@ -501,11 +469,7 @@ impl Fit {
             }
             self.motion = simulate(data, &self.structure, &self.values, &self.starts);
         }
-<<<<<<< HEAD
-        self.cost = robust_cost(data, &self.motion, ODD_MEAN_SQUARE);
-=======
-        self.cost = robust_cost(data, &self.motion) + self.structure.prior_cost(&self.values);
->>>>>>> files
+        self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance; 0 for fixed ones.
@@ -693,11 +657,11 @@ fn robust_cost(data: &Data, motion: &Motion, scale: f64) -> f64 {
 }
 
 /// Change of [`robust_cost`] for a change of the squared residuals as [`window_weights`] weigh them.
-fn robust_scale(data: &Data, motion: &Motion) -> f64 {
+fn robust_share(data: &Data, motion: &Motion, scale: f64) -> f64 {
     let (mut logs, mut count) = (0.0, 0.0);
     for (cost, n) in fitted_windows(data, motion) {
         if n > 0.0 {
-            logs += n * (cost / (n * ODD_MEAN_SQUARE)).ln_1p();
+            logs += n * (cost / (n * scale)).ln_1p();
             count += n;
         }
     }

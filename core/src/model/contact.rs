@@ -93,25 +93,16 @@ impl Contact {
     ) {
         // The stiffness stays, so a lower level is reached at a smaller deflection.
         let limit = level / self.stiffness;
-<<<<<<< HEAD
-        *deflection = deflection.max(-limit).min(limit);
-        let acting = Acting { w, force, level };
-        let mut left = h;
-        for _ in 0..MAX_PIECES {
-            // Also where a wild state has made it no number.
-            if left.is_nan() || left <= 0.0 {
-=======
         if limit.is_nan() {
             // A wild trial of a fit; its motion is no number any more.
             return;
         }
-        *deflection = deflection.clamp(-limit, limit);
+        *deflection = deflection.max(-limit).min(limit);
         let acting = Acting { w, force, level };
         let mut left = h;
         for _ in 0..MAX_PIECES {
             // Not so either where a wild motion has used a time that is no number.
             if !(left > 0.0 && motion.v.is_finite()) {
->>>>>>> files
                 return;
             }
             let direction = if motion.v == 0.0 {
