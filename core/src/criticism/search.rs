@@ -227,17 +227,6 @@ impl Search {
         if fit.cost > PROMISING * self.scouted {
             // Perhaps a wrong body led the new effect astray.
             other.fit_body(scout, scales);
-            eprintln!(
-                "DBG body {:?} {:?} {:.4e}",
-                other
-                    .structure
-                    .effects
-                    .iter()
-                    .map(|e| e.id().as_str())
-                    .collect::<Vec<_>>(),
-                other.values,
-                other.cost
-            );
             for _ in 0..SCAN_ITERATIONS {
                 other.iterate(scout, scales);
             }

@@ -199,19 +199,32 @@ impl Excitation {
         }
     }
 
-    /// Passes a signal through a first-order lag, straight between its samples.
+    /// Passes a signal through a first-order lag, straight between its samples. A run that begins within
+    /// the record begins as if the signal had come the same way before.
     fn slow_down(&self, signal: &mut [f64], lag: f64) {
-        let Some(mut slow) = signal.first().copied() else {
-            return;
-        };
-        let mut before = slow;
-        for (value, time) in signal[1..].iter_mut().zip(self.time.windows(2)) {
-            let (h, now) = (time[1] - time[0], *value);
-            let (decay, slope) = ((-h / lag).exp(), (now - before) / h);
-            // The lag follows a ramp at the distance slope * lag.
-            slow = now - slope * lag + (slow - before + slope * lag) * decay;
-            before = now;
-            *value = slow;
+        for (from, end) in &self.runs {
+            let (Some(signal), Some(time)) =
+                (signal.get_mut(*from..*end), self.time.get(*from..*end))
+            else {
+                continue;
+            };
+            if signal.len() < 2 {
+                continue;
+            }
+            let mut before = signal[0];
+            let mut slow = before;
+            if *from > 0 {
+                slow -= lag * (signal[1] - signal[0]) / (time[1] - time[0]);
+                signal[0] = slow;
+            }
+            for (value, time) in signal[1..].iter_mut().zip(time.windows(2)) {
+                let (h, now) = (time[1] - time[0], *value);
+                let (decay, slope) = ((-h / lag).exp(), (now - before) / h);
+                // The lag follows a ramp at the distance slope * lag.
+                slow = now - slope * lag + (slow - before + slope * lag) * decay;
+                before = now;
+                *value = slow;
+            }
         }
     }
 
