@@ -90,12 +90,15 @@ impl Search {
         let replaced = instead.filter(|(from, index)| related(from.structure.effects[*index]));
         let relatives = contained.chain(replaced);
         for (from, index) in relatives {
-            let (other, baseline) = (from.structure.effects[index], structure.baseline_len());
-            let lent = &from.values[from.structure.range(index)];
+            let other = from.structure.effects[index];
+            let mut rest = from.values.clone();
+            let lent: Vec<f64> = rest.drain(from.structure.range(index)).collect();
+            if rest.len() != kept.len() {
+                continue;
+            }
             for mut start in effect.starts(probe) {
-                lend(effect, &mut start, other, lent);
-                let mut values = kept.clone();
-                values[..baseline].copy_from_slice(&from.values[..baseline]);
+                lend(effect, &mut start, other, &lent);
+                let mut values = rest.clone();
                 values.extend(start);
                 points.push((values, from.starts.clone()));
                 if same_dimensions(effect, other) {
