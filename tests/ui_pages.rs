@@ -1,5 +1,12 @@
 //! The pages, as a user sees and works them: pictures of fixed size, and the way from a file to the answer.
 
+#[path = "support/drive_rig.rs"]
+#[allow(dead_code)]
+mod drive_rig;
+#[path = "support/random.rs"]
+#[allow(dead_code)]
+mod random;
+
 use std::time::Duration;
 
 use egui_kittest::kittest::Queryable as _;
@@ -172,6 +179,28 @@ fn an_effect_of_ones_own_is_typed_and_added() {
     let state = harness.state().hook_state()["compare"].clone();
     assert_eq!(state["effects"], serde_json::json!(["bump"]), "{state}");
     assert_eq!(state["message"], serde_json::Value::Null);
+}
+
+#[test]
+fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
+    let rig = drive_rig::DriveRig {
+        excitation: drive_rig::Excitation::Multisine { amplitude: 0.08 },
+        stranger: Some(drive_rig::Stranger::SpeedBump {
+            torque: 0.05,
+            centre: 3.0,
+            width: 0.5,
+        }),
+        ..drive_rig::DriveRig::default()
+    };
+    let mut harness = app("compare");
+    harness.step();
+    let ctx = harness.ctx.clone();
+    let csv = rig.measure().to_csv();
+    harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
+    wait_until_idle(&mut harness);
+    harness.get_by_label("What is missing, estimated without a model");
+    harness.get_by_label_contains("A force that depends on the velocity alone");
+    picture(&mut harness, "compare_missing_force");
 }
 
 #[test]

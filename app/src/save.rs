@@ -7,6 +7,10 @@ pub struct Document {
     /// Suggested name, with its ending.
     pub name: String,
     /// What kind of file it is, for the dialog.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        expect(dead_code, reason = "a download has no dialog")
+    )]
     pub kind: &'static str,
     /// Its media type.
     #[cfg_attr(

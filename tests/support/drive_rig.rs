@@ -164,6 +164,7 @@ pub enum Stranger {
     /// One hard spot: drag of this torque (N m) within so many rad of the position.
     HardSpot { torque: f64, at: f64, width: f64 },
     /// A torque that pushes back at one position: `-torque exp(-((x - at)/width)^2)`, N m and rad.
+    #[allow(dead_code, reason = "not every test hides it")]
     PositionBump { torque: f64, at: f64, width: f64 },
 }
 

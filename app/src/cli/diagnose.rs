@@ -295,11 +295,11 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
     ];
     for (option, value) in options {
         if let Some(value) = value {
-            command.push_str(&format!(" {option} {}", report::shell_word(value)));
+            command.extend([" ", option, " ", &report::shell_word(value)]);
         }
     }
     for effect in &arguments.effect {
-        command.push_str(&format!(" --effect {}", report::shell_word(effect)));
+        command.extend([" --effect ", &report::shell_word(effect)]);
     }
     Provenance {
         command,

@@ -184,7 +184,7 @@ pub(super) fn contradictions(session: &Session, model: &Scored, best: f64) -> Ve
                 Status::Fixed => 0.0,
             };
             let clear = CLEAR * wanted.std_error.hypot(tolerance);
-            ((wanted.value - known.value).abs() > clear).then(|| Contradiction {
+            ((wanted.value - known.value).abs() > clear).then_some(Contradiction {
                 effect: wanted.effect,
                 name: wanted.name,
                 held: known.value,

@@ -1,6 +1,8 @@
 //! What is missing where no effect explains it: a force, an input or an error of an output, against velocity,
 //! position and time.
 
+use std::fmt::Write as _;
+
 use serde::{Deserialize, Serialize};
 
 use super::session::{Scored, Session};
@@ -109,13 +111,14 @@ fn part(
         .filter(|p| p.value.abs() > CLEAR * p.std_error)
         .max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
     if let Some(p) = strongest {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             "; it is strongest from {:.3} to {:.3}{}, with {}",
             p.from,
             p.to,
             shown(axis_unit),
             with_error(p.value, p.std_error, unit)
-        ));
+        );
     }
     text.push('.');
     MissingPart {

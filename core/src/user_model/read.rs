@@ -142,7 +142,7 @@ impl Reader<'_> {
                 );
                 return Err(self.error(&value.span(), text));
             }
-            for effect in effects.iter() {
+            for effect in effects {
                 let present = self.effect(effect, kind, own)?;
                 if model.find(present.id).is_some() {
                     let text = format!("{} is there twice: once is enough", present.id);

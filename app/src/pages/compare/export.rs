@@ -58,7 +58,7 @@ fn command(page: &Compare, file: &str) -> String {
     let mut command = format!("hysteron diagnose {}", report::shell_word(file));
     let file = page.model_file.iter().map(|name| ("--model", name));
     for (option, value) in file.chain(page.own.iter().map(|line| ("--effect", line))) {
-        command.push_str(&format!(" {option} {}", report::shell_word(value)));
+        command.extend([" ", option, " ", &report::shell_word(value)]);
     }
     command
 }

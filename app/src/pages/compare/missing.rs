@@ -1,6 +1,6 @@
 //! Where no effect explains the rest: what is missing, estimated without a model.
 
-use egui_plot::{HLine, Line, Plot, PlotPoints, Polygon};
+use egui_plot::{HLine, Line, Plot, PlotPoints};
 use hysteron_core::criticism::{MissingPart, StepReport};
 
 use crate::theme;
@@ -21,7 +21,7 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
         ui.label(&part.text);
         plot_ui(part, ui);
     }
-    ui.small("Steps over one axis at a time, with a band of two standard errors.");
+    ui.small("Steps over one axis at a time, with bars of two standard errors.");
 }
 
 fn plot_ui(part: &MissingPart, ui: &mut egui::Ui) {
@@ -43,22 +43,19 @@ fn plot_ui(part: &MissingPart, ui: &mut egui::Ui) {
         .allow_zoom(false)
         .show(ui, |plot| {
             for p in &part.parts {
-                // Bands that know nothing would squeeze the rest.
+                // Bars that know nothing would squeeze the rest.
                 let half = (2.0 * p.std_error).min(2.0 * size);
-                let (low, high) = (p.value - half, p.value + half);
-                let corners = vec![[p.from, low], [p.to, low], [p.to, high], [p.from, high]];
-                let band = Polygon::new("", PlotPoints::from(corners));
-                plot.polygon(
-                    band.fill_color(theme::RESIDUAL.gamma_multiply(0.25))
-                        .stroke(egui::Stroke::NONE),
+                let middle = 0.5 * (p.from + p.to);
+                let bar = vec![[middle, p.value - half], [middle, p.value + half]];
+                let step = vec![[p.from, p.value], [p.to, p.value]];
+                let faint = theme::RESIDUAL.gamma_multiply(0.5);
+                plot.line(Line::new("", PlotPoints::from(bar)).color(faint).width(1.5));
+                plot.line(
+                    Line::new("", PlotPoints::from(step))
+                        .color(theme::RESIDUAL)
+                        .width(3.0),
                 );
             }
-            let ends = part
-                .parts
-                .iter()
-                .flat_map(|p| [[p.from, p.value], [p.to, p.value]]);
-            let line = Line::new("estimate", ends.collect::<PlotPoints>());
-            plot.line(line.color(theme::RESIDUAL).width(2.0));
             plot.hline(HLine::new("", 0.0).color(theme::NOISE).width(1.0));
         });
 }

@@ -85,17 +85,12 @@ impl Formula {
                 Kind::Drive => &[Kind::Drive],
                 Kind::Process => &[Kind::Process],
             },
+            linear: start::linear(&tree, names.len()),
             tree: Box::leak(Box::new(tree)),
-            linear: start::linear(tree_ref(&self.text, kind)?, names.len()),
             order,
             specs: specs.leak(),
         })))
     }
-}
-
-/// The tree once more, for looking at it.
-fn tree_ref(text: &str, kind: Kind) -> Result<parse::Expr, FormulaError> {
-    parse::parse(text, kind).map(|(tree, _)| tree)
 }
 
 /// A formula as an effect.

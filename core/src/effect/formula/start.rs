@@ -22,8 +22,7 @@ const SEED: u64 = 1;
 const SMALLEST: f64 = 3e-3;
 
 /// Whether the force is linear in each parameter, all of those together: tried at a few points.
-pub(super) fn linear(tree: Expr, count: usize) -> Vec<bool> {
-    let tree = &tree;
+pub(super) fn linear(tree: &Expr, count: usize) -> Vec<bool> {
     let mut random = Pcg64::seed_from_u64(SEED);
     let mut draw = |low: f64, high: f64| random.random_range(low..high);
     let mut chosen = vec![false; count];
@@ -59,12 +58,15 @@ pub(super) fn linear(tree: Expr, count: usize) -> Vec<bool> {
 /// Order of the parameters in the effect: the first one in which the force is linear leads, since it tells
 /// whether the effect is there at all.
 pub(super) fn order(tree: &Expr, count: usize) -> Vec<usize> {
-    let linear = linear(tree.clone(), count);
+    let linear = linear(tree, count);
     let leading = linear.iter().position(|l| *l).unwrap_or(0);
     let mut order = vec![leading];
     order.extend((0..count).filter(|k| *k != leading));
     order
 }
+
+/// A force at an instant.
+type Force<'a> = dyn Fn(&Instant) -> f64 + 'a;
 
 /// A point with the share of the squared error that it leaves.
 type Trial = (Vec<f64>, f64);
@@ -164,14 +166,14 @@ fn judge(tree: &Expr, linear: &[bool], probe: &Probe, mut point: Vec<f64>) -> Op
             unit
         })
         .collect();
-    let forces: Vec<Box<dyn Fn(&Instant) -> f64 + '_>> = units
+    let forces: Vec<Box<Force>> = units
         .iter()
-        .map(|unit| -> Box<dyn Fn(&Instant) -> f64> {
+        .map(|unit| -> Box<Force> {
             let base = &base;
             Box::new(move |at| finite(tree.value(at, unit)) - finite(tree.value(at, base)))
         })
         .collect();
-    let references: Vec<&dyn Fn(&Instant) -> f64> = forces.iter().map(AsRef::as_ref).collect();
+    let references: Vec<&Force> = forces.iter().map(AsRef::as_ref).collect();
     let fit = probe.regress_instants(&references)?;
     for (k, coefficient) in chosen.iter().zip(&fit.coefficients) {
         point[*k] = *coefficient;
