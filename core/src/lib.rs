@@ -16,6 +16,7 @@
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |
 //! | [`measurement`] | what was measured? |
+//! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
 //! | [`user_model`] | what does the user know of the model? |
@@ -23,6 +24,7 @@
 //! | [`report`] | what was found, on one page |
 #![warn(missing_docs)]
 
+pub mod backlash;
 pub mod criticism;
 pub mod effect;
 pub mod explore;

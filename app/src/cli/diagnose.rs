@@ -229,7 +229,18 @@ pub(super) fn one(
 ) -> Result<Report, String> {
     let arguments = setup.arguments;
     let started = Instant::now();
-    let (measurement, bytes) = read(file, arguments)?;
+    let options = ImportOptions {
+        kind: arguments.kind.map(|k| match k {
+            Kind::Drive => measurement::Kind::Drive,
+            Kind::Process => measurement::Kind::Process,
+        }),
+        mapping: arguments
+            .map
+            .as_ref()
+            .map_or_else(Mapping::default, |m| m.value.clone()),
+        torque_constant: arguments.torque_constant.as_ref().map(|c| c.value),
+    };
+    let (measurement, bytes) = read(file, &options)?;
     let name = measurement.name.clone();
     let blank = || UserModel::blank(measurement.kind);
     let mut given = setup.model.clone().unwrap_or_else(blank);
@@ -309,8 +320,11 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
     }
 }
 
-/// The measurement and the bytes that it was read from.
-fn read(path: &Path, arguments: &Arguments) -> Result<(Measurement, Vec<u8>), String> {
+/// The measurement and the bytes that it was read from; else one line that says what is wrong with it.
+pub(super) fn read(
+    path: &Path,
+    options: &ImportOptions,
+) -> Result<(Measurement, Vec<u8>), String> {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
@@ -322,19 +336,7 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Measurement, Vec<u8>), St
         ));
     }
     let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
-    let kind = arguments.kind.map(|k| match k {
-        Kind::Drive => measurement::Kind::Drive,
-        Kind::Process => measurement::Kind::Process,
-    });
-    let options = ImportOptions {
-        kind,
-        mapping: arguments
-            .map
-            .as_ref()
-            .map_or_else(Mapping::default, |m| m.value.clone()),
-        torque_constant: arguments.torque_constant.as_ref().map(|c| c.value),
-    };
-    let measurement = import(&name, &bytes, &options).map_err(|e| e.to_string())?;
+    let measurement = import(&name, &bytes, options).map_err(|e| e.to_string())?;
     Ok((measurement, bytes))
 }
 
