@@ -16,11 +16,13 @@
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |
 //! | [`measurement`] | what was measured? |
+//! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 #![warn(missing_docs)]
 
+pub mod backlash;
 pub mod criticism;
 pub mod effect;
 pub mod explore;

@@ -200,6 +200,10 @@ pub struct DriveRig {
     /// Time constant of the filter on position and velocity.
     pub sensor_lag: f64,
     pub load: Option<Load>,
+    /// Where the load stands at the start, rad; the motor starts at 0.
+    pub load_start: f64,
+    /// Whether the load's position is recorded for reference.
+    pub load_recorded: bool,
     pub stranger: Option<Stranger>,
 }
 
@@ -224,6 +228,8 @@ impl Default for DriveRig {
             dead_zone: 0.0,
             sensor_lag: 0.0,
             load: None,
+            load_start: 0.0,
+            load_recorded: false,
             stranger: None,
         }
     }
@@ -252,10 +258,14 @@ impl DriveRig {
         let substeps = self.refine * if stiff { SUBSTEPS_CONTACT } else { SUBSTEPS };
         let h = SAMPLING / substeps as f64;
         let late = (self.delay / h).round() as usize;
-        let mut s = State::default();
+        let mut s = State {
+            x2: self.load_start,
+            ..State::default()
+        };
         let mut acting: Vec<f64> = Vec::with_capacity(self.samples);
         let mut memory = 0.0;
         let (mut time, mut input, mut position, mut velocity) = (vec![], vec![], vec![], vec![]);
+        let mut load_position = vec![];
         for i in 0..self.samples {
             let t = i as f64 * SAMPLING;
             let (x, v) = if self.sensor_lag > 0.0 {
@@ -269,6 +279,7 @@ impl DriveRig {
             input.push(u);
             position.push((x / ENCODER).round() * ENCODER);
             velocity.push(measured);
+            load_position.push((s.x2 / ENCODER).round() * ENCODER);
             acting.push(self.amplified(u, &mut memory));
             for j in 0..substeps {
                 let now = i * substeps + j;
@@ -276,7 +287,13 @@ impl DriveRig {
                 s = self.advance(s, u, t + (j as f64 + 0.5) * h, h);
             }
         }
-        self.record(time, input, position, velocity)
+        let mut record = self.record(time, input, position, velocity);
+        if self.load_recorded {
+            record
+                .reference
+                .push(channel(Quantity::LoadPosition, "x2", "rad", load_position));
+        }
+        record
     }
 
     /// What the amplifier makes of a command, before delay and lag.
@@ -369,12 +386,6 @@ impl DriveRig {
     }
 
     fn record(&self, time: Vec<f64>, input: Vec<f64>, x: Vec<f64>, v: Vec<f64>) -> Measurement {
-        let channel = |quantity, name: &str, unit: &str, values| Channel {
-            quantity,
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-            values,
-        };
         let mut outputs = Vec::new();
         if self.recorded != Recorded::VelocityOnly {
             outputs.push(channel(Quantity::Position, "x1", "rad", x));
@@ -391,6 +402,15 @@ impl DriveRig {
             reference: vec![],
             warnings: vec![],
         }
+    }
+}
+
+fn channel(quantity: Quantity, name: &str, unit: &str, values: Vec<f64>) -> Channel {
+    Channel {
+        quantity,
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        values,
     }
 }
 

@@ -154,7 +154,16 @@ pub(super) fn one(
     mut show: impl FnMut(f64, &str),
 ) -> Result<Report, String> {
     let started = Instant::now();
-    let measurement = read(file, arguments)?;
+    let kind = arguments.kind.map(|k| match k {
+        Kind::Drive => measurement::Kind::Drive,
+        Kind::Process => measurement::Kind::Process,
+    });
+    let options = ImportOptions {
+        kind,
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: arguments.torque_constant,
+    };
+    let measurement = read(file, &options)?;
     let name = measurement.name.clone();
     let mut job = DiagnosisJob::new(&measurement).map_err(|e| format!("{name}: {e}"))?;
     loop {
@@ -172,7 +181,8 @@ pub(super) fn one(
     }
 }
 
-fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
+/// Reads and imports one file; else one line that says what is wrong with it.
+pub(super) fn read(path: &Path, options: &ImportOptions) -> Result<Measurement, String> {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
@@ -184,16 +194,7 @@ fn read(path: &Path, arguments: &Arguments) -> Result<Measurement, String> {
         ));
     }
     let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
-    let kind = arguments.kind.map(|k| match k {
-        Kind::Drive => measurement::Kind::Drive,
-        Kind::Process => measurement::Kind::Process,
-    });
-    let options = ImportOptions {
-        kind,
-        mapping: arguments.map.clone().unwrap_or_default(),
-        torque_constant: arguments.torque_constant,
-    };
-    import(&name, &bytes, &options).map_err(|e| e.to_string())
+    import(&name, &bytes, options).map_err(|e| e.to_string())
 }
 
 /// One line on stderr that is written over again and again; nothing where stderr is no terminal.

@@ -5,6 +5,7 @@
 
 mod batch;
 mod diagnose;
+mod gap;
 mod limit_cycle;
 mod simulate;
 mod text;
@@ -33,6 +34,8 @@ enum Command {
     Simulate(simulate::Arguments),
     /// Predict a loop's oscillation: describing function, exact, simulated.
     LimitCycle(limit_cycle::Arguments),
+    /// Say how wide a drive's hidden gap is, from the motor's columns of a drifting test.
+    Gap(gap::Arguments),
 }
 
 fn dispatch(command: &Command) -> ExitCode {
@@ -40,6 +43,7 @@ fn dispatch(command: &Command) -> ExitCode {
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Simulate(arguments) => finish(simulate::run(arguments)),
         Command::LimitCycle(arguments) => finish(limit_cycle::run(arguments)),
+        Command::Gap(arguments) => finish(gap::run(arguments)),
     }
 }
 

@@ -1,0 +1,127 @@
+//! Is it a relay's limit cycle, where does each cycle begin, and when does the asymmetry flip?
+
+use super::record::Record;
+
+/// Fewest cycles of a drifting test.
+const FEWEST: usize = 30;
+
+/// Fewest samples in a cycle; with fewer its contacts cannot be placed.
+const FEWEST_SAMPLES: f64 = 6.0;
+
+/// Share of the swing within which a sample counts as on a level of the relay.
+const ON_LEVEL: f64 = 0.1;
+
+/// Share of samples that must be on a level, and share of cycles that must be like the rest.
+const MOSTLY: f64 = 0.9;
+
+/// Change of the asymmetry, of its range, that counts as a flip; and the least range that is one.
+const FLIP: f64 = 0.5;
+const LEAST_ASYMMETRY: f64 = 0.01;
+
+/// Cycles of the relay: `starts[k]..starts[k + 1]`, each from a switch up to the next.
+pub(super) struct Cycles {
+    pub starts: Vec<usize>,
+    /// Whether a new asymmetry begins with this cycle.
+    pub flips: Vec<bool>,
+    /// Typical samples in a cycle.
+    pub length: f64,
+    /// Half the swing of the input, N m or N.
+    pub gain: f64,
+    /// Half the swing of the velocity, rad/s or m/s.
+    pub speed: f64,
+}
+
+impl Cycles {
+    /// `None` where the input is not that of a velocity relay in a limit cycle.
+    pub fn new(record: &Record) -> Option<Self> {
+        let u = &record.input;
+        let (low, high) = range(u);
+        let middle = if low < 0.0 && high > 0.0 {
+            0.0
+        } else {
+            0.5 * (low + high)
+        };
+        let starts: Vec<usize> = (1..u.len())
+            .filter(|&i| u[i] > middle && u[i - 1] <= middle)
+            .collect();
+        if starts.len() <= FEWEST {
+            return None;
+        }
+        let mut lengths: Vec<f64> = starts.windows(2).map(|w| (w[1] - w[0]) as f64).collect();
+        let length = median(&mut lengths);
+        let covered = (starts[starts.len() - 1] - starts[0]) as f64;
+        if length < FEWEST_SAMPLES || covered < 0.5 * record.len() as f64 {
+            return None;
+        }
+        let (mut on_level, mut reversing) = (0, 0);
+        let (mut asymmetries, mut gains, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
+        for pair in starts.windows(2) {
+            let span = pair[0]..pair[1];
+            let (low, high) = range(&u[span.clone()]);
+            let near = ON_LEVEL * (high - low);
+            on_level += u[span.clone()]
+                .iter()
+                .filter(|v| (**v - low).min(high - **v) <= near)
+                .count();
+            let (slow, fast) = range(&record.velocity[span]);
+            reversing += usize::from(slow < 0.0 && fast > 0.0);
+            gains.push(0.5 * (high - low));
+            speeds.push(0.5 * (fast - slow));
+            asymmetries.push((high + low) / (high - low));
+        }
+        let count = starts.len() - 1;
+        if (on_level as f64) < MOSTLY * covered || (reversing as f64) < MOSTLY * count as f64 {
+            return None;
+        }
+        let (least, most) = range(&asymmetries);
+        let flips = (0..count)
+            .map(|k| {
+                k > 0
+                    && most - least > LEAST_ASYMMETRY
+                    && (asymmetries[k] - asymmetries[k - 1]).abs() > FLIP * (most - least)
+            })
+            .collect();
+        Some(Self {
+            flips,
+            length,
+            gain: median(&mut gains),
+            speed: median(&mut speeds),
+            starts,
+        })
+    }
+
+    /// Number of whole cycles.
+    pub fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// First cycle and end of each stretch with one asymmetry.
+    pub fn phases(&self) -> Vec<(usize, usize)> {
+        let mut phases = Vec::new();
+        let mut from = 0;
+        for k in 1..=self.count() {
+            if k == self.count() || self.flips[k] {
+                phases.push((from, k));
+                from = k;
+            }
+        }
+        phases
+    }
+}
+
+pub(super) fn range(values: &[f64]) -> (f64, f64) {
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(*v), h.max(*v))
+        })
+}
+
+/// Median; the order of the values is lost. 0 without values.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}

@@ -1,0 +1,361 @@
+//! The gap from the motor's columns.
+
+use serde::{Deserialize, Serialize};
+
+use crate::measurement::Measurement;
+
+use super::contacts::{Drift, Touch, drift, touches};
+use super::cycles::{Cycles, range};
+use super::free_motor::FreeMotor;
+use super::likelihood::{Event, Fit, Scales, fit};
+use super::record::Record;
+use super::verdict;
+
+/// Standard normal quantile of a two-sided 95 % interval.
+const NORMAL_95: f64 = 1.959_963_984_540_054;
+
+/// Systematic error of a contact's place, as share of the way that the motor goes in a sample at the
+/// speed of its cycle: the shape of a contact is not known better.
+const PLACE_SHARE: f64 = 0.25;
+
+/// Relative standard errors up to which an estimate is good, fair, and stated at all.
+const GOOD: f64 = 0.03;
+const FAIR: f64 = 0.08;
+const STATED: f64 = 0.25;
+
+/// Traverses of a good estimate.
+const GOOD_TRAVERSES: usize = 3;
+
+/// Contacts with one side only from which engagement is believed.
+const FEWEST_CONTACTS: usize = 3;
+
+/// Speed at the start, of the cycle's, up to which the motor starts at rest.
+const AT_REST: f64 = 0.1;
+
+/// An end of the gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// The motor pushes the load towards positive positions.
+    Positive,
+    /// The motor pushes the load towards negative positions.
+    Negative,
+}
+
+impl Side {
+    /// 1 or -1.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Positive => 1.0,
+            Self::Negative => -1.0,
+        }
+    }
+}
+
+/// The motor met the load.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// When it began, s.
+    pub time: f64,
+    /// Position of the motor then, rad or m.
+    pub position: f64,
+    /// At which end of the gap.
+    pub side: Side,
+    /// Velocity that the motor lost to the load (negative where pushed the other way), rad/s or m/s.
+    pub velocity_loss: f64,
+}
+
+/// From the last contact at one end of the gap to the first at the other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Traverse {
+    /// The contact that it leaves.
+    pub from: Contact,
+    /// The contact that it reaches.
+    pub to: Contact,
+    /// The gap by this traverse: the motor's travel less that of the load meanwhile, rad or m.
+    pub gap: f64,
+    /// Standard deviation of `gap`, mostly from the load's motion.
+    pub std_error: f64,
+}
+
+/// One cycle of the relay, for a plot of the drift.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CycleDrift {
+    /// Middle of the cycle, s.
+    pub time: f64,
+    /// Mean position of the motor in it, rad or m.
+    pub position: f64,
+    /// Drift velocity about it (mean of five cycles), rad/s or m/s.
+    pub rate: f64,
+    /// Change of velocity in the cycle that the motor alone does not explain, rad/s or m/s.
+    pub unexplained: f64,
+    /// Whether the pattern of drift differs from that of the free motor.
+    pub engaged: bool,
+}
+
+/// How the load moves when it is free, in units of the motor's inertia.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadMotion {
+    /// Load inertia over motor inertia.
+    pub inertia_ratio: f64,
+    /// Viscous friction over inertia, 1/s.
+    pub viscous: f64,
+    /// Dry friction over inertia, rad/s^2 or m/s^2.
+    pub dry: f64,
+}
+
+/// How far an estimate can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quality {
+    /// Three traverses or more, standard error at most 3 %.
+    Good,
+    /// Standard error at most 8 %.
+    Fair,
+    /// A gap is stated, with a standard error of up to 25 %.
+    Poor,
+    /// Only one end of the gap was met: the gap rests on a motor that started in the middle of it.
+    AssumedCentre,
+    /// Only one end was met and nothing else tells; no gap stated.
+    OneSide,
+    /// Both ends were met, but the load moved too much in between; no gap stated.
+    Undecided,
+    /// The motor never met a load; no gap stated.
+    NoEngagement,
+    /// Not a velocity relay's limit cycle; no gap stated.
+    NoDriftingTest,
+}
+
+/// What the motor's columns tell about the gap.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GapEstimate {
+    /// The whole gap `2 beta` in `unit`; `None` where none is seen.
+    pub gap: Option<f64>,
+    /// Standard error of `gap`.
+    pub std_error: Option<f64>,
+    /// 95 % confidence interval of the gap.
+    pub interval: Option<[f64; 2]>,
+    /// `rad` or `m`.
+    pub unit: String,
+    /// Crossings of the gap.
+    pub traverses: Vec<Traverse>,
+    /// Every contact found.
+    pub contacts: Vec<Contact>,
+    /// Every cycle, for a plot.
+    pub cycles: Vec<CycleDrift>,
+    /// The load's motion, where both ends were met.
+    pub load: Option<LoadMotion>,
+    /// Longest travel of the cycle's middle, in `unit`.
+    pub travel: f64,
+    /// The verdict in a word.
+    pub quality: Quality,
+    /// The verdict in a sentence.
+    pub text: String,
+}
+
+/// Why a measurement cannot be looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+pub enum GapError {
+    /// A process has no gap.
+    #[error("a process has no gap; expected a drive with columns u [N m] or u [N] and x1 or v1")]
+    NotADrive,
+    /// Nothing of the motor's motion was recorded.
+    #[error("no motor column; expected x1 (position) and/or v1 (velocity)")]
+    NoMotorColumn,
+    /// Values that no checked measurement has.
+    #[error("the columns differ in length, are not finite, or time does not increase")]
+    Damaged,
+    /// Samples so uneven that most of an even grid would be invented.
+    #[error(
+        "the samples are too uneven in time; expected an even sampling time without long pauses"
+    )]
+    UnevenTime,
+}
+
+/// The gap of a drive by a drifting test, from `u` and `x1` and/or `v1` alone; the load's columns are
+/// not read. The module says how. Errors say what is wrong with the measurement; a sound one in which no
+/// gap is seen gives an estimate without a gap and the reason.
+pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> {
+    let record = Record::new(measurement)?;
+    let Some(cycles) = Cycles::new(&record) else {
+        return Ok(nothing(&record, Quality::NoDriftingTest));
+    };
+    let Some(motor) = FreeMotor::new(&record, &cycles) else {
+        return Ok(nothing(&record, Quality::NoDriftingTest));
+    };
+    let drift = drift(&cycles, &motor);
+    let touches = touches(&record, &cycles, &motor, &drift);
+    let mut estimate = nothing(&record, Quality::NoEngagement);
+    estimate.cycles = cycle_drift(&record, &cycles, &drift);
+    let (low, high) = range(
+        &estimate
+            .cycles
+            .iter()
+            .map(|c| c.position)
+            .collect::<Vec<_>>(),
+    );
+    estimate.travel = high - low;
+    estimate.contacts = touches
+        .iter()
+        .map(|t| Contact {
+            time: record.time(t.begin),
+            position: record.position_at(t.begin),
+            side: t.side,
+            velocity_loss: t.jump,
+        })
+        .collect();
+    let place_error = PLACE_SHARE * record.step * cycles.speed;
+    let both = [Side::Positive, Side::Negative]
+        .iter()
+        .all(|side| touches.iter().any(|t| t.side == *side));
+    if both {
+        two_sided(
+            &mut estimate,
+            &record,
+            &cycles,
+            &motor,
+            &touches,
+            place_error,
+        );
+    } else if touches.len() >= FEWEST_CONTACTS {
+        one_sided(&mut estimate, &record, &cycles, place_error);
+    } else {
+        estimate.contacts.clear();
+    }
+    estimate.text = verdict::text(&estimate, cycles.flips.iter().any(|f| *f));
+    Ok(estimate)
+}
+
+fn nothing(record: &Record, quality: Quality) -> GapEstimate {
+    let mut estimate = GapEstimate {
+        gap: None,
+        std_error: None,
+        interval: None,
+        unit: record.unit.clone(),
+        traverses: Vec::new(),
+        contacts: Vec::new(),
+        cycles: Vec::new(),
+        load: None,
+        travel: 0.0,
+        quality,
+        text: String::new(),
+    };
+    estimate.text = verdict::text(&estimate, false);
+    estimate
+}
+
+/// Both ends were met: the likelihood decides.
+fn two_sided(
+    estimate: &mut GapEstimate,
+    record: &Record,
+    cycles: &Cycles,
+    motor: &FreeMotor,
+    touches: &[Touch],
+    place_error: f64,
+) {
+    let events: Vec<Event> = touches
+        .iter()
+        .zip(&estimate.contacts)
+        .map(|(t, c)| Event::new(t, c.time, c.position, record.step))
+        .collect();
+    let (low, high) = range(&record.position);
+    let scales = Scales {
+        step: record.step,
+        speed: cycles.speed,
+        acceleration: motor.acceleration,
+        travel: high - low,
+    };
+    estimate.quality = Quality::Undecided;
+    let Some(fit) = fit(&events, &scales) else {
+        return;
+    };
+    estimate.traverses = traverses(&estimate.contacts, &fit);
+    let gap = 2.0 * fit.half_gap;
+    let error = (2.0 * fit.error).hypot(2.0 * place_error);
+    if !(error < STATED * gap && gap < 2.0 * (high - low)) {
+        return;
+    }
+    estimate.load = Some(LoadMotion {
+        inertia_ratio: 1.0 / fit.inertia_ratio,
+        viscous: fit.slowing.viscous,
+        dry: fit.slowing.dry,
+    });
+    estimate.quality = if error <= GOOD * gap && estimate.traverses.len() >= GOOD_TRAVERSES {
+        Quality::Good
+    } else if error <= FAIR * gap {
+        Quality::Fair
+    } else {
+        Quality::Poor
+    };
+    state(estimate, gap, error);
+}
+
+fn state(estimate: &mut GapEstimate, gap: f64, error: f64) {
+    estimate.gap = Some(gap);
+    estimate.std_error = Some(error);
+    estimate.interval = Some([(gap - NORMAL_95 * error).max(0.0), gap + NORMAL_95 * error]);
+}
+
+fn traverses(contacts: &[Contact], fit: &Fit) -> Vec<Traverse> {
+    contacts
+        .windows(2)
+        .zip(&fit.innovations)
+        .filter(|(pair, _)| pair[0].side != pair[1].side)
+        .map(|(pair, innovation)| Traverse {
+            from: pair[0],
+            to: pair[1],
+            gap: 2.0 * fit.half_gap + pair[1].side.sign() * innovation.value,
+            std_error: innovation.deviation,
+        })
+        .collect()
+}
+
+/// Only one end was met: from the start to the first contact is half a gap if the motor started in the
+/// middle, which is said. What the motor travelled afterwards without meeting the other end must fit.
+fn one_sided(estimate: &mut GapEstimate, record: &Record, cycles: &Cycles, place_error: f64) {
+    estimate.quality = Quality::OneSide;
+    let Some(first) = estimate.contacts.first().copied() else {
+        return;
+    };
+    let sign = first.side.sign();
+    let gap = 2.0 * sign * (first.position - record.position[0]);
+    let at_rest = record.velocity[0].abs() <= AT_REST * cycles.speed;
+    // The load never flies against a push, so that it stays or goes ahead: the way back is free gap.
+    let mut ahead = f64::NEG_INFINITY;
+    let mut free = 0.0_f64;
+    let mut next = estimate.contacts.iter().peekable();
+    for (i, x) in record.position.iter().enumerate() {
+        while let Some(contact) = next.next_if(|c| c.time <= record.time(i as f64)) {
+            ahead = ahead.max(sign * contact.position);
+        }
+        if ahead.is_finite() {
+            free = free.max(ahead - sign * x);
+        }
+    }
+    let error = 2.0 * place_error.hypot(place_error);
+    if at_rest && gap > 4.0 * error && gap > free {
+        estimate.quality = Quality::AssumedCentre;
+        state(estimate, gap, error);
+    }
+}
+
+fn cycle_drift(record: &Record, cycles: &Cycles, drift: &Drift) -> Vec<CycleDrift> {
+    const ABOUT: usize = 2;
+    let starts = &cycles.starts;
+    (0..cycles.count())
+        .map(|k| {
+            let (from, to) = (starts[k], starts[k + 1]);
+            let part = &record.position[from..to];
+            let first = starts[k.saturating_sub(ABOUT)];
+            let last = starts[(k + 1 + ABOUT).min(cycles.count())];
+            CycleDrift {
+                time: record.time(0.5 * (from + to) as f64),
+                position: part.iter().sum::<f64>() / part.len() as f64,
+                rate: (record.position[last] - record.position[first])
+                    / ((last - first) as f64 * record.step),
+                unexplained: drift.change[k],
+                engaged: drift.engaged[k],
+            }
+        })
+        .collect()
+}

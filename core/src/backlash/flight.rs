@@ -1,0 +1,47 @@
+//! How the load moves on its own.
+
+/// Friction of the free load, divided by its inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Slowing {
+    /// Viscous, 1/s.
+    pub viscous: f64,
+    /// Dry, rad/s^2 or m/s^2.
+    pub dry: f64,
+}
+
+/// Way and end of a free flight, and how they follow the velocity at its begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Flight {
+    pub way: f64,
+    pub velocity: f64,
+    pub way_by_velocity: f64,
+    pub velocity_by_velocity: f64,
+}
+
+impl Slowing {
+    /// `dv/dt = -viscous v - dry sgn v` for `time` seconds from `velocity`, exactly; it stops for good.
+    pub fn flight(&self, velocity: f64, time: f64) -> Flight {
+        let (sign, speed) = (velocity.signum(), velocity.abs());
+        let g = self.viscous.max(1e-9);
+        let stops = if self.dry > 0.0 {
+            (g * speed / self.dry).ln_1p() / g
+        } else {
+            f64::INFINITY
+        };
+        let t = time.min(stops);
+        // (1 - e^{-gt})/g, without loss of digits.
+        let moved = -(-g * t).exp_m1() / g;
+        let way = speed * moved - self.dry * (t - moved) / g;
+        let flying = time < stops;
+        Flight {
+            way: sign * way,
+            velocity: if flying {
+                sign * (speed * (-g * t).exp() - self.dry * moved)
+            } else {
+                0.0
+            },
+            way_by_velocity: moved,
+            velocity_by_velocity: if flying { (-g * t).exp() } else { 0.0 },
+        }
+    }
+}

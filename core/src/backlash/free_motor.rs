@@ -1,0 +1,144 @@
+//! The motor alone, and the velocity that it leaves unexplained.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::cycles::{Cycles, median, range};
+use super::record::Record;
+
+/// How late the input may act, s; delay and lag of the drive lie within.
+const LATE: f64 = 2e-3;
+/// Bounds of the same in samples.
+const LAGS: (usize, usize) = (3, 14);
+
+/// Rounds of reweighting; the weights settle within a few.
+const ROUNDS: usize = 8;
+
+/// Tukey's biweight gives nothing to what is farther off, in standard deviations.
+const BIWEIGHT: f64 = 4.685;
+
+/// Speed, of the cycle's, over which dry friction turns its sign; presliding makes it a little soft.
+const SOFT_SIGN: f64 = 0.03;
+
+/// Added to the diagonal, of its own size, so that columns which are alike share.
+const RIDGE: f64 = 1e-9;
+
+/// What the motor alone says to the record.
+pub(super) struct FreeMotor {
+    /// Velocity that the motor alone does not explain, summed from 0; rad/s or m/s.
+    pub unexplained: Vec<f64>,
+    /// Standard deviation of its noise.
+    pub noise: f64,
+    /// Acceleration by the relay's gain, rad/s^2 or m/s^2.
+    pub acceleration: f64,
+}
+
+impl FreeMotor {
+    /// Change of velocity in each step, regressed on the input of the last few steps, on viscous and
+    /// dry friction, a constant torque and one that varies along the travel. Contacts are few samples
+    /// with a large remainder: reweighted least squares with Tukey's biweight takes them out (Beaton
+    /// and Tukey 1974, Technometrics 16). `None` where that has no answer.
+    pub fn new(record: &Record, cycles: &Cycles) -> Option<Self> {
+        let n = record.len();
+        let lags = ((LATE / record.step).ceil() as usize).clamp(LAGS.0, LAGS.1);
+        // A central difference of the position sees the input of the next step as well.
+        let lead = usize::from(!record.has_velocity);
+        let (first, end) = (lags, n.checked_sub(1 + lead)?);
+        let rows = end.checked_sub(first).filter(|r| *r > 10 * (lags + 8))?;
+        let (low, high) = range(&record.position);
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let (gain, speed) = (cycles.gain, cycles.speed);
+        if !(half > 0.0 && gain > 0.0 && speed > 0.0) {
+            return None;
+        }
+        let width = lead + lags + 5;
+        let mut matrix = Vec::with_capacity(rows * width);
+        let mut target = Vec::with_capacity(rows);
+        for i in first..end {
+            let v = 0.5 * (record.velocity[i] + record.velocity[i + 1]) / speed;
+            let x = (record.position[i] - middle) / half;
+            matrix.extend((0..lead + lags).map(|lag| record.input[i + lead - lag] / gain));
+            matrix.extend([v, (v / SOFT_SIGN).tanh(), 1.0, x, x * x]);
+            target.push(record.velocity[i + 1] - record.velocity[i]);
+        }
+        let mut weights = vec![1.0; rows];
+        let mut left = target.clone();
+        let mut solution = DVector::zeros(width);
+        for _ in 0..ROUNDS {
+            solution = solve(&matrix, &target, &weights, width)?;
+            for ((row, left), target) in matrix.chunks_exact(width).zip(&mut left).zip(&target) {
+                *left = target
+                    - row
+                        .iter()
+                        .zip(solution.iter())
+                        .map(|(a, c)| a * c)
+                        .sum::<f64>();
+            }
+            let mut sizes: Vec<f64> = left.iter().map(|e| e.abs()).collect();
+            let spread = median(&mut sizes) / NORMAL_MEDIAN;
+            if spread.is_nan() || spread <= 0.0 {
+                return None;
+            }
+            for (weight, left) in weights.iter_mut().zip(&left) {
+                let q = left / (BIWEIGHT * spread);
+                *weight = (1.0 - q * q).max(0.0).powi(2);
+            }
+        }
+        let mut unexplained = vec![0.0; n];
+        let mut sum = 0.0;
+        for (k, left) in left.iter().enumerate() {
+            sum += left;
+            unexplained[first + k + 1] = sum;
+        }
+        unexplained[end + 1..].fill(sum);
+        let total: f64 = solution.iter().take(lead + lags).sum();
+        Some(Self {
+            noise: noise(&unexplained, cycles),
+            unexplained,
+            acceleration: (total / record.step).abs(),
+        })
+    }
+}
+
+/// Median of the absolute value of a standard normal variable.
+const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
+
+/// Noise of the unexplained velocity: median difference over one and over three steps.
+fn noise(unexplained: &[f64], cycles: &Cycles) -> f64 {
+    let from = cycles.starts[0];
+    let level = |apart: usize| {
+        let mut sizes: Vec<f64> = unexplained[from..]
+            .windows(apart + 1)
+            .map(|w| (w[apart] - w[0]).abs())
+            .collect();
+        median(&mut sizes) / NORMAL_MEDIAN / std::f64::consts::SQRT_2
+    };
+    level(1).max(level(3))
+}
+
+/// Weighted least squares.
+fn solve(matrix: &[f64], target: &[f64], weights: &[f64], width: usize) -> Option<DVector<f64>> {
+    let mut normal = DMatrix::zeros(width, width);
+    let mut right = DVector::zeros(width);
+    for ((row, target), weight) in matrix.chunks_exact(width).zip(target).zip(weights) {
+        if *weight == 0.0 {
+            continue;
+        }
+        for (a, left) in row.iter().enumerate() {
+            let weighted = weight * left;
+            right[a] += weighted * target;
+            for (b, other) in row.iter().enumerate().take(a + 1) {
+                normal[(a, b)] += weighted * other;
+            }
+        }
+    }
+    for a in 0..width {
+        for b in 0..a {
+            normal[(b, a)] = normal[(a, b)];
+        }
+    }
+    let trace = (0..width).map(|a| normal[(a, a)]).sum::<f64>() / width as f64;
+    for a in 0..width {
+        normal[(a, a)] += RIDGE * trace;
+    }
+    Some(normal.cholesky()?.solve(&right)).filter(|s| s.iter().all(|c: &f64| c.is_finite()))
+}

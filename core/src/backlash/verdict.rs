@@ -1,0 +1,105 @@
+//! The verdict in plain words.
+
+use super::estimate::{GapEstimate, Quality};
+
+/// Traverses up to which all of them are spoken for; of more, nine in ten.
+const FEW: usize = 10;
+
+/// One or two sentences about `estimate`; `flips`: whether the asymmetry of the relay changed its sign.
+pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
+    let unit = &estimate.unit;
+    let travel = number(estimate.travel);
+    match estimate.quality {
+        Quality::NoDriftingTest => {
+            "no drifting test: expected a limit cycle under a velocity relay whose asymmetry \
+            changes its sign every few seconds"
+                .to_owned()
+        }
+        Quality::NoEngagement if !flips => format!(
+            "no engagement seen: the motor met no load on its {travel} {unit} of travel, and the asymmetry of the relay \
+             never changed its sign, so that this is no drifting test either"
+        ),
+        Quality::NoEngagement => {
+            format!(
+                "no engagement seen: the gap may be wider than the travel of {travel} {unit}, or there is no load"
+            )
+        }
+        Quality::OneSide => format!(
+            "the load was met at one side only ({} contacts); the gap may be wider than the travel of {travel} {unit}",
+            estimate.contacts.len()
+        ),
+        Quality::Undecided => format!(
+            "the load was met on both sides ({} contacts), but it moved so much in between that the gap remains open",
+            estimate.contacts.len()
+        ),
+        Quality::AssumedCentre => format!(
+            "the gap is {}, if the motor stood in its middle at the start: the load was met at one side only ({} \
+             contacts), and the travel from the start to the first contact counts as half a gap; no traverse confirms it",
+            value(estimate),
+            estimate.contacts.len()
+        ),
+        Quality::Good | Quality::Fair | Quality::Poor => {
+            format!("the gap is {}: {}", value(estimate), agreement(estimate))
+        }
+    }
+}
+
+/// The gap with its standard error.
+fn value(estimate: &GapEstimate) -> String {
+    let (gap, error) = (
+        estimate.gap.unwrap_or(0.0),
+        estimate.std_error.unwrap_or(0.0),
+    );
+    let digits = if error > 0.0 {
+        (1 - error.log10().floor() as i32).clamp(0, 12) as usize
+    } else {
+        6
+    };
+    format!("{gap:.digits$} ± {error:.digits$} {}", estimate.unit)
+}
+
+fn agreement(estimate: &GapEstimate) -> String {
+    let gap = estimate.gap.unwrap_or(1.0);
+    let mut off: Vec<f64> = estimate
+        .traverses
+        .iter()
+        .map(|t| (t.gap / gap - 1.0).abs())
+        .collect();
+    off.sort_by(f64::total_cmp);
+    let percent = |share: f64| {
+        let percent = 100.0 * share;
+        if percent < 0.95 {
+            format!("{percent:.1} %")
+        } else {
+            format!("{percent:.0} %")
+        }
+    };
+    let last = off.last().copied().unwrap_or(0.0);
+    match off.len() {
+        0 => "by the travel between contacts at both sides".to_owned(),
+        1 => "one traverse; a longer test would check it".to_owned(),
+        n if n <= FEW => format!("{} traverses agree within {}", word(n), percent(last)),
+        n => format!(
+            "nine in ten of {n} traverses agree within {}",
+            percent(off[n * 9 / 10])
+        ),
+    }
+}
+
+fn word(n: usize) -> String {
+    const WORDS: [&str; 11] = [
+        "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
+    ];
+    WORDS
+        .get(n)
+        .map_or_else(|| n.to_string(), |w| (*w).to_owned())
+}
+
+/// Three significant digits.
+fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    format!("{value:.digits$}")
+}
