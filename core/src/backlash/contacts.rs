@@ -27,12 +27,22 @@ const WAIT: f64 = 1.0 / 7.0;
 /// Samples before and after a contact that show its levels.
 const AROUND: usize = 6;
 
-/// Steps of the search for begin and duration, samples.
-const BEGIN_STEP: f64 = 0.25;
-const DURATION_STEP: f64 = 0.5;
+/// Share of its change up to which a contact is looked at to place its begin, and least samples of it.
+const RISE: f64 = 0.7;
+const LEAST_RISE: usize = 2;
+/// Share of a cycle up to which the same is looked at.
+const LEADING: f64 = 0.35;
 
-/// Contacts on which the shape is chosen.
-const SHAPE_CONTACTS: usize = 80;
+/// Step of the search for the begin, samples.
+const BEGIN_STEP: f64 = 0.125;
+
+/// Least jump of a contact in standard deviations.
+const CLEAR: f64 = 4.0;
+
+/// A touch of the other side within so many cycles is the tail of a contact if its jump is less than
+/// this share: the free motor is not known well enough to tell such a small one.
+const TAIL: f64 = 2.0;
+const TAIL_SHARE: f64 = 0.2;
 
 /// Most contacts that are used; the first ones.
 const MOST: usize = 1500;
@@ -41,28 +51,6 @@ const MOST: usize = 1500;
 const GUARD: f64 = 3.0;
 const LEVEL: f64 = 40.0;
 const LEAST_LEVEL: f64 = 4.0;
-
-/// How the unexplained velocity goes through a contact, from 0 to 1.
-#[derive(Clone, Copy)]
-enum Shape {
-    /// A spring alone.
-    Cosine,
-    /// Constant force.
-    Line,
-    /// Most force at the begin, as a damper gives it.
-    Parabola,
-}
-
-impl Shape {
-    fn at(self, share: f64) -> f64 {
-        let q = share.clamp(0.0, 1.0);
-        match self {
-            Self::Cosine => 0.5 * (1.0 - (std::f64::consts::PI * q).cos()),
-            Self::Line => q,
-            Self::Parabola => 1.0 - (1.0 - q) * (1.0 - q),
-        }
-    }
-}
 
 /// A contact on the grid of samples.
 #[derive(Clone, Copy, Debug)]
@@ -154,26 +142,55 @@ pub(super) fn touches(
         .collect();
     found.sort_unstable();
     found.truncate(MOST);
-    let shape = best_shape(&flat, &found);
+    let leading = (LEADING * cycles.length).round() as usize;
     let mut touches: Vec<Touch> = found
         .iter()
-        .filter_map(|span| place(&flat, *span, shape))
-        .map(|p| Touch {
-            begin: p.begin,
-            length: p.length,
-            side: if p.change < 0.0 {
-                Side::Positive
-            } else {
-                Side::Negative
-            },
-            jump: -p.change,
-            jump_noise: motor.noise,
+        .filter_map(|span| {
+            let begin = begin(&flat, *span, leading)?;
+            let change = flat[span.1] - flat[span.0];
+            Some(Touch {
+                begin,
+                length: (span.1 as f64 - begin).max(1.0),
+                side: if change < 0.0 {
+                    Side::Positive
+                } else {
+                    Side::Negative
+                },
+                jump: -change,
+                jump_noise: motor.noise,
+            })
         })
         .collect();
     touches.sort_by(|a, b| a.begin.total_cmp(&b.begin));
-    weigh(&flat, cycles, motor.noise, &mut touches);
-    touches.retain(|t| t.jump.abs() > t.jump_noise && (t.jump > 0.0) == (t.side == Side::Positive));
-    touches
+    loop {
+        weigh(&flat, cycles, motor.noise, &mut touches);
+        let doubtful = doubtful(&touches, cycles);
+        if !doubtful.contains(&true) {
+            return touches;
+        }
+        let mut keep = doubtful.iter().map(|d| !d);
+        touches.retain(|_| keep.next().unwrap_or(true));
+    }
+}
+
+/// Which touches are none: too light for the noise, against their own sign, or the tail of another one.
+fn doubtful(touches: &[Touch], cycles: &Cycles) -> Vec<bool> {
+    let tail = |touch: &Touch, other: Option<&Touch>| {
+        other.is_some_and(|other| {
+            other.side != touch.side
+                && (other.begin - touch.begin).abs() < TAIL * cycles.length
+                && touch.jump.abs() < TAIL_SHARE * other.jump.abs()
+        })
+    };
+    (0..touches.len())
+        .map(|k| {
+            let touch = &touches[k];
+            let before = k.checked_sub(1).and_then(|k| touches.get(k));
+            touch.jump * touch.side.sign() < CLEAR * touch.jump_noise
+                || tail(touch, before)
+                || tail(touch, touches.get(k + 1))
+        })
+        .collect()
 }
 
 /// Page's cumulative sum for a change of this sign: begins and ends of what exceeds the threshold.
@@ -186,7 +203,7 @@ fn cumulative_sum(values: &[f64], sign: f64, noise: f64, wait: usize) -> Vec<(us
         if sum > most {
             (most, peak) = (sum, i);
         }
-        let over = sum <= 0.0 || i == values.len() - 1 || (most > threshold && i - peak >= wait);
+        let over = sum <= 0.0 || i == values.len() - 1 || i - peak >= wait;
         if over {
             if most > threshold {
                 found.push((begin, peak));
@@ -197,69 +214,43 @@ fn cumulative_sum(values: &[f64], sign: f64, noise: f64, wait: usize) -> Vec<(us
     found
 }
 
-struct Placed {
-    begin: f64,
-    length: f64,
-    change: f64,
-    squares: f64,
-}
-
-/// Begin and duration by least squares about a contact between the samples `span`.
-fn place(values: &[f64], span: (usize, usize), shape: Shape) -> Option<Placed> {
+/// Begin of a contact between the samples `span`, between samples: its leading edge is a broken line.
+///
+/// Hinkley 1969, "Inference about the intersection in two-phase regression", Biometrika 56. A damped
+/// contact pushes at once, so that the velocity falls linearly at first.
+fn begin(values: &[f64], span: (usize, usize), leading: usize) -> Option<f64> {
     let from = span.0.saturating_sub(AROUND);
-    let to = (span.1 + AROUND + 1).min(values.len());
-    let part = &values[from..to];
+    let change = values[span.1] - values[span.0];
+    let rise = (span.0..span.1)
+        .find(|i| (values[*i] - values[span.0]) / change >= RISE)
+        .unwrap_or(span.1)
+        .clamp(span.0 + LEAST_RISE, span.0 + leading.max(LEAST_RISE));
+    let part = values.get(from..=rise)?;
     let mean = part.iter().sum::<f64>() / part.len() as f64;
-    let long = (span.1 - span.0).max(1) as f64;
-    let mut best: Option<Placed> = None;
-    let mut form = vec![0.0; part.len()];
-    let begins = (0..=26).map(|k| span.0 as f64 - 2.5 + BEGIN_STEP * f64::from(k));
-    for begin in begins {
-        let mut length = (0.5 * long).max(1.0);
-        while length < 1.4 * long + 2.0 {
-            for (k, value) in form.iter_mut().enumerate() {
-                *value = shape.at(((from + k) as f64 - begin) / length);
-            }
-            let middle = form.iter().sum::<f64>() / form.len() as f64;
-            let (mut own, mut with) = (0.0, 0.0);
-            for (f, v) in form.iter().zip(part) {
-                own += (f - middle) * (f - middle);
-                with += (f - middle) * (v - mean);
-            }
-            if own > 1e-9 {
-                let change = with / own;
-                let squares = part.iter().map(|v| (v - mean).powi(2)).sum::<f64>() - change * with;
-                if best.as_ref().is_none_or(|b| squares < b.squares) {
-                    best = Some(Placed {
-                        begin,
-                        length,
-                        change,
-                        squares,
-                    });
-                }
-            }
-            length += DURATION_STEP;
+    let mut best: Option<(f64, f64)> = None;
+    let last = rise as f64 - LEAST_RISE as f64 + 1.0;
+    let mut begin = span.0 as f64 - 2.5;
+    while begin <= last {
+        let form = |k: usize| ((from + k) as f64 - begin).max(0.0);
+        let middle = (0..part.len()).map(form).sum::<f64>() / part.len() as f64;
+        let (mut own, mut with) = (0.0, 0.0);
+        for (k, v) in part.iter().enumerate() {
+            let f = form(k) - middle;
+            own += f * f;
+            with += f * (v - mean);
         }
-    }
-    best
-}
-
-/// The shape that fits the contacts best, all together.
-fn best_shape(values: &[f64], found: &[(usize, usize)]) -> Shape {
-    let stride = found.len().div_ceil(SHAPE_CONTACTS).max(1);
-    let mut best = (f64::INFINITY, Shape::Line);
-    for shape in [Shape::Line, Shape::Cosine, Shape::Parabola] {
-        let squares: f64 = found
-            .iter()
-            .step_by(stride)
-            .filter_map(|span| place(values, *span, shape))
-            .map(|p| p.squares)
-            .sum();
-        if squares < best.0 {
-            best = (squares, shape);
+        // What the line explains of the squares, if it goes the right way.
+        let explained = if own > 0.0 && with * change > 0.0 {
+            with * with / own
+        } else {
+            0.0
+        };
+        if explained > best.map_or(0.0, |b| b.1) {
+            best = Some((begin, explained));
         }
+        begin += BEGIN_STEP;
     }
-    best.1
+    best.map(|b| b.0)
 }
 
 /// A level of the unexplained velocity, extrapolated to a sample, with its variance.

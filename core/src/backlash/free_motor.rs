@@ -8,7 +8,7 @@ use super::record::Record;
 /// How late the input may act, s; delay and lag of the drive lie within.
 const LATE: f64 = 2e-3;
 /// Bounds of the same in samples.
-const LAGS: (usize, usize) = (3, 14);
+const LAGS: (usize, usize) = (FRICTION_LAGS, 14);
 
 /// Rounds of reweighting; the weights settle within a few.
 const ROUNDS: usize = 8;
@@ -16,8 +16,11 @@ const ROUNDS: usize = 8;
 /// Tukey's biweight gives nothing to what is farther off, in standard deviations.
 const BIWEIGHT: f64 = 4.685;
 
-/// Speed, of the cycle's, over which dry friction turns its sign; presliding makes it a little soft.
-const SOFT_SIGN: f64 = 0.03;
+/// Steps by which dry friction may be late after a reversal: presliding.
+const FRICTION_LAGS: usize = 3;
+
+/// Speed, as share of the cycle's, over which friction that falls or grows with the speed bends.
+const BEND: f64 = 0.2;
 
 /// Added to the diagonal, of its own size, so that columns which are alike share.
 const RIDGE: f64 = 1e-9;
@@ -50,14 +53,20 @@ impl FreeMotor {
         if !(half > 0.0 && gain > 0.0 && speed > 0.0) {
             return None;
         }
-        let width = lead + lags + 5;
+        let width = lead + lags + FRICTION_LAGS + 5;
+        let sign: Vec<f64> = record
+            .velocity
+            .windows(2)
+            .map(|v| mean_sign(v[0], v[1]))
+            .collect();
         let mut matrix = Vec::with_capacity(rows * width);
         let mut target = Vec::with_capacity(rows);
         for i in first..end {
             let v = 0.5 * (record.velocity[i] + record.velocity[i + 1]) / speed;
             let x = (record.position[i] - middle) / half;
             matrix.extend((0..lead + lags).map(|lag| record.input[i + lead - lag] / gain));
-            matrix.extend([v, (v / SOFT_SIGN).tanh(), 1.0, x, x * x]);
+            matrix.extend((0..FRICTION_LAGS).map(|lag| sign[i - lag]));
+            matrix.extend([v, (v / BEND).tanh(), 1.0, x, x * x]);
             target.push(record.velocity[i + 1] - record.velocity[i]);
         }
         let mut weights = vec![1.0; rows];
@@ -101,6 +110,15 @@ impl FreeMotor {
 
 /// Median of the absolute value of a standard normal variable.
 const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
+
+/// Mean of the sign of a velocity that goes from `a` to `b` on a straight line.
+fn mean_sign(a: f64, b: f64) -> f64 {
+    if a * b >= 0.0 {
+        let sum = a + b;
+        return if sum == 0.0 { 0.0 } else { sum.signum() };
+    }
+    (b.abs() - a.abs()) / (b - a)
+}
 
 /// Noise of the unexplained velocity: median difference over one and over three steps.
 fn noise(unexplained: &[f64], cycles: &Cycles) -> f64 {
