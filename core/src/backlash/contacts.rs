@@ -1,18 +1,10 @@
 //! When, where and how hard does the motor meet the load?
 
-use super::change_points::pelt;
-use super::cycles::{Cycles, median};
+use super::cycles::Cycles;
+use super::drift::Drift;
 use super::estimate::Side;
 use super::free_motor::FreeMotor;
 use super::record::Record;
-
-/// Penalty of a change of drift, in units of the logarithm of the number of cycles.
-const PENALTY: f64 = 3.0;
-
-/// Least deviation of engaged cycles: in standard deviations of their mean, and as share of the swing of
-/// the velocity, below which a changing friction could do the same.
-const DEVIATION: f64 = 4.0;
-const LEAST_SHARE: f64 = 5e-3;
 
 /// Cycles about an engaged one in which contacts are looked for.
 const MARGIN: usize = 2;
@@ -64,51 +56,6 @@ pub(super) struct Touch {
     pub jump: f64,
     /// Standard deviation of `jump`.
     pub jump_noise: f64,
-}
-
-/// What each cycle says.
-pub(super) struct Drift {
-    /// Change of the unexplained velocity in each cycle.
-    pub change: Vec<f64>,
-    /// The same of the free motor, for the phase it lies in.
-    pub base: Vec<f64>,
-    /// Whether the pattern of drift differs from the free one.
-    pub engaged: Vec<bool>,
-}
-
-/// Cycle by cycle: where does the pattern of drift change?
-pub(super) fn drift(cycles: &Cycles, motor: &FreeMotor) -> Drift {
-    let w = &motor.unexplained;
-    let level = |i: usize| {
-        let (a, b) = (i.saturating_sub(1), (i + 2).min(w.len()));
-        w[a..b].iter().sum::<f64>() / (b - a) as f64
-    };
-    let change: Vec<f64> = cycles
-        .starts
-        .windows(2)
-        .map(|s| level(s[1]) - level(s[0]))
-        .collect();
-    let mut base = vec![0.0; change.len()];
-    let mut engaged = vec![false; change.len()];
-    for (from, to) in cycles.phases() {
-        let part = &change[from..to];
-        let middle = median(&mut part.to_vec());
-        let mut sizes: Vec<f64> = part.iter().map(|c| (c - middle).abs()).collect();
-        let sigma = (1.4826 * median(&mut sizes)).max(motor.noise);
-        base[from..to].fill(middle);
-        for segment in pelt(part, sigma, PENALTY * (cycles.count() as f64).ln()) {
-            let count = (segment.to - segment.from) as f64;
-            let needed = (DEVIATION * sigma / count.sqrt()).max(LEAST_SHARE * 2.0 * cycles.speed);
-            if (segment.mean - middle).abs() > needed {
-                engaged[from + segment.from..from + segment.to].fill(true);
-            }
-        }
-    }
-    Drift {
-        change,
-        base,
-        engaged,
-    }
 }
 
 /// All contacts in engaged cycles, in order of time.
@@ -267,11 +214,15 @@ struct Level {
 fn weigh(values: &[f64], cycles: &Cycles, noise: f64, touches: &mut [Touch]) {
     let n = values.len() as f64;
     let ends = |touches: &[Touch], k: usize| touches[k].begin + touches[k].length;
+    // The free motor drifts differently under each asymmetry: no level reaches across a flip.
+    let flips: Vec<f64> = cycles.phases().iter().map(|p| cycles.starts[p.0] as f64).collect();
     for k in 0..touches.len() {
         let (begin, end) = (touches[k].begin, ends(touches, k));
         let before = if k == 0 { 0.0 } else { ends(touches, k - 1) };
         let after = touches.get(k + 1).map_or(n - 1.0, |t| t.begin);
         let middle = 0.5 * (begin + end);
+        let before = flips.iter().filter(|f| **f <= begin).fold(before, |b, f| b.max(*f));
+        let after = flips.iter().filter(|f| **f >= end).fold(after, |a, f| a.min(*f));
         let old = level(values, cycles, noise, (before, begin), middle, false);
         let new = level(values, cycles, noise, (end, after), middle, true);
         touches[k].jump = old.value - new.value;

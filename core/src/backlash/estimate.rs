@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
 
-use super::contacts::{Drift, Touch, drift, touches};
+use super::contacts::{Touch, touches};
 use super::cycles::{Cycles, range};
+use super::drift::Drift;
 use super::free_motor::FreeMotor;
 use super::likelihood::{Event, Fit, Scales, fit};
 use super::record::Record;
@@ -183,7 +184,8 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
     let Some(motor) = FreeMotor::new(&record, &cycles) else {
         return Ok(nothing(&record, Quality::NoDriftingTest));
     };
-    let drift = drift(&cycles, &motor);
+    let drift = Drift::new(&cycles, &motor.unexplained, motor.noise, &record.position);
+    if let Ok(p) = std::env::var("WOUT") { std::fs::write(p, motor.unexplained.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()).unwrap(); std::fs::write("/tmp/gapx/engaged.txt", drift.engaged.iter().zip(&drift.change).zip(&drift.base).map(|((e,c),b)| format!("{} {c} {b}\n", i32::from(*e))).collect::<String>()).unwrap(); }
     let touches = touches(&record, &cycles, &motor, &drift);
     let mut estimate = nothing(&record, Quality::NoEngagement);
     estimate.cycles = cycle_drift(&record, &cycles, &drift);

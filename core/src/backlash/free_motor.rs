@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::cycles::{Cycles, median, range};
+use super::cycles::{Cycles, median};
+use super::drift::Drift;
 use super::record::Record;
 
 /// How late the input may act, s; delay and lag of the drive lie within.
@@ -18,12 +19,19 @@ const BIWEIGHT: f64 = 4.685;
 
 /// Steps by which dry friction may be late after a reversal: presliding.
 const FRICTION_LAGS: usize = 3;
+const REVERSAL_LAGS: usize = 2;
 
 /// Speed, as share of the cycle's, over which friction that falls or grows with the speed bends.
 const BEND: f64 = 0.2;
 
 /// Added to the diagonal, of its own size, so that columns which are alike share.
 const RIDGE: f64 = 1e-9;
+
+/// Rounds of taking engaged cycles out.
+const REFITS: usize = 2;
+
+/// Fewest rows for each coefficient.
+const ROWS: usize = 10;
 
 /// What the motor alone says to the record.
 pub(super) struct FreeMotor {
@@ -37,23 +45,62 @@ pub(super) struct FreeMotor {
 
 impl FreeMotor {
     /// Change of velocity in each step, regressed on the input of the last few steps, on viscous and
-    /// dry friction, a constant torque and one that varies along the travel. Contacts are few samples
-    /// with a large remainder: reweighted least squares with Tukey's biweight takes them out (Beaton
-    /// and Tukey 1974, Technometrics 16). `None` where that has no answer.
+    /// dry friction and a constant torque. Contacts are few samples with a large remainder: reweighted
+    /// least squares with Tukey's biweight takes them out (Beaton and Tukey 1974, Technometrics 16).
+    /// Where most cycles push the load they would pass for the motor's own, so that it is then fitted
+    /// to the cycles that are free by their drift. `None` where that has no answer.
     pub fn new(record: &Record, cycles: &Cycles) -> Option<Self> {
-        let n = record.len();
+        let rows = Rows::new(record, cycles)?;
+        let mut weights = vec![1.0; rows.target.len()];
+        let mut motor = rows.fit(record, cycles, &weights)?;
+        for _ in 0..REFITS {
+            let drift = Drift::new(cycles, &motor.unexplained, motor.noise, &record.position);
+            if !drift.engaged.contains(&true) {
+                break;
+            }
+            weights.fill(0.0);
+            for (span, engaged) in cycles.starts.windows(2).zip(&drift.engaged) {
+                let (from, to) = (
+                    span[0].max(rows.first),
+                    span[1].min(rows.first + weights.len()),
+                );
+                if !engaged && from < to {
+                    weights[from - rows.first..to - rows.first].fill(1.0);
+                }
+            }
+            if weights.iter().sum::<f64>() < (ROWS * rows.width) as f64 {
+                break;
+            }
+            motor = rows.fit(record, cycles, &weights)?;
+        }
+        Some(motor)
+    }
+}
+
+/// The regression: one row for each step.
+struct Rows {
+    /// Step of the first row.
+    first: usize,
+    width: usize,
+    /// How many of the columns are inputs.
+    inputs: usize,
+    matrix: Vec<f64>,
+    target: Vec<f64>,
+}
+
+impl Rows {
+    fn new(record: &Record, cycles: &Cycles) -> Option<Self> {
         let lags = ((LATE / record.step).ceil() as usize).clamp(LAGS.0, LAGS.1);
         // A central difference of the position sees the input of the next step as well.
         let lead = usize::from(!record.has_velocity);
-        let (first, end) = (lags, n.checked_sub(1 + lead)?);
-        let rows = end.checked_sub(first).filter(|r| *r > 10 * (lags + 8))?;
-        let (low, high) = range(&record.position);
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let inputs = lead + lags;
+        let width = inputs + FRICTION_LAGS + REVERSAL_LAGS + 3;
+        let (first, end) = (lags, record.len().checked_sub(1 + lead)?);
+        let rows = end.checked_sub(first).filter(|r| *r > ROWS * width)?;
         let (gain, speed) = (cycles.gain, cycles.speed);
-        if !(half > 0.0 && gain > 0.0 && speed > 0.0) {
+        if gain.is_nan() || gain <= 0.0 || speed.is_nan() || speed <= 0.0 {
             return None;
         }
-        let width = lead + lags + FRICTION_LAGS + 5;
         let sign: Vec<f64> = record
             .velocity
             .windows(2)
@@ -63,18 +110,33 @@ impl FreeMotor {
         let mut target = Vec::with_capacity(rows);
         for i in first..end {
             let v = 0.5 * (record.velocity[i] + record.velocity[i + 1]) / speed;
-            let x = (record.position[i] - middle) / half;
-            matrix.extend((0..lead + lags).map(|lag| record.input[i + lead - lag] / gain));
+            matrix.extend((0..inputs).map(|lag| record.input[i + lead - lag] / gain));
             matrix.extend((0..FRICTION_LAGS).map(|lag| sign[i - lag]));
-            matrix.extend([v, (v / BEND).tanh(), 1.0, x, x * x]);
+            // Presliding lasts the shorter the harder the motor is driven through the reversal.
+            matrix.extend((0..REVERSAL_LAGS).map(|lag| {
+                (sign[i - lag] - sign[i - lag - 1]) * record.input[i].abs() / gain
+            }));
+            matrix.extend([v, (v / BEND).tanh(), 1.0]);
             target.push(record.velocity[i + 1] - record.velocity[i]);
         }
-        let mut weights = vec![1.0; rows];
-        let mut left = target.clone();
-        let mut solution = DVector::zeros(width);
+        Some(Self {
+            first,
+            width,
+            inputs,
+            matrix,
+            target,
+        })
+    }
+
+    /// Robust fit of the rows with a weight, and what it leaves of all of them.
+    fn fit(&self, record: &Record, cycles: &Cycles, used: &[f64]) -> Option<FreeMotor> {
+        let mut weights = used.to_vec();
+        let mut left = self.target.clone();
+        let mut solution = DVector::zeros(self.width);
         for _ in 0..ROUNDS {
-            solution = solve(&matrix, &target, &weights, width)?;
-            for ((row, left), target) in matrix.chunks_exact(width).zip(&mut left).zip(&target) {
+            solution = solve(&self.matrix, &self.target, &weights, self.width)?;
+            let rows = self.matrix.chunks_exact(self.width);
+            for ((row, left), target) in rows.zip(&mut left).zip(&self.target) {
                 *left = target
                     - row
                         .iter()
@@ -82,25 +144,30 @@ impl FreeMotor {
                         .map(|(a, c)| a * c)
                         .sum::<f64>();
             }
-            let mut sizes: Vec<f64> = left.iter().map(|e| e.abs()).collect();
+            let mut sizes: Vec<f64> = left
+                .iter()
+                .zip(used)
+                .filter(|(_, used)| **used > 0.0)
+                .map(|(e, _)| e.abs())
+                .collect();
             let spread = median(&mut sizes) / NORMAL_MEDIAN;
             if spread.is_nan() || spread <= 0.0 {
                 return None;
             }
-            for (weight, left) in weights.iter_mut().zip(&left) {
+            for ((weight, left), used) in weights.iter_mut().zip(&left).zip(used) {
                 let q = left / (BIWEIGHT * spread);
-                *weight = (1.0 - q * q).max(0.0).powi(2);
+                *weight = used * (1.0 - q * q).max(0.0).powi(2);
             }
         }
-        let mut unexplained = vec![0.0; n];
+        let mut unexplained = vec![0.0; record.len()];
         let mut sum = 0.0;
         for (k, left) in left.iter().enumerate() {
             sum += left;
-            unexplained[first + k + 1] = sum;
+            unexplained[self.first + k + 1] = sum;
         }
-        unexplained[end + 1..].fill(sum);
-        let total: f64 = solution.iter().take(lead + lags).sum();
-        Some(Self {
+        unexplained[self.first + left.len() + 1..].fill(sum);
+        let total: f64 = solution.iter().take(self.inputs).sum();
+        Some(FreeMotor {
             noise: noise(&unexplained, cycles),
             unexplained,
             acceleration: (total / record.step).abs(),

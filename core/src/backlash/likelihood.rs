@@ -146,6 +146,20 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
     let relative = relative_error(&cost, &point, value)?;
     let mut innovations = Vec::new();
     filter(events, &point, Some(&mut innovations));
+    if let Ok(t) = std::env::var("TRUE") {
+        let v: Vec<f64> = t.split(',').map(|x| x.parse::<f64>().unwrap().ln()).collect();
+        let mut p = point;
+        p[..4].copy_from_slice(&v[..4]);
+        #[allow(clippy::disallowed_macros)]
+        {
+        println!("best {:?} cost {value}; at truth with its noise {}", point.map(f64::exp), cost(&p));
+        let (q, c) = minimise(cost, p, 0.05, 3000, 1e-6);
+        println!("from truth {:?} cost {c}", q.map(f64::exp));
+        let mut inn = Vec::new();
+        filter(events, &p, Some(&mut inn));
+        for (e, i) in events[1..].iter().zip(&inn) { println!("{:.4} {:?} jump {:.4}±{:.4} half {:.1e} inn {:+.2e} ± {:.1e}", e.time, e.side, e.jump, e.jump_noise, e.half_length, i.value, i.deviation); }
+        }
+    }
     let half_gap = point[0].exp();
     Some(Fit {
         half_gap,

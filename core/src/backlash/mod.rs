@@ -23,6 +23,7 @@
 mod change_points;
 mod contacts;
 mod cycles;
+mod drift;
 mod estimate;
 mod flight;
 mod free_motor;

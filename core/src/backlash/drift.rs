@@ -1,0 +1,90 @@
+//! Cycle by cycle: where does the pattern of drift change?
+
+use super::change_points::{Segment, pelt};
+use super::cycles::{Cycles, median};
+
+/// Penalty of a change of drift, in units of the logarithm of the number of cycles.
+const PENALTY: f64 = 3.0;
+
+/// Least deviation of engaged cycles: in standard deviations of their mean, and as share of the swing of
+/// the velocity, below which a changing friction could do the same.
+const DEVIATION: f64 = 4.0;
+const LEAST_SHARE: f64 = 5e-3;
+
+/// Fewest cycles of a run that can show how the free motor drifts; half a phase if that is shorter.
+const FREE: usize = 8;
+
+/// What each cycle says.
+pub(super) struct Drift {
+    /// Change of the unexplained velocity in each cycle.
+    pub change: Vec<f64>,
+    /// The same of the free motor, for the phase it lies in.
+    pub base: Vec<f64>,
+    /// Whether the pattern of drift differs from the free one.
+    pub engaged: Vec<bool>,
+}
+
+impl Drift {
+    /// From the unexplained velocity and its noise; `ahead`: in which direction each phase drifts.
+    ///
+    /// In each phase PELT finds runs of cycles with one mean change. The load can only resist the drift,
+    /// so the run with the most change along it is free, and so are all that are like it.
+    pub fn new(cycles: &Cycles, unexplained: &[f64], noise: f64, position: &[f64]) -> Self {
+        let level = |i: usize| {
+            let (a, b) = (i.saturating_sub(1), (i + 2).min(unexplained.len()));
+            unexplained[a..b].iter().sum::<f64>() / (b - a) as f64
+        };
+        let change: Vec<f64> = cycles
+            .starts
+            .windows(2)
+            .map(|s| level(s[1]) - level(s[0]))
+            .collect();
+        let mut base = vec![0.0; change.len()];
+        let mut engaged = vec![false; change.len()];
+        let penalty = PENALTY * (cycles.count() as f64).ln();
+        let least = LEAST_SHARE * 2.0 * cycles.speed;
+        for (from, to) in cycles.phases() {
+            let part = &change[from..to];
+            let sigma = spread(part).max(noise);
+            let way = position[cycles.starts[to]] - position[cycles.starts[from]];
+            let segments = pelt(part, sigma, penalty);
+            let free = free_level(&segments, way.signum(), part.len(), least);
+            base[from..to].fill(free);
+            let unlike = |s: &&Segment| {
+                let count = (s.to - s.from) as f64;
+                (s.mean - free).abs() > (DEVIATION * sigma / count.sqrt()).max(least)
+            };
+            for segment in segments.iter().filter(unlike) {
+                engaged[from + segment.from..from + segment.to].fill(true);
+            }
+        }
+        Self {
+            change,
+            base,
+            engaged,
+        }
+    }
+}
+
+/// Standard deviation by the median difference of neighbours, which changes of the mean leave alone.
+fn spread(values: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    1.4826 * median(&mut steps) / std::f64::consts::SQRT_2
+}
+
+/// Mean change of the free motor in one phase: that of the run with the most change along the drift and
+/// of all runs within `tolerance` of it.
+fn free_level(segments: &[Segment], way: f64, cycles: usize, tolerance: f64) -> f64 {
+    let fewest = FREE.min(cycles / 2);
+    let most = segments
+        .iter()
+        .filter(|s| s.to - s.from >= fewest)
+        .map(|s| way * s.mean)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let (sum, count) = segments
+        .iter()
+        .filter(|s| s.to - s.from >= fewest && way * s.mean >= most - tolerance)
+        .map(|s| (s.mean, (s.to - s.from) as f64))
+        .fold((0.0, 0.0), |(sum, count), (mean, n)| (sum + n * mean, count + n));
+    if count > 0.0 { sum / count } else { 0.0 }
+}
