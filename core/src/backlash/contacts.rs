@@ -28,6 +28,9 @@ const LEADING: f64 = 0.35;
 /// Step of the search for the begin, samples.
 const BEGIN_STEP: f64 = 0.125;
 
+/// Samples after the end of a contact in which a little push may be left.
+const TAIL_SAMPLES: usize = 2;
+
 /// Least jump of a contact in standard deviations.
 const CLEAR: f64 = 4.0;
 
@@ -51,6 +54,8 @@ pub(super) struct Touch {
     pub begin: f64,
     /// Samples that it lasts.
     pub length: f64,
+    /// Samples from its begin to the centre of its push.
+    pub centre: f64,
     pub side: Side,
     /// Loss of the motor's velocity, positive where the load is pushed forwards; rad/s or m/s.
     pub jump: f64,
@@ -98,6 +103,7 @@ pub(super) fn touches(
             Some(Touch {
                 begin,
                 length: (span.1 as f64 - begin).max(1.0),
+                centre: centre(&flat, *span, begin),
                 side: if change < 0.0 {
                     Side::Positive
                 } else {
@@ -200,6 +206,25 @@ fn begin(values: &[f64], span: (usize, usize), leading: usize) -> Option<f64> {
     best.map(|b| b.0)
 }
 
+/// Samples from `begin` to the centre of the push between the samples `span`.
+fn centre(values: &[f64], span: (usize, usize), begin: f64) -> f64 {
+    let to = (span.1 + TAIL_SAMPLES).min(values.len() - 1);
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for i in span.0..to {
+        let change = values[i + 1] - values[i];
+        sum += change;
+        moment += change * (i as f64 + 0.5 - begin);
+    }
+    let length = to as f64 - begin;
+    let middle = 0.5 * (span.1 as f64 - begin);
+    let centre = if sum == 0.0 { middle } else { moment / sum };
+    if (0.0..=length).contains(&centre) {
+        centre
+    } else {
+        middle.max(0.0)
+    }
+}
+
 /// A level of the unexplained velocity, extrapolated to a sample, with its variance.
 #[derive(Clone, Copy)]
 struct Level {
@@ -215,14 +240,24 @@ fn weigh(values: &[f64], cycles: &Cycles, noise: f64, touches: &mut [Touch]) {
     let n = values.len() as f64;
     let ends = |touches: &[Touch], k: usize| touches[k].begin + touches[k].length;
     // The free motor drifts differently under each asymmetry: no level reaches across a flip.
-    let flips: Vec<f64> = cycles.phases().iter().map(|p| cycles.starts[p.0] as f64).collect();
+    let flips: Vec<f64> = cycles
+        .phases()
+        .iter()
+        .map(|p| cycles.starts[p.0] as f64)
+        .collect();
     for k in 0..touches.len() {
         let (begin, end) = (touches[k].begin, ends(touches, k));
         let before = if k == 0 { 0.0 } else { ends(touches, k - 1) };
         let after = touches.get(k + 1).map_or(n - 1.0, |t| t.begin);
         let middle = 0.5 * (begin + end);
-        let before = flips.iter().filter(|f| **f <= begin).fold(before, |b, f| b.max(*f));
-        let after = flips.iter().filter(|f| **f >= end).fold(after, |a, f| a.min(*f));
+        let before = flips
+            .iter()
+            .filter(|f| **f <= begin)
+            .fold(before, |b, f| b.max(*f));
+        let after = flips
+            .iter()
+            .filter(|f| **f >= end)
+            .fold(after, |a, f| a.min(*f));
         let old = level(values, cycles, noise, (before, begin), middle, false);
         let new = level(values, cycles, noise, (end, after), middle, true);
         touches[k].jump = old.value - new.value;
@@ -270,9 +305,26 @@ fn level(
         .enumerate()
         .map(|(k, v)| ((first + k) as f64 - centre) * (v - mean))
         .sum();
+    let slope = with / own;
     let away = at - centre;
     Level {
-        value: mean + with / own * away,
-        variance: variance + noise * noise * away * away / own,
+        value: mean + slope * away,
+        variance: variance + noise * noise * away * away / own + ripple(part, slope, mean, cycles),
     }
+}
+
+/// Variance of the cycles' means about the line with this slope: what the free motor does not explain of itself.
+fn ripple(part: &[f64], slope: f64, mean: f64, cycles: &Cycles) -> f64 {
+    let block = (cycles.length.round() as usize).max(1);
+    let middle = 0.5 * (part.len() - 1) as f64;
+    let (sum, count) = part
+        .chunks_exact(block)
+        .enumerate()
+        .map(|(k, values)| {
+            let at = (k * block) as f64 + 0.5 * (block - 1) as f64;
+            let own = values.iter().sum::<f64>() / block as f64;
+            own - mean - slope * (at - middle)
+        })
+        .fold((0.0, 0.0), |(sum, count), r| (sum + r * r, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
 }

@@ -85,6 +85,8 @@ fn free_level(segments: &[Segment], way: f64, cycles: usize, tolerance: f64) -> 
         .iter()
         .filter(|s| s.to - s.from >= fewest && way * s.mean >= most - tolerance)
         .map(|s| (s.mean, (s.to - s.from) as f64))
-        .fold((0.0, 0.0), |(sum, count), (mean, n)| (sum + n * mean, count + n));
+        .fold((0.0, 0.0), |(sum, count), (mean, n)| {
+            (sum + n * mean, count + n)
+        });
     if count > 0.0 { sum / count } else { 0.0 }
 }

@@ -185,7 +185,28 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
         return Ok(nothing(&record, Quality::NoDriftingTest));
     };
     let drift = Drift::new(&cycles, &motor.unexplained, motor.noise, &record.position);
-    if let Ok(p) = std::env::var("WOUT") { std::fs::write(p, motor.unexplained.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()).unwrap(); std::fs::write("/tmp/gapx/engaged.txt", drift.engaged.iter().zip(&drift.change).zip(&drift.base).map(|((e,c),b)| format!("{} {c} {b}\n", i32::from(*e))).collect::<String>()).unwrap(); }
+    if let Ok(p) = std::env::var("WOUT") {
+        std::fs::write(
+            p,
+            motor
+                .unexplained
+                .iter()
+                .flat_map(|v| v.to_le_bytes())
+                .collect::<Vec<u8>>(),
+        )
+        .unwrap();
+        std::fs::write(
+            "/tmp/gapx/engaged.txt",
+            drift
+                .engaged
+                .iter()
+                .zip(&drift.change)
+                .zip(&drift.base)
+                .map(|((e, c), b)| format!("{} {c} {b}\n", i32::from(*e)))
+                .collect::<String>(),
+        )
+        .unwrap();
+    }
     let touches = touches(&record, &cycles, &motor, &drift);
     let mut estimate = nothing(&record, Quality::NoEngagement);
     estimate.cycles = cycle_drift(&record, &cycles, &drift);
@@ -258,7 +279,15 @@ fn two_sided(
     let events: Vec<Event> = touches
         .iter()
         .zip(&estimate.contacts)
-        .map(|(t, c)| Event::new(t, c.time, c.position, record.step))
+        .map(|(t, c)| {
+            Event::new(
+                t,
+                c.time,
+                c.position,
+                record.velocity_at(t.begin),
+                record.step,
+            )
+        })
         .collect();
     let (low, high) = range(&record.position);
     let scales = Scales {

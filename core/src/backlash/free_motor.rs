@@ -113,9 +113,10 @@ impl Rows {
             matrix.extend((0..inputs).map(|lag| record.input[i + lead - lag] / gain));
             matrix.extend((0..FRICTION_LAGS).map(|lag| sign[i - lag]));
             // Presliding lasts the shorter the harder the motor is driven through the reversal.
-            matrix.extend((0..REVERSAL_LAGS).map(|lag| {
-                (sign[i - lag] - sign[i - lag - 1]) * record.input[i].abs() / gain
-            }));
+            matrix.extend(
+                (0..REVERSAL_LAGS)
+                    .map(|lag| (sign[i - lag] - sign[i - lag - 1]) * record.input[i].abs() / gain),
+            );
             matrix.extend([v, (v / BEND).tanh(), 1.0]);
             target.push(record.velocity[i + 1] - record.velocity[i]);
         }

@@ -1,5 +1,9 @@
 //! How well do a gap and a load explain where the contacts lie?
 
+use rand::SeedableRng as _;
+use rand_distr::{Distribution as _, StandardNormal};
+use rand_pcg::Pcg64;
+
 use super::contacts::Touch;
 use super::estimate::Side;
 use super::flight::Slowing;
@@ -24,8 +28,19 @@ const STARTS: usize = 5;
 const EVALUATIONS: usize = 500;
 const POLISH: usize = 1200;
 
-/// Half a step of the differences that give the curvature, in logarithms.
-const CURVATURE_STEP: f64 = 0.02;
+/// Contacts times steps of the sampling, and bounds of the steps.
+const WORK: usize = 3_000_000;
+const LEAST_STEPS: usize = 3000;
+const MOST_STEPS: usize = 12_000;
+
+/// First steps of the sampling (logarithms), share of accepted steps, steps between adaptations, seed.
+const FIRST_STEPS: Point = [0.002, 0.05, 0.1, 0.1, 0.1, 0.1];
+const ACCEPTED: f64 = 0.25;
+const ADAPT: usize = 100;
+const SEED: u64 = 2026;
+
+/// Error of the relative speed at the begin of a contact, as share of the cycle's speed.
+const SLOW: f64 = 0.05;
 
 /// What is known beforehand of the logarithms: mean and standard deviation. Wide: a load of a seventh
 /// to seven times the motor's inertia lies within one and a half of them.
@@ -39,18 +54,22 @@ struct Prior {
 pub(super) struct Event {
     pub time: f64,
     pub position: f64,
-    pub half_length: f64,
+    /// From the begin to the centre of the push, s.
+    pub centre: f64,
     pub side: Side,
+    /// Velocity of the motor at the begin.
+    pub velocity: f64,
     pub jump: f64,
     pub jump_noise: f64,
 }
 
 impl Event {
-    pub fn new(touch: &Touch, time: f64, position: f64, step: f64) -> Self {
+    pub fn new(touch: &Touch, time: f64, position: f64, velocity: f64, step: f64) -> Self {
         Self {
             time,
             position,
-            half_length: 0.5 * touch.length * step,
+            velocity,
+            centre: touch.centre * step,
             side: touch.side,
             jump: touch.jump,
             jump_noise: touch.jump_noise,
@@ -100,7 +119,7 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
             2.0_f64.ln(),
             (0.01 * scales.acceleration).ln(),
             (0.25 * scales.step * scales.speed).ln(),
-            0.03_f64.ln(),
+            0.01_f64.ln(),
         ],
         deviation: [f64::INFINITY, 1.2, 1.5, 2.0, 0.7, 1.0],
     };
@@ -108,7 +127,7 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
         let prior: f64 = (0..UNKNOWNS)
             .map(|i| 0.5 * ((point[i] - prior.mean[i]) / prior.deviation[i]).powi(2))
             .sum();
-        let value = filter(events, point, None) + prior;
+        let value = filter(events, point, SLOW * scales.speed, None) + prior;
         if value.is_finite() { value } else { f64::MAX }
     };
     let (least, most) = (scales.travel / 400.0, scales.travel);
@@ -143,24 +162,13 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
     if value >= f64::MAX {
         return None;
     }
-    let relative = relative_error(&cost, &point, value)?;
+    let steps = (WORK / events.len().max(1)).clamp(LEAST_STEPS, MOST_STEPS);
+    let posterior = sample(&cost, point, value, steps);
+    let point = posterior.mean;
     let mut innovations = Vec::new();
-    filter(events, &point, Some(&mut innovations));
-    if let Ok(t) = std::env::var("TRUE") {
-        let v: Vec<f64> = t.split(',').map(|x| x.parse::<f64>().unwrap().ln()).collect();
-        let mut p = point;
-        p[..4].copy_from_slice(&v[..4]);
-        #[allow(clippy::disallowed_macros)]
-        {
-        println!("best {:?} cost {value}; at truth with its noise {}", point.map(f64::exp), cost(&p));
-        let (q, c) = minimise(cost, p, 0.05, 3000, 1e-6);
-        println!("from truth {:?} cost {c}", q.map(f64::exp));
-        let mut inn = Vec::new();
-        filter(events, &p, Some(&mut inn));
-        for (e, i) in events[1..].iter().zip(&inn) { println!("{:.4} {:?} jump {:.4}±{:.4} half {:.1e} inn {:+.2e} ± {:.1e}", e.time, e.side, e.jump, e.jump_noise, e.half_length, i.value, i.deviation); }
-        }
-    }
+    filter(events, &point, SLOW * scales.speed, Some(&mut innovations));
     let half_gap = point[0].exp();
+    let relative = posterior.covariance[(0, 0)].max(0.0).sqrt();
     Some(Fit {
         half_gap,
         error: half_gap * relative,
@@ -177,7 +185,12 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
 ///
 /// State: position and velocity of the load. A contact says that the motor's position is that of the
 /// load plus or minus the half gap; it gives the load the momentum that the motor loses.
-fn filter(events: &[Event], point: &Point, mut innovations: Option<&mut Vec<Innovation>>) -> f64 {
+fn filter(
+    events: &[Event],
+    point: &Point,
+    slow: f64,
+    mut innovations: Option<&mut Vec<Innovation>>,
+) -> f64 {
     let [half_gap, ratio, viscous, dry, place, relative] = point.map(f64::exp);
     let slowing = Slowing { viscous, dry };
     let Some(first) = events.first() else {
@@ -207,12 +220,15 @@ fn filter(events: &[Event], point: &Point, mut innovations: Option<&mut Vec<Inno
                 &mut x,
                 &mut v,
                 &mut c,
-                event.time - before.time - before.half_length,
+                event.time - before.time - before.centre,
             );
             let variance = c[0] + place;
             let value = event.position - event.side.sign() * half_gap - x;
             let square = value * value / variance;
             total += 0.5 * variance.ln() + 0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p();
+            // What is random is when they meet, not where: density in time, not in position.
+            let approach = event.side.sign() * (event.velocity - v);
+            total -= (slow * softplus(approach / slow)).ln();
             if let Some(list) = innovations.as_deref_mut() {
                 list.push(Innovation {
                     value,
@@ -224,49 +240,72 @@ fn filter(events: &[Event], point: &Point, mut innovations: Option<&mut Vec<Inno
             v += gv * value;
             c = [c[0] - gx * c[0], c[1] - gx * c[1], c[2] - gv * c[1]];
         }
-        fly(&mut x, &mut v, &mut c, event.half_length);
+        fly(&mut x, &mut v, &mut c, event.centre);
         v += ratio * event.jump;
         c[2] += (ratio * relative * event.jump).powi(2) + (ratio * event.jump_noise).powi(2);
     }
     total
 }
 
-/// Standard deviation of the first unknown by the curvature of the cost (all others free).
-fn relative_error(cost: &impl Fn(&Point) -> f64, point: &Point, value: f64) -> Option<f64> {
-    let at = |moves: &[(usize, f64)]| {
-        let mut p = *point;
-        for (i, by) in moves {
-            p[*i] += by;
+/// Mean and covariance of the unknowns under the likelihood times the prior.
+struct Posterior {
+    mean: Point,
+    covariance: Matrix,
+}
+
+type Matrix = nalgebra::SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+
+/// Samples the posterior from `start` on: adaptive Metropolis (Haario, Saksman and Tamminen 2001, "An
+/// adaptive Metropolis algorithm", Bernoulli 7). Where gap and load can scale together the cost is flat
+/// along a bent ridge, of which a curvature at its lowest point would know nothing.
+fn sample(cost: &impl Fn(&Point) -> f64, start: Point, value: f64, steps: usize) -> Posterior {
+    let mut random = Pcg64::seed_from_u64(SEED);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut at = start;
+    let mut here = value;
+    let mut root = Matrix::from_diagonal(&nalgebra::SVector::from(FIRST_STEPS));
+    let mut sum = nalgebra::SVector::<f64, UNKNOWNS>::zeros();
+    let mut squares = Matrix::zeros();
+    let (mut count, mut scale) = (0.0, 1.0_f64);
+    for step in 0..steps {
+        let move_ = root * nalgebra::SVector::<f64, UNKNOWNS>::from_fn(|_, _| normal()) * scale;
+        let proposed: Point = std::array::from_fn(|i| at[i] + move_[i]);
+        let there = cost(&proposed);
+        // Minus the logarithm of a uniform number, from two normal ones.
+        let threshold = 0.5 * (normal().powi(2) + normal().powi(2));
+        let accepted = there - here < threshold;
+        if accepted {
+            (at, here) = (proposed, there);
         }
-        cost(&p)
-    };
-    // The place of the minimum is sharp in the gap and flat in the rest.
-    let steps: Point = std::array::from_fn(|i| {
-        let mut h = CURVATURE_STEP;
-        for _ in 0..12 {
-            let rise = at(&[(i, h)]) + at(&[(i, -h)]) - 2.0 * value;
-            if rise > 2.0 {
-                h *= 0.5;
-            } else if rise < 0.2 && h < 0.3 {
-                h *= 2.0;
-            } else {
-                break;
+        // Robbins and Monro: a quarter of the steps accepted.
+        let gain = (step as f64 + 1.0).powf(-0.6);
+        scale *= ((f64::from(u8::from(accepted)) - ACCEPTED) * gain).exp();
+        if step < steps / 10 {
+            continue;
+        }
+        let v = nalgebra::SVector::from(at) - nalgebra::SVector::from(start);
+        count += 1.0;
+        sum += v;
+        squares += v * v.transpose();
+        if step % ADAPT == 0 && step < steps / 2 && count > 200.0 {
+            let mean = sum / count;
+            let covariance = squares / count - mean * mean.transpose();
+            if let Some(cholesky) = (covariance + Matrix::identity() * 1e-10).cholesky() {
+                root = cholesky.l() * (2.4 / (UNKNOWNS as f64).sqrt());
+            }
+            if step % (4 * ADAPT) == 0 {
+                (sum, squares, count) = (sum * 0.5, squares * 0.5, count * 0.5);
             }
         }
-        h
-    });
-    let mut hessian = nalgebra::SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
-    for i in 0..UNKNOWNS {
-        let h = steps[i];
-        hessian[(i, i)] = (at(&[(i, h)]) + at(&[(i, -h)]) - 2.0 * value) / (h * h);
-        for j in 0..i {
-            let g = steps[j];
-            let mixed = at(&[(i, h), (j, g)]) - at(&[(i, h), (j, -g)]) - at(&[(i, -h), (j, g)])
-                + at(&[(i, -h), (j, -g)]);
-            hessian[(i, j)] = mixed / (4.0 * h * g);
-            hessian[(j, i)] = hessian[(i, j)];
-        }
     }
-    let inverse = hessian.cholesky()?.inverse();
-    Some(inverse[(0, 0)].sqrt()).filter(|e| e.is_finite())
+    let mean = sum / count.max(1.0);
+    Posterior {
+        mean: std::array::from_fn(|i| start[i] + mean[i]),
+        covariance: squares / count.max(1.0) - mean * mean.transpose(),
+    }
+}
+
+/// `ln(1 + e^x)`: `x` where it is large, next to nothing below zero.
+fn softplus(x: f64) -> f64 {
+    x.max(0.0) + (-x.abs()).exp().ln_1p()
 }

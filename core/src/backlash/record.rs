@@ -100,14 +100,24 @@ impl Record {
         self.start + sample * self.step
     }
 
-    /// Position between two samples, by the parabola-free line (their distance is a thousandth of a cycle's travel).
+    /// Position between two samples.
     pub fn position_at(&self, sample: f64) -> f64 {
-        let last = self.len() - 1;
-        let at = sample.clamp(0.0, last as f64);
-        let i = (at as usize).min(last.saturating_sub(1));
-        let share = at - i as f64;
-        self.position[i] * (1.0 - share) + self.position[(i + 1).min(last)] * share
+        between(&self.position, sample)
     }
+
+    /// Velocity between two samples.
+    pub fn velocity_at(&self, sample: f64) -> f64 {
+        between(&self.velocity, sample)
+    }
+}
+
+/// On the straight line between two samples.
+fn between(values: &[f64], sample: f64) -> f64 {
+    let last = values.len() - 1;
+    let at = sample.clamp(0.0, last as f64);
+    let i = (at as usize).min(last.saturating_sub(1));
+    let share = at - i as f64;
+    values[i] * (1.0 - share) + values[(i + 1).min(last)] * share
 }
 
 /// Values at the times of a grid, held or on straight lines; unchanged without a grid.
