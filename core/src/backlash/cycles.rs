@@ -14,8 +14,9 @@ const ON_LEVEL: f64 = 0.1;
 /// Share of samples that must be on a level, and share of cycles that must be like the rest.
 const MOSTLY: f64 = 0.9;
 
-/// Change of the asymmetry, of its range, that counts as a flip; and the least range that is one.
-const FLIP: f64 = 0.5;
+/// Distance of the asymmetry from the middle of its range, as share of the range, that shows its sign; and
+/// the least range that is one.
+const FLIP: f64 = 0.25;
 const LEAST_ASYMMETRY: f64 = 0.01;
 
 /// Cycles of the relay: `starts[k]..starts[k + 1]`, each from a switch up to the next.
@@ -73,14 +74,7 @@ impl Cycles {
         if (on_level as f64) < MOSTLY * covered || (reversing as f64) < MOSTLY * count as f64 {
             return None;
         }
-        let (least, most) = range(&asymmetries);
-        let flips = (0..count)
-            .map(|k| {
-                k > 0
-                    && most - least > LEAST_ASYMMETRY
-                    && (asymmetries[k] - asymmetries[k - 1]).abs() > FLIP * (most - least)
-            })
-            .collect();
+        let flips = flips(&asymmetries);
         Some(Self {
             flips,
             length,
@@ -107,6 +101,23 @@ impl Cycles {
         }
         phases
     }
+}
+
+/// Where the asymmetry changes to the other side of its range; the cycle of the change itself has both.
+fn flips(asymmetries: &[f64]) -> Vec<bool> {
+    let (least, most) = range(asymmetries);
+    let (middle, far) = (0.5 * (least + most), FLIP * (most - least));
+    let mut side = None;
+    asymmetries
+        .iter()
+        .map(|a| {
+            let now =
+                (most - least > LEAST_ASYMMETRY && (a - middle).abs() > far).then_some(*a > middle);
+            let flips = now.is_some() && side.is_some() && now != side;
+            side = now.or(side);
+            flips
+        })
+        .collect()
 }
 
 pub(super) fn range(values: &[f64]) -> (f64, f64) {

@@ -10,7 +10,9 @@ use super::flight::Slowing;
 use super::simplex::minimise;
 
 /// Unknowns: logarithms of half gap, motor inertia over load inertia, viscous and dry slowing of the
-/// load, noise of a contact's place, relative noise of its momentum.
+/// load, noise of a contact's place, relative noise of its momentum. The second and the fourth are
+/// divided by the half gap: a light load that rattles in the gap shows these quotients far better than
+/// their parts, so that the search goes along the ridge instead of across.
 const UNKNOWNS: usize = 6;
 type Point = [f64; UNKNOWNS];
 
@@ -34,7 +36,7 @@ const LEAST_STEPS: usize = 3000;
 const MOST_STEPS: usize = 12_000;
 
 /// First steps of the sampling (logarithms), share of accepted steps, steps between adaptations, seed.
-const FIRST_STEPS: Point = [0.002, 0.05, 0.1, 0.1, 0.1, 0.1];
+const FIRST_STEPS: Point = [0.01, 0.01, 0.1, 0.1, 0.1, 0.1];
 const ACCEPTED: f64 = 0.25;
 const ADAPT: usize = 100;
 const SEED: u64 = 2026;
@@ -124,8 +126,9 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
         deviation: [f64::INFINITY, 1.2, 1.5, 2.0, 0.7, 1.0],
     };
     let cost = |point: &Point| {
+        let plain = plain(point);
         let prior: f64 = (0..UNKNOWNS)
-            .map(|i| 0.5 * ((point[i] - prior.mean[i]) / prior.deviation[i]).powi(2))
+            .map(|i| 0.5 * ((plain[i] - prior.mean[i]) / prior.deviation[i]).powi(2))
             .sum();
         let value = filter(events, point, SLOW * scales.speed, None) + prior;
         if value.is_finite() { value } else { f64::MAX }
@@ -140,9 +143,9 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
                 for dry in DRY_SHARES {
                     let mut point = prior.mean;
                     point[0] = half_gap.ln();
-                    point[1] = ratio.ln();
+                    point[1] = ratio.ln() - point[0];
                     point[2] = viscous.ln();
-                    point[3] = (dry * scales.acceleration).ln();
+                    point[3] = (dry * scales.acceleration).ln() - point[0];
                     let value = cost(&point);
                     if best.is_none_or(|b| value < b.1) {
                         best = Some((point, value));
@@ -172,13 +175,21 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
     Some(Fit {
         half_gap,
         error: half_gap * relative,
-        inertia_ratio: point[1].exp(),
+        inertia_ratio: plain(&point)[1].exp(),
         slowing: Slowing {
             viscous: point[2].exp(),
-            dry: point[3].exp(),
+            dry: plain(&point)[3].exp(),
         },
         innovations,
     })
+}
+
+/// The logarithms themselves, no longer divided by the half gap.
+fn plain(point: &Point) -> Point {
+    let mut plain = *point;
+    plain[1] += point[0];
+    plain[3] += point[0];
+    plain
 }
 
 /// Minus the logarithm of the likelihood of the innovations, up to a constant.
@@ -191,7 +202,7 @@ fn filter(
     slow: f64,
     mut innovations: Option<&mut Vec<Innovation>>,
 ) -> f64 {
-    let [half_gap, ratio, viscous, dry, place, relative] = point.map(f64::exp);
+    let [half_gap, ratio, viscous, dry, place, relative] = plain(point).map(f64::exp);
     let slowing = Slowing { viscous, dry };
     let Some(first) = events.first() else {
         return 0.0;
