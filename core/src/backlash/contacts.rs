@@ -28,6 +28,9 @@ const LEADING: f64 = 0.35;
 /// Step of the search for the begin, samples.
 const BEGIN_STEP: f64 = 0.125;
 
+/// Pause before a contact, in cycles, after which the load was free and not still touched.
+const FREE: f64 = 0.25;
+
 /// Samples after the end of a contact in which a little push may be left.
 const TAIL_SAMPLES: usize = 2;
 
@@ -40,7 +43,7 @@ const TAIL: f64 = 2.0;
 const TAIL_SHARE: f64 = 0.2;
 
 /// Most contacts that are used; the first ones.
-const MOST: usize = 1500;
+const MOST: usize = 2500;
 
 /// Cycles next to contacts that may hold a touch too light to be found, and cycles from which levels are read.
 const GUARD: f64 = 3.0;
@@ -61,6 +64,8 @@ pub(super) struct Touch {
     pub jump: f64,
     /// Standard deviation of `jump`.
     pub jump_noise: f64,
+    /// Whether the load flew freely before.
+    pub free: bool,
 }
 
 /// All contacts in engaged cycles, in order of time.
@@ -111,6 +116,7 @@ pub(super) fn touches(
                 },
                 jump: -change,
                 jump_noise: motor.noise,
+                free: true,
             })
         })
         .collect();
@@ -119,6 +125,10 @@ pub(super) fn touches(
         weigh(&flat, cycles, motor.noise, &mut touches);
         let doubtful = doubtful(&touches, cycles);
         if !doubtful.contains(&true) {
+            for k in 1..touches.len() {
+                let pause = touches[k].begin - touches[k - 1].begin - touches[k - 1].length;
+                touches[k].free = pause > FREE * cycles.length;
+            }
             return touches;
         }
         let mut keep = doubtful.iter().map(|d| !d);

@@ -88,5 +88,10 @@ fn free_level(segments: &[Segment], way: f64, cycles: usize, tolerance: f64) -> 
         .fold((0.0, 0.0), |(sum, count), (mean, n)| {
             (sum + n * mean, count + n)
         });
-    if count > 0.0 { sum / count } else { 0.0 }
+    // A phase that has no free run at all: its least resistance is still one.
+    if count > 0.0 && way * sum / count > -tolerance {
+        sum / count
+    } else {
+        0.0
+    }
 }

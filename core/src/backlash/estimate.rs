@@ -30,6 +30,12 @@ const GOOD_TRAVERSES: usize = 3;
 /// Contacts with one side only from which engagement is believed.
 const FEWEST_CONTACTS: usize = 3;
 
+/// Crossings of the gap within so many cycles, from how many on the load rattles, and the relative error
+/// that this leaves; seen with independent rigs.
+const RATTLE_CYCLES: f64 = 20.0;
+const RATTLES: usize = 40;
+const RATTLE_ERROR: f64 = 0.05;
+
 /// Speed at the start, of the cycle's, up to which the motor starts at rest.
 const AT_REST: f64 = 0.1;
 
@@ -185,28 +191,6 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
         return Ok(nothing(&record, Quality::NoDriftingTest));
     };
     let drift = Drift::new(&cycles, &motor.unexplained, motor.noise, &record.position);
-    if let Ok(p) = std::env::var("WOUT") {
-        std::fs::write(
-            p,
-            motor
-                .unexplained
-                .iter()
-                .flat_map(|v| v.to_le_bytes())
-                .collect::<Vec<u8>>(),
-        )
-        .unwrap();
-        std::fs::write(
-            "/tmp/gapx/engaged.txt",
-            drift
-                .engaged
-                .iter()
-                .zip(&drift.change)
-                .zip(&drift.base)
-                .map(|((e, c), b)| format!("{} {c} {b}\n", i32::from(*e)))
-                .collect::<String>(),
-        )
-        .unwrap();
-    }
     let touches = touches(&record, &cycles, &motor, &drift);
     let mut estimate = nothing(&record, Quality::NoEngagement);
     estimate.cycles = cycle_drift(&record, &cycles, &drift);
@@ -302,7 +286,9 @@ fn two_sided(
     };
     estimate.traverses = traverses(&estimate.contacts, &fit);
     let gap = 2.0 * fit.half_gap;
-    let error = (2.0 * fit.error).hypot(2.0 * place_error);
+    let rattles = rattles(&estimate.traverses, cycles.length * record.step);
+    let systematic = if rattles { RATTLE_ERROR * gap } else { 0.0 };
+    let error = (2.0 * fit.error).hypot(2.0 * place_error).hypot(systematic);
     if !(error < STATED * gap && gap < 2.0 * (high - low)) {
         return;
     }
@@ -319,6 +305,15 @@ fn two_sided(
         Quality::Poor
     };
     state(estimate, gap, error);
+}
+
+/// Whether the load rattles: it flies to and fro so fast that the motor hardly moves meanwhile, so that
+/// gap and load speed can be scaled together.
+fn rattles(traverses: &[Traverse], period: f64) -> bool {
+    let fast = traverses
+        .iter()
+        .filter(|t| t.to.time - t.from.time < RATTLE_CYCLES * period);
+    fast.count() >= RATTLES
 }
 
 fn state(estimate: &mut GapEstimate, gap: f64, error: f64) {

@@ -44,6 +44,9 @@ const SEED: u64 = 2026;
 /// Error of the relative speed at the begin of a contact, as share of the cycle's speed.
 const SLOW: f64 = 0.05;
 
+/// Error of the begin of a contact, samples.
+const LATE: f64 = 0.5;
+
 /// What is known beforehand of the logarithms: mean and standard deviation. Wide: a load of a seventh
 /// to seven times the motor's inertia lies within one and a half of them.
 struct Prior {
@@ -63,6 +66,8 @@ pub(super) struct Event {
     pub velocity: f64,
     pub jump: f64,
     pub jump_noise: f64,
+    /// Whether the load flew before, so that its place is told by the begin; else the push goes on.
+    pub free: bool,
 }
 
 impl Event {
@@ -75,6 +80,7 @@ impl Event {
             side: touch.side,
             jump: touch.jump,
             jump_noise: touch.jump_noise,
+            free: touch.free,
         }
     }
 }
@@ -125,12 +131,13 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
         ],
         deviation: [f64::INFINITY, 1.2, 1.5, 2.0, 0.7, 1.0],
     };
+    let errors = (SLOW * scales.speed, LATE * scales.step);
     let cost = |point: &Point| {
         let plain = plain(point);
         let prior: f64 = (0..UNKNOWNS)
             .map(|i| 0.5 * ((plain[i] - prior.mean[i]) / prior.deviation[i]).powi(2))
             .sum();
-        let value = filter(events, point, SLOW * scales.speed, None) + prior;
+        let value = filter(events, point, errors, None) + prior;
         if value.is_finite() { value } else { f64::MAX }
     };
     let (least, most) = (scales.travel / 400.0, scales.travel);
@@ -169,7 +176,7 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
     let posterior = sample(&cost, point, value, steps);
     let point = posterior.mean;
     let mut innovations = Vec::new();
-    filter(events, &point, SLOW * scales.speed, Some(&mut innovations));
+    filter(events, &point, errors, Some(&mut innovations));
     let half_gap = point[0].exp();
     let relative = posterior.covariance[(0, 0)].max(0.0).sqrt();
     Some(Fit {
@@ -199,7 +206,7 @@ fn plain(point: &Point) -> Point {
 fn filter(
     events: &[Event],
     point: &Point,
-    slow: f64,
+    (slow, late): (f64, f64),
     mut innovations: Option<&mut Vec<Innovation>>,
 ) -> f64 {
     let [half_gap, ratio, viscous, dry, place, relative] = plain(point).map(f64::exp);
@@ -233,23 +240,27 @@ fn filter(
                 &mut c,
                 event.time - before.time - before.centre,
             );
+            // A contact is placed in time, so that its place is the less certain the faster they meet.
+            let place = place + (late * (event.velocity - v)).powi(2);
             let variance = c[0] + place;
             let value = event.position - event.side.sign() * half_gap - x;
             let square = value * value / variance;
-            total += 0.5 * variance.ln() + 0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p();
-            // What is random is when they meet, not where: density in time, not in position.
-            let approach = event.side.sign() * (event.velocity - v);
-            total -= (slow * softplus(approach / slow)).ln();
             if let Some(list) = innovations.as_deref_mut() {
                 list.push(Innovation {
                     value,
                     deviation: variance.sqrt(),
                 });
             }
-            let (gx, gv) = (c[0] / variance, c[1] / variance);
-            x += gx * value;
-            v += gv * value;
-            c = [c[0] - gx * c[0], c[1] - gx * c[1], c[2] - gv * c[1]];
+            if event.free {
+                total += 0.5 * variance.ln() + 0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p();
+                // What is random is when they meet, not where: density in time, not in position.
+                let approach = event.side.sign() * (event.velocity - v);
+                total -= (slow * softplus(approach / slow)).ln();
+                let (gx, gv) = (c[0] / variance, c[1] / variance);
+                x += gx * value;
+                v += gv * value;
+                c = [c[0] - gx * c[0], c[1] - gx * c[1], c[2] - gv * c[1]];
+            }
         }
         fly(&mut x, &mut v, &mut c, event.centre);
         v += ratio * event.jump;
