@@ -1,10 +1,10 @@
 //! When, where and how hard does the motor meet the load?
 
-use super::cycles::Cycles;
+use super::cycles::{Cycles, median};
 use super::drift::Drift;
 use super::estimate::Side;
 use super::free_motor::FreeMotor;
-use super::record::Record;
+use super::record::{DIFFERENCE, Record};
 
 /// Cycles about an engaged one in which contacts are looked for.
 const MARGIN: usize = 2;
@@ -30,6 +30,12 @@ const BEGIN_STEP: f64 = 0.125;
 
 /// Pause before a contact, in cycles, after which the load was free and not still touched.
 const FREE: f64 = 0.25;
+
+/// Cycles before and after a contact in which nothing acts, least samples of them, and the largest share of
+/// the force in a contact that may act there.
+const ABOUT: f64 = 0.35;
+const LEAST_ABOUT: f64 = 4.0;
+const SHARP: f64 = 0.3;
 
 /// Samples after the end of a contact in which a little push may be left.
 const TAIL_SAMPLES: usize = 2;
@@ -68,13 +74,14 @@ pub(super) struct Touch {
     pub free: bool,
 }
 
-/// All contacts in engaged cycles, in order of time.
+/// All contacts in engaged cycles, in order of time; empty where what disturbs the motor is no contact, and
+/// then `true`.
 pub(super) fn touches(
     record: &Record,
     cycles: &Cycles,
     motor: &FreeMotor,
     drift: &Drift,
-) -> Vec<Touch> {
+) -> (Vec<Touch>, bool) {
     let n = record.len();
     let (mut near, mut slope) = (vec![false; n], vec![0.0; n]);
     for k in 0..cycles.count() {
@@ -103,7 +110,13 @@ pub(super) fn touches(
     let mut touches: Vec<Touch> = found
         .iter()
         .filter_map(|span| {
-            let begin = begin(&flat, *span, leading)?;
+            // Differences of the position see a contact before it begins.
+            let early = if record.has_velocity {
+                0.0
+            } else {
+                0.5 * DIFFERENCE as f64
+            };
+            let begin = begin(&flat, *span, leading)? + early;
             let change = flat[span.1] - flat[span.0];
             Some(Touch {
                 begin,
@@ -129,11 +142,47 @@ pub(super) fn touches(
                 let pause = touches[k].begin - touches[k - 1].begin - touches[k - 1].length;
                 touches[k].free = pause > FREE * cycles.length;
             }
-            return touches;
+            return if is_sharp(&flat, &touches, cycles) {
+                (touches, false)
+            } else {
+                (Vec::new(), true)
+            };
         }
         let mut keep = doubtful.iter().map(|d| !d);
         touches.retain(|_| keep.next().unwrap_or(true));
     }
+}
+
+/// Whether the unexplained force acts within the contacts and not about them: a load is touched at one end
+/// of the cycle, while a force that depends on position, speed or time acts all through it.
+fn is_sharp(values: &[f64], touches: &[Touch], cycles: &Cycles) -> bool {
+    let last = values.len() - 1;
+    let at = |sample: f64| values[(sample.max(0.0) as usize).min(last)];
+    let about = ABOUT * cycles.length;
+    let mut shares: Vec<f64> = (0..touches.len())
+        .map(|k| {
+            let (begin, end) = (
+                touches[k].begin - 2.0,
+                touches[k].begin + touches[k].length + 2.0,
+            );
+            let free_before = k
+                .checked_sub(1)
+                .map_or(0.0, |j| touches[j].begin + touches[j].length + 2.0);
+            let free_after = touches.get(k + 1).map_or(last as f64, |t| t.begin - 2.0);
+            let (from, to) = (
+                (begin - about).max(free_before),
+                (end + about).min(free_after),
+            );
+            let outside = (begin - from).max(0.0) + (to - end).max(0.0);
+            if outside < LEAST_ABOUT {
+                return 0.0;
+            }
+            let change = (at(begin) - at(from.min(begin))) + (at(to.max(end)) - at(end));
+            let inside = at(end) - at(begin);
+            (change / outside) / (inside / (end - begin))
+        })
+        .collect();
+    median(&mut shares) < SHARP
 }
 
 /// Which touches are none: too light for the noise, against their own sign, or the tail of another one.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::measurement::Measurement;
 
 use super::contacts::{Touch, touches};
-use super::cycles::{Cycles, range};
+use super::cycles::{Cycles, median, range};
 use super::drift::Drift;
 use super::free_motor::FreeMotor;
 use super::likelihood::{Event, Fit, Scales, fit};
@@ -18,11 +18,16 @@ const NORMAL_95: f64 = 1.959_963_984_540_054;
 /// Systematic error of a contact's place, as share of the way that the motor goes in a sample at the
 /// speed of its cycle: the shape of a contact is not known better.
 const PLACE_SHARE: f64 = 0.25;
+/// The same where the velocity was not measured.
+const POSITION_PLACE_SHARE: f64 = 0.5;
 
 /// Relative standard errors up to which an estimate is good, fair, and stated at all.
 const GOOD: f64 = 0.03;
 const FAIR: f64 = 0.08;
 const STATED: f64 = 0.25;
+
+/// Median relative deviation of the traverses up to which they are of one gap.
+const AGREE: f64 = 0.1;
 
 /// Traverses of a good estimate.
 const GOOD_TRAVERSES: usize = 3;
@@ -117,9 +122,9 @@ pub struct LoadMotion {
 pub enum Quality {
     /// Three traverses or more, standard error at most 3 %.
     Good,
-    /// Standard error at most 8 %.
+    /// Two traverses or more, standard error at most 8 %.
     Fair,
-    /// A gap is stated, with a standard error of up to 25 %.
+    /// A gap is stated, by one traverse that nothing checks or with a standard error of up to 25 %.
     Poor,
     /// Only one end of the gap was met: the gap rests on a motor that started in the middle of it.
     AssumedCentre,
@@ -127,6 +132,8 @@ pub enum Quality {
     OneSide,
     /// Both ends were met, but the load moved too much in between; no gap stated.
     Undecided,
+    /// A force that is no contact acts all through the cycle, such as cogging; no gap stated.
+    Disturbed,
     /// The motor never met a load; no gap stated.
     NoEngagement,
     /// Not a velocity relay's limit cycle; no gap stated.
@@ -191,7 +198,7 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
         return Ok(nothing(&record, Quality::NoDriftingTest));
     };
     let drift = Drift::new(&cycles, &motor.unexplained, motor.noise, &record.position);
-    let touches = touches(&record, &cycles, &motor, &drift);
+    let (touches, disturbed) = touches(&record, &cycles, &motor, &drift);
     let mut estimate = nothing(&record, Quality::NoEngagement);
     estimate.cycles = cycle_drift(&record, &cycles, &drift);
     let (low, high) = range(
@@ -211,7 +218,12 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
             velocity_loss: t.jump,
         })
         .collect();
-    let place_error = PLACE_SHARE * record.step * cycles.speed;
+    let share = if record.has_velocity {
+        PLACE_SHARE
+    } else {
+        POSITION_PLACE_SHARE
+    };
+    let place_error = share * record.step * cycles.speed;
     let both = [Side::Positive, Side::Negative]
         .iter()
         .all(|side| touches.iter().any(|t| t.side == *side));
@@ -228,6 +240,9 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
         one_sided(&mut estimate, &record, &cycles, place_error);
     } else {
         estimate.contacts.clear();
+        if disturbed {
+            estimate.quality = Quality::Disturbed;
+        }
     }
     estimate.text = verdict::text(&estimate, cycles.flips.iter().any(|f| *f));
     Ok(estimate)
@@ -289,7 +304,8 @@ fn two_sided(
     let rattles = rattles(&estimate.traverses, cycles.length * record.step);
     let systematic = if rattles { RATTLE_ERROR * gap } else { 0.0 };
     let error = (2.0 * fit.error).hypot(2.0 * place_error).hypot(systematic);
-    if !(error < STATED * gap && gap < 2.0 * (high - low)) {
+    let agree = disagreement(&estimate.traverses, gap) < AGREE;
+    if !(error < STATED * gap && gap < 2.0 * (high - low) && agree) {
         return;
     }
     estimate.load = Some(LoadMotion {
@@ -299,12 +315,21 @@ fn two_sided(
     });
     estimate.quality = if error <= GOOD * gap && estimate.traverses.len() >= GOOD_TRAVERSES {
         Quality::Good
-    } else if error <= FAIR * gap {
+    } else if error <= FAIR * gap && estimate.traverses.len() > 1 {
         Quality::Fair
     } else {
         Quality::Poor
     };
     state(estimate, gap, error);
+}
+
+/// Median deviation of the traverses from the gap, relative, as far as the load's motion does not explain it.
+fn disagreement(traverses: &[Traverse], gap: f64) -> f64 {
+    let mut off: Vec<f64> = traverses
+        .iter()
+        .map(|t| ((t.gap - gap).abs() - t.std_error.min(AGREE * gap)) / gap)
+        .collect();
+    median(&mut off)
 }
 
 /// Whether the load rattles: it flies to and fro so fast that the motor hardly moves meanwhile, so that

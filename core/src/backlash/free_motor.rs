@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::cycles::{Cycles, median};
 use super::drift::Drift;
-use super::record::Record;
+use super::record::{DIFFERENCE, Record};
 
 /// How late the input may act, s; delay and lag of the drive lie within.
 const LATE: f64 = 2e-3;
@@ -91,8 +91,8 @@ struct Rows {
 impl Rows {
     fn new(record: &Record, cycles: &Cycles) -> Option<Self> {
         let lags = ((LATE / record.step).ceil() as usize).clamp(LAGS.0, LAGS.1);
-        // A central difference of the position sees the input of the next step as well.
-        let lead = usize::from(!record.has_velocity);
+        // A central difference of the position sees the input of the next steps as well.
+        let lead = if record.has_velocity { 0 } else { DIFFERENCE };
         let inputs = lead + lags;
         let width = inputs + FRICTION_LAGS + REVERSAL_LAGS + 3;
         let (first, end) = (lags, record.len().checked_sub(1 + lead)?);
@@ -169,7 +169,7 @@ impl Rows {
         unexplained[self.first + left.len() + 1..].fill(sum);
         let total: f64 = solution.iter().take(self.inputs).sum();
         Some(FreeMotor {
-            noise: noise(&unexplained, cycles),
+            noise: noise(record, &unexplained, cycles),
             unexplained,
             acceleration: (total / record.step).abs(),
         })
@@ -188,17 +188,27 @@ fn mean_sign(a: f64, b: f64) -> f64 {
     (b.abs() - a.abs()) / (b - a)
 }
 
-/// Noise of the unexplained velocity: median difference over one and over three steps.
-fn noise(unexplained: &[f64], cycles: &Cycles) -> f64 {
+/// Noise of the unexplained velocity: median deviation of its change over one or a few steps.
+fn noise(record: &Record, unexplained: &[f64], cycles: &Cycles) -> f64 {
     let from = cycles.starts[0];
     let level = |apart: usize| {
-        let mut sizes: Vec<f64> = unexplained[from..]
+        let mut changes: Vec<f64> = unexplained[from..]
             .windows(apart + 1)
-            .map(|w| (w[apart] - w[0]).abs())
+            .map(|w| w[apart] - w[0])
             .collect();
-        median(&mut sizes) / NORMAL_MEDIAN / std::f64::consts::SQRT_2
+        let middle = median(&mut changes);
+        for change in &mut changes {
+            *change = (*change - middle).abs();
+        }
+        median(&mut changes) / NORMAL_MEDIAN / std::f64::consts::SQRT_2
     };
-    level(1).max(level(3))
+    // A velocity made of the position has noise that is alike over a few steps.
+    let far = if record.has_velocity {
+        3
+    } else {
+        3 + 2 * DIFFERENCE
+    };
+    [1, 3, far].into_iter().map(level).fold(0.0, f64::max)
 }
 
 /// Weighted least squares.

@@ -141,12 +141,15 @@ fn resample(time: &[f64], values: &[f64], grid: Option<&[f64]>, hold: bool) -> V
         .collect()
 }
 
+/// Half width of the differences that make a velocity of a position, samples: less would be all quantisation.
+pub(super) const DIFFERENCE: usize = 2;
+
 /// Central differences.
 fn slopes(x: &[f64], step: f64) -> Vec<f64> {
     let last = x.len() - 1;
     (0..x.len())
         .map(|i| {
-            let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
+            let (a, b) = (i.saturating_sub(DIFFERENCE), (i + DIFFERENCE).min(last));
             (x[b] - x[a]) / (step * (b - a) as f64)
         })
         .collect()

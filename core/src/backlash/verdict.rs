@@ -24,6 +24,9 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
                 "no engagement seen: the gap may be wider than the travel of {travel} {unit}, or there is no load"
             )
         }
+        Quality::Disturbed => "no engagement seen: the motor is disturbed, but not by contacts with a load, since the \
+            force acts all through the cycle (cogging and changing friction do so)"
+            .to_owned(),
         Quality::OneSide => format!(
             "the load was met at one side only ({} contacts); the gap may be wider than the travel of {travel} {unit}",
             estimate.contacts.len()
