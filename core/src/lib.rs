@@ -19,11 +19,13 @@
 //! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`effect`] | which physics can be added? |
+//! | [`drive`] | what does a drive with a hidden gap do? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 #![warn(missing_docs)]
 
 pub mod backlash;
 pub mod criticism;
+pub mod drive;
 pub mod effect;
 pub mod explore;
 pub mod figures;
