@@ -1,0 +1,270 @@
+//! What can be set: figure, relay, gap, masses, contact, playback.
+
+use std::ops::RangeInclusive;
+
+use hysteron_core::drive::{Command, Contact, drifting_test, figures};
+
+use super::Backlash;
+use super::scene::MILLI;
+
+/// Values that a contact begins with when its kind is chosen.
+const STIFFNESS: f64 = 1500.0;
+const DAMPING: f64 = 0.2;
+
+impl Backlash {
+    pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui) {
+        let before = self.input;
+        ui.add_space(4.0);
+        self.figures_ui(ui);
+        ui.separator();
+        self.relay_ui(ui);
+        self.gap_ui(ui);
+        self.masses_ui(ui);
+        ui.small("Double-click a slider to reset it.");
+        if self.input != before {
+            self.message = None;
+        }
+    }
+
+    /// The paper's figures, one click each.
+    fn figures_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label("From the paper:");
+            for figure in figures() {
+                let chosen = self.figure == Some(figure.number);
+                let button = ui
+                    .add(egui::Button::new(format!("Fig. {}", figure.number)).selected(chosen))
+                    .on_hover_text(format!("{}: {}", figure.title, figure.claim));
+                if button.clicked() {
+                    self.figure = (!chosen).then_some(figure.number);
+                    if !chosen {
+                        self.input = figure.input;
+                        self.clock = 0.0;
+                    }
+                }
+            }
+        });
+    }
+
+    fn relay_ui(&mut self, ui: &mut egui::Ui) {
+        ui.strong("Relay on the motor's velocity");
+        let normal = drifting_test();
+        let (Command::Relay(relay), Command::Relay(usual)) =
+            (&mut self.input.command, normal.command)
+        else {
+            return;
+        };
+        let r = &mut relay.relay;
+        slider(
+            ui,
+            &mut r.gain,
+            usual.relay.gain,
+            1.0,
+            0.05..=2.0,
+            "gain k [N m]",
+        )
+        .on_hover_text("How strongly the relay pushes");
+        slider(
+            ui,
+            &mut r.asymmetry,
+            usual.relay.asymmetry,
+            1.0,
+            -0.6..=0.6,
+            "asymmetry a",
+        )
+        .on_hover_text("How much stronger it pushes up than down");
+        slider(
+            ui,
+            &mut r.hysteresis,
+            usual.relay.hysteresis,
+            1.0,
+            0.05..=8.0,
+            "hysteresis ε [rad/s]",
+        )
+        .on_hover_text("Speed at which the relay turns the push round");
+        slider(ui, &mut r.delay, 0.0, 1e3, 0.0..=2.0, "delay [ms]")
+            .on_hover_text("How late the push follows the switch");
+        let mut flip = relay.flip.unwrap_or(0.0);
+        let before = flip;
+        slider(
+            ui,
+            &mut flip,
+            usual.flip.unwrap_or(0.0),
+            1.0,
+            0.0..=5.0,
+            "turn round every [s]",
+        )
+        .on_hover_text(
+            "The asymmetry changes its sign, so that the drift turns round; 0 for never",
+        );
+        if flip != before {
+            relay.flip = (flip > 0.0).then_some(flip.max(0.01));
+        }
+        slider(
+            ui,
+            &mut self.input.duration,
+            normal.duration,
+            1.0,
+            0.2..=20.0,
+            "duration [s]",
+        );
+    }
+
+    fn gap_ui(&mut self, ui: &mut egui::Ui) {
+        ui.strong("Gap and contact");
+        let normal = drifting_test().drive;
+        let drive = &mut self.input.drive;
+        slider(
+            ui,
+            &mut drive.half_gap,
+            normal.half_gap,
+            MILLI,
+            0.5..=20.0,
+            "half gap β [mrad]",
+        );
+        ui.horizontal(|ui| {
+            let rigid = matches!(drive.contact, Contact::Rigid { .. });
+            if ui.radio(rigid, "rigid").clicked() && !rigid {
+                drive.contact = normal.contact;
+            }
+            if ui.radio(!rigid, "compliant").clicked() && rigid {
+                drive.contact = Contact::Compliant {
+                    stiffness: STIFFNESS,
+                    damping: DAMPING,
+                };
+            }
+        });
+        match &mut drive.contact {
+            Contact::Rigid { restitution } => {
+                slider(ui, restitution, 1.0, 1.0, 0.0..=1.0, "restitution")
+                    .on_hover_text("Share of the speed with which they part after an impact");
+            }
+            Contact::Compliant { stiffness, damping } => {
+                slider(
+                    ui,
+                    stiffness,
+                    STIFFNESS,
+                    1.0,
+                    50.0..=20_000.0,
+                    "stiffness [N m/rad]",
+                );
+                slider(ui, damping, DAMPING, 1.0, 0.0..=2.0, "damping [N m s/rad]");
+            }
+        }
+        slider(
+            ui,
+            &mut drive.adhesion.upper,
+            0.0,
+            1.0,
+            0.0..=0.2,
+            "sticks at the top [N m]",
+        )
+        .on_hover_text(
+            "Pull that the upper contact withstands before it parts (adhesive side effect)",
+        );
+        slider(
+            ui,
+            &mut drive.adhesion.lower,
+            0.0,
+            1.0,
+            0.0..=0.2,
+            "sticks at the bottom [N m]",
+        );
+    }
+
+    fn masses_ui(&mut self, ui: &mut egui::Ui) {
+        let normal = drifting_test().drive;
+        let drive = &mut self.input.drive;
+        for (name, body, usual) in [
+            ("Motor", &mut drive.motor, normal.motor),
+            ("Load", &mut drive.load, normal.load),
+        ] {
+            ui.strong(name);
+            slider(
+                ui,
+                &mut body.inertia,
+                usual.inertia,
+                1e6,
+                100.0..=5000.0,
+                "inertia [kg mm²]",
+            );
+            slider(
+                ui,
+                &mut body.coulomb,
+                usual.coulomb,
+                1.0,
+                0.0..=0.2,
+                "Coulomb friction [N m]",
+            );
+            slider(
+                ui,
+                &mut body.viscous,
+                usual.viscous,
+                1e3,
+                0.0..=20.0,
+                "viscous [mN m s/rad]",
+            );
+        }
+    }
+
+    pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            let label = if self.playing { "Pause" } else { "Play" };
+            if ui.button(label).clicked() {
+                self.playing = !self.playing;
+            }
+            if ui
+                .button("Step")
+                .on_hover_text("To the next event")
+                .clicked()
+            {
+                self.playing = false;
+                self.step_to_next_event();
+            }
+            if ui.button("From the start").clicked() {
+                self.clock = 0.0;
+            }
+            ui.add(
+                egui::Slider::new(&mut self.speed, 0.001..=2.0)
+                    .logarithmic(true)
+                    .text("times real time"),
+            );
+            ui.label(format!("t = {:.4} s", self.clock));
+        });
+    }
+
+    fn step_to_next_event(&mut self) {
+        let Some(scene) = &self.scene else {
+            return;
+        };
+        let events = &scene.run.events;
+        let next = events.partition_point(|e| e.time <= self.clock + 1e-9);
+        if let Some(event) = events.get(next) {
+            self.clock = event.time;
+        }
+    }
+}
+
+/// A slider over `value * scale`, reset by a double click.
+fn slider(
+    ui: &mut egui::Ui,
+    value: &mut f64,
+    normal: f64,
+    scale: f64,
+    range: RangeInclusive<f64>,
+    label: &str,
+) -> egui::Response {
+    let mut shown = *value * scale;
+    let response = ui.add(
+        egui::Slider::new(&mut shown, range)
+            .text(label)
+            .max_decimals(3)
+            .clamping(egui::SliderClamping::Edits),
+    );
+    if response.double_clicked() {
+        *value = normal;
+    } else if response.changed() {
+        *value = shown / scale;
+    }
+    response
+}
