@@ -11,17 +11,21 @@
 
 mod cycle;
 mod engine;
+mod figures;
 mod flow;
 mod modes;
 mod polynomial;
 mod relay;
+mod summary;
 mod trajectory;
 
 use serde::{Deserialize, Serialize};
 
 pub use cycle::{CyclePoint, DriftingCycle, Turn, drift_formula, drifting_cycle};
 pub use engine::{DriveJob, run};
+pub use figures::{DriveFigure, drifting_test, figures, reference_drive};
 pub use relay::{Command, VelocityRelay};
+pub use summary::{Direction, Engagement, FreeDrift, Summary, summarize};
 pub use trajectory::{DriveRun, Energy, Event, EventKind, Mass, Side};
 
 use crate::relay::RelayError;
