@@ -33,11 +33,12 @@ pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) 
 fn grid(bounds: (f64, f64)) -> [f64; 3] {
     let wanted = ((bounds.1 - bounds.0) / 7.0).max(f64::MIN_POSITIVE);
     let decade = 10_f64.powf(wanted.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0]
+    // Between lines at 5 the finer ones stand at 1: labels of halves would have to be rounded.
+    let [step, fine] = [[1.0, 0.5], [2.0, 1.0], [5.0, 1.0], [10.0, 5.0]]
         .into_iter()
-        .find(|s| s * decade >= wanted)
-        .map_or(wanted, |s| s * decade);
-    [0.5 * step, step, 10.0 * step]
+        .find(|s| s[0] * decade >= wanted)
+        .unwrap_or([wanted / decade, 0.5 * wanted / decade]);
+    [fine * decade, step * decade, 10.0 * step * decade]
 }
 
 /// Names of the curves in their colours, above a plot: they hide nothing.

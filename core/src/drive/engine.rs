@@ -534,9 +534,11 @@ impl DriveJob {
         } else {
             NO_ELASTIC_BOUNCE
         };
-        if restitution * approach <= least * self.fastest {
+        let stays = restitution * approach <= least * self.fastest;
+        if stays {
             let common = (j1 * s.v1 + j2 * s.v2) / (j1 + j2);
             (s.v1, s.v2) = (common, common);
+            s.joint = Some(side);
         } else {
             let exchanged = sign * (1.0 + restitution) * approach / (j1 + j2);
             s.v1 -= exchanged * j2;
@@ -545,7 +547,11 @@ impl DriveJob {
         }
         let s = &self.state;
         self.run.energy.contact += before - self.drive.kinetic_energy(s.v1, s.v2);
-        self.note(EventKind::Impact(side, approach));
+        self.note(if stays {
+            EventKind::Touch(side)
+        } else {
+            EventKind::Impact(side, approach)
+        });
         self.settle();
     }
 

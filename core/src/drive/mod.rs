@@ -10,10 +10,12 @@
 //! `F` between the masses comes from one of two contact models ([`Contact`]).
 
 mod cycle;
+mod design;
 mod engine;
 mod figures;
 mod flow;
 mod modes;
+mod play;
 mod polynomial;
 mod relay;
 mod summary;
@@ -22,10 +24,12 @@ mod trajectory;
 use serde::{Deserialize, Serialize};
 
 pub use cycle::{CyclePoint, DriftingCycle, Turn, drift_formula, drifting_cycle};
+pub use design::{DriftingTest, RoughDrive, TRAVERSES, design_drifting_test};
 pub use engine::{DriveJob, run};
-pub use figures::{DriveFigure, drifting_test, figures, reference_drive};
+pub use figures::{DriveFigure, checks, drifting_test, figures, reference_drive};
+pub use play::{PlayCycle, cycles_with_play, play_describing_function, relay_seen_through_play};
 pub use relay::{Command, VelocityRelay};
-pub use summary::{Direction, Engagement, FreeDrift, Summary, summarize};
+pub use summary::{Direction, Engagement, FreeDrift, Summary, Traverse, engaged_drift, summarize};
 pub use trajectory::{DriveRun, Energy, Event, EventKind, Mass, Side};
 
 use crate::relay::RelayError;

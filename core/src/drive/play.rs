@@ -104,7 +104,8 @@ impl PlayLoop<'_> {
     fn phase(&self, omega: f64) -> Option<(f64, PlayCycle)> {
         let first = self.plant.response(omega);
         let before = 4.0 * self.relay.gain / PI * first.norm();
-        let through = play_describing_function(before, self.half_gap)? * self.behind.response(omega);
+        let through =
+            play_describing_function(before, self.half_gap)? * self.behind.response(omega);
         let at_relay = before * through.norm();
         let eps = self.relay.hysteresis;
         if !(at_relay >= eps && at_relay.is_finite() && at_relay > 0.0) {

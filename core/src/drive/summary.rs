@@ -7,7 +7,8 @@ use super::{
     drifting_cycle,
 };
 
-/// A stretch of time in which the masses touch, or bounce without a rest.
+/// A stretch of time in which the motor pushes the load along: from the first contact at an end of the
+/// gap to the last one before a flip of the relay or a contact at the other end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Engagement {
     /// At which end.
@@ -31,6 +32,18 @@ pub struct FreeDrift {
     pub turned: bool,
 }
 
+/// The way of the motor from one end of the gap to the other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Traverse {
+    /// Last contact at one end and first at the other, s.
+    pub from: f64,
+    /// See `from`.
+    pub to: f64,
+    /// Distance that the motor has come in between, rad (or m): the gap, and what the load has moved after
+    /// the last contact.
+    pub travel: f64,
+}
+
 /// What a run shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -40,15 +53,14 @@ pub struct Summary {
     pub engagements: Vec<Engagement>,
     /// Drifts between them.
     pub drifts: Vec<FreeDrift>,
+    /// Ways from one end of the gap to the other.
+    pub traverses: Vec<Traverse>,
     /// Least and largest `x1 - x2`, rad (or m): the map's two branches. Their distance is the gap if
     /// both ends were reached.
     pub branches: [f64; 2],
     /// Both ends of the gap were reached.
     pub traversed: bool,
 }
-
-/// Contacts less than this many periods apart are one engagement.
-const SAME_ENGAGEMENT: f64 = 4.0;
 
 /// Cycles that are left out at either end of a stretch without contact, and those that it needs.
 const MARGIN: usize = 2;
@@ -61,11 +73,7 @@ pub fn summarize(input: &DriveInput, run: &DriveRun) -> Summary {
         Command::Torque(_) => None,
     };
     let cycle = relay.and_then(|r| drifting_cycle(&input.drive.motor, &r));
-    let pause = match &cycle {
-        Some(cycle) => SAME_ENGAGEMENT * cycle.period,
-        None => 0.0,
-    };
-    let engagements = engagements(run, pause, input.duration);
+    let engagements = engagements(run, input.duration);
     let drifts = relay.map_or_else(Vec::new, |r| drifts(run, &r, &engagements, input.duration));
     let mut branches = [f64::INFINITY, f64::NEG_INFINITY];
     for (x1, x2) in run.x1.iter().zip(&run.x2) {
@@ -80,35 +88,56 @@ pub fn summarize(input: &DriveInput, run: &DriveRun) -> Summary {
     Summary {
         cycle,
         traversed: reached(Side::Upper) && reached(Side::Lower),
+        traverses: traverses(run, &engagements),
         engagements,
         drifts,
         branches,
     }
 }
 
-fn engagements(run: &DriveRun, pause: f64, duration: f64) -> Vec<Engagement> {
+fn engagements(run: &DriveRun, duration: f64) -> Vec<Engagement> {
     let mut found: Vec<Engagement> = Vec::new();
-    let mut add = |side: Side, from: f64, to: f64| match found.last_mut() {
-        Some(last) if last.side == side && from - last.to <= pause => last.to = to.max(last.to),
-        _ => found.push(Engagement { side, from, to }),
-    };
-    let mut touching: Option<(Side, f64)> = None;
+    let mut flipped = true;
+    let mut touching: Option<Side> = None;
     for Event { time, kind, .. } in &run.events {
         match kind {
-            EventKind::Impact(side, _) => add(*side, *time, *time),
-            EventKind::Touch(side) => touching = Some((*side, *time)),
-            EventKind::Part(_) => {
-                if let Some((side, from)) = touching.take() {
-                    add(side, from, *time);
+            EventKind::Impact(side, _) | EventKind::Touch(side) | EventKind::Part(side) => {
+                let touches = matches!(kind, EventKind::Touch(_));
+                touching = touches.then_some(*side);
+                match found.last_mut() {
+                    Some(last) if last.side == *side && !flipped => last.to = *time,
+                    _ => found.push(Engagement {
+                        side: *side,
+                        from: *time,
+                        to: *time,
+                    }),
                 }
+                flipped = false;
             }
+            EventKind::Flip => flipped = touching.is_none(),
             _ => {}
         }
     }
-    if let Some((side, from)) = touching {
-        add(side, from, duration);
+    if let (Some(_), Some(last)) = (touching, found.last_mut()) {
+        last.to = duration;
     }
     found
+}
+
+fn traverses(run: &DriveRun, engagements: &[Engagement]) -> Vec<Traverse> {
+    let position = |time: f64| {
+        let at = run.events.partition_point(|e| e.time < time);
+        run.events.get(at).map(|e| e.x1)
+    };
+    engagements
+        .windows(2)
+        .filter(|pair| pair[0].side != pair[1].side)
+        .filter_map(|pair| {
+            let (from, to) = (pair[0].to, pair[1].from);
+            let travel = (position(to)? - position(from)?).abs();
+            Some(Traverse { from, to, travel })
+        })
+        .collect()
 }
 
 fn drifts(
@@ -156,6 +185,21 @@ fn drifts(
         });
     }
     found
+}
+
+/// Mean velocity of the motor while it pushes the load along in the longest engagement, rad/s (or m/s).
+pub fn engaged_drift(run: &DriveRun, summary: &Summary) -> Option<f64> {
+    let longest = summary
+        .engagements
+        .iter()
+        .max_by(|a, b| (a.to - a.from).total_cmp(&(b.to - b.from)))?;
+    let within: Vec<&Event> = run
+        .events
+        .iter()
+        .filter(|e| e.kind == EventKind::SwitchUp && longest.from <= e.time && e.time <= longest.to)
+        .collect();
+    let (first, last) = (within.first()?, within.last()?);
+    (within.len() > FEWEST).then(|| (last.x1 - first.x1) / (last.time - first.time))
 }
 
 /// Which way a cycle drifts, against or with its stronger push.

@@ -89,9 +89,15 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     );
     let beta = MILLI * scene.input.drive.half_gap;
     let [low, high] = scene.range;
+    let load = scene.load_range;
     still("map", "motor x1 [mrad]", "load x2 [mrad]", height).show(ui, |plot| {
         for side in [-1.0, 1.0] {
-            let edge = vec![[low, low - side * beta], [high, high - side * beta]];
+            // No longer than the branch that lies on it.
+            let ends = [
+                low.max(load[0] + side * beta),
+                high.min(load[1] + side * beta),
+            ];
+            let edge = ends.map(|x| [x, x - side * beta]).to_vec();
             plot.line(
                 Line::new("ends of the gap", edge)
                     .color(theme::MODEL)

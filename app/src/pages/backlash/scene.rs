@@ -8,6 +8,9 @@ const BUCKETS: usize = 900;
 /// Points of the map that are drawn at most.
 const MAP_POINTS: usize = 4000;
 
+/// Points between two corners of the phase portrait.
+const BENDS: usize = 4;
+
 /// Milliradians in a radian: the page speaks of them.
 pub const MILLI: f64 = 1e3;
 
@@ -21,8 +24,9 @@ pub struct Scene {
     pub load: Vec<[f64; 2]>,
     /// Load over motor position, thinned.
     pub map: Vec<[f64; 2]>,
-    /// Least and largest position of either.
+    /// Least and largest position of either, and of the load.
     pub range: [f64; 2],
+    pub load_range: [f64; 2],
     pub answer: String,
     pub lesson: String,
 }
@@ -33,15 +37,16 @@ impl Scene {
         let thin = |values: &[f64]| envelope(&run.time, values);
         let skip = run.time.len().div_ceil(MAP_POINTS).max(1);
         let map = run.x1.iter().zip(&run.x2).step_by(skip);
-        let all = run.x1.iter().chain(&run.x2);
-        let range = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(*x), high.max(*x)]
-        });
+        let (motor_range, load_range) = (range(&run.x1), range(&run.x2));
         Self {
             motor: thin(&run.x1),
             load: thin(&run.x2),
             map: map.map(|(a, b)| [MILLI * a, MILLI * b]).collect(),
-            range: range.map(|x| MILLI * x),
+            range: [
+                motor_range[0].min(load_range[0]),
+                motor_range[1].max(load_range[1]),
+            ],
+            load_range,
             answer: answer(&input, &summary),
             lesson: lesson(&input, &summary),
             summary,
@@ -76,30 +81,41 @@ impl Scene {
         ])
     }
 
-    /// Motor position in mrad and velocity from one time to another: samples, and corners from events.
+    /// Motor position in mrad and velocity from one time to another: samples, corners from events, and
+    /// the parabolas between them.
     pub fn phase(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
         let run = &self.run;
-        let mut events = {
-            let first = run.events.partition_point(|e| e.time < from);
-            run.events[first..]
-                .iter()
-                .take_while(|e| e.time <= to)
-                .peekable()
-        };
-        let first = run.time.partition_point(|t| *t < from);
-        let mut points = Vec::new();
-        for i in first..run.time.len() {
-            let t = run.time[i];
-            while let Some(e) = events.next_if(|e| e.time <= t) {
-                points.push([MILLI * e.x1, e.v1]);
+        let samples =
+            run.time.partition_point(|t| *t < from)..run.time.partition_point(|t| *t <= to);
+        let events = run.events.partition_point(|e| e.time < from)
+            ..run.events.partition_point(|e| e.time <= to);
+        let mut places: Vec<[f64; 3]> = samples
+            .map(|i| [run.time[i], run.x1[i], run.v1[i]])
+            .chain(run.events[events].iter().map(|e| [e.time, e.x1, e.v1]))
+            .collect();
+        places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut points = Vec::with_capacity(BENDS * places.len());
+        for pair in places.windows(2) {
+            let ([t, x, v], [t_end, _, v_end]) = (pair[0], pair[1]);
+            let span = t_end - t;
+            for k in 0..BENDS {
+                let share = k as f64 / BENDS as f64;
+                let speed = v + 0.5 * share * (v_end - v);
+                points.push([MILLI * (x + share * span * speed), v + share * (v_end - v)]);
             }
-            if t > to {
-                break;
-            }
-            points.push([MILLI * run.x1[i], run.v1[i]]);
         }
+        points.extend(places.last().map(|[_, x, v]| [MILLI * x, *v]));
         points
     }
+}
+
+/// Least and largest value, in mrad.
+fn range(values: &[f64]) -> [f64; 2] {
+    values
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(MILLI * x), high.max(MILLI * x)]
+        })
 }
 
 fn envelope(time: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
