@@ -10,16 +10,16 @@
 //! | [`plant`] | what does it act on? |
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
-//! | [`scenario`] | a loop in a file |
 //! | [`tuning`] | how do I tune a controller from it? |
 //! | [`explore`] | everything about one loop at once |
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |
 //! | [`measurement`] | what was measured? |
-//! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
-//! | [`effect`] | which physics can be added? |
 //! | [`drive`] | what does a drive with a hidden gap do? |
+//! | [`scenario`] | a loop or a drive in a file |
+//! | [`backlash`] | how wide is the hidden gap? |
+//! | [`effect`] | which physics can be added? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 #![warn(missing_docs)]
 

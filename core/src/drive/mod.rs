@@ -17,7 +17,9 @@ mod flow;
 mod modes;
 mod play;
 mod polynomial;
+mod record;
 mod relay;
+mod scenario;
 mod summary;
 mod trajectory;
 
@@ -28,7 +30,9 @@ pub use design::{DriftingTest, RoughDrive, TRAVERSES, design_drifting_test};
 pub use engine::{DriveJob, run};
 pub use figures::{DriveFigure, checks, drifting_test, figures, reference_drive};
 pub use play::{PlayCycle, cycles_with_play, play_describing_function, relay_seen_through_play};
+pub use record::{Recorder, record};
 pub use relay::{Command, VelocityRelay};
+pub(crate) use scenario::DriveFile;
 pub use summary::{Direction, Engagement, FreeDrift, Summary, Traverse, engaged_drift, summarize};
 pub use trajectory::{DriveRun, Energy, Event, EventKind, Mass, Side};
 
@@ -69,6 +73,13 @@ pub enum Contact {
     },
 }
 
+impl Default for Contact {
+    /// As in the paper: rigid, without loss.
+    fn default() -> Self {
+        Self::Rigid { restitution: 1.0 }
+    }
+}
+
 /// Pull that a contact withstands before it parts, N m (or N): the paper's adhesive side effect, which
 /// makes the force on leaving contact differ from that on entering it, and the two sides from each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -91,6 +102,7 @@ pub struct Drive {
     /// Half gap beta, rad (or m); at least 0. The gap is `2 beta`.
     pub half_gap: f64,
     /// What happens at its ends.
+    #[serde(default)]
     pub contact: Contact,
     /// Whether the ends hold on to each other.
     #[serde(default)]
