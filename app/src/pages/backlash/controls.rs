@@ -4,20 +4,90 @@ use std::ops::RangeInclusive;
 
 use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 
+use hysteron_core::figures::Check;
+
 use super::Backlash;
+use super::files::BUILT_IN;
 use super::scene::MILLI;
+use crate::hook::Targets;
+use crate::theme;
 
 /// Values that a contact begins with when its kind is chosen.
 const STIFFNESS: f64 = 1500.0;
 const DAMPING: f64 = 0.2;
 
+/// Friction and delay of the lesson about the direction of drift.
+const LESSON_FRICTION: f64 = 0.03;
+const LESSON_DELAY: f64 = 2e-4;
+
 impl Backlash {
-    pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui) {
-        let before = self.input;
+    /// The panel beside the plots.
+    pub(super) fn side_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         ui.add_space(4.0);
-        self.figures_ui(ui);
+        if self.measured() {
+            self.measurement_ui(ui, targets);
+        } else {
+            self.controls_ui(ui, targets);
+        }
+    }
+
+    /// What is open, and the way back.
+    fn measurement_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        let name = self.scene.as_ref().and_then(|s| s.file());
+        ui.strong(name.unwrap_or("Reading ..."));
+        if let Some(verdict) = self.scene.as_ref().and_then(|s| s.verdict()) {
+            ui.label(verdict);
+        }
+        if self.estimation.is_some() {
+            ui.spinner();
+        }
+        let back = ui.button("Back to the simulation");
+        targets.note("gap:back", ui, &back);
+        if back.clicked() {
+            self.close();
+        }
+        ui.separator();
+        self.files_ui(ui, targets);
+    }
+
+    fn files_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        ui.strong("Measured drifting tests");
+        let mut chosen = None;
+        ui.horizontal_wrapped(|ui| {
+            for built_in in &BUILT_IN {
+                let button = ui
+                    .button(format!("Open {}", built_in.id))
+                    .on_hover_text(built_in.story);
+                targets.note(format!("gap:{}", built_in.id), ui, &button);
+                if button.clicked() {
+                    chosen = Some(built_in);
+                }
+            }
+            if ui
+                .button("Open a file ...")
+                .on_hover_text("Or drop it on this window: t [s],u [N m],x1 [rad],v1 [rad/s]")
+                .clicked()
+            {
+                self.files.open_dialog(ui.ctx());
+            }
+        });
+        if let Some(built_in) = chosen {
+            self.open_bytes(ui.ctx(), built_in.id, &built_in.csv());
+        }
+    }
+
+    fn controls_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        let before = self.input;
+        self.figures_ui(ui, targets);
+        self.lesson_ui(ui);
+        self.files_ui(ui, targets);
         ui.separator();
         self.relay_ui(ui);
+        egui::CollapsingHeader::new("Design a drifting test").show(ui, |ui| {
+            if self.design.ui(ui, &mut self.input) {
+                self.clock = 0.0;
+            }
+        });
         self.gap_ui(ui);
         self.masses_ui(ui);
         ui.small("Double-click a slider to reset it.");
@@ -26,8 +96,31 @@ impl Backlash {
         }
     }
 
+    /// The direction of drift, with one effect at a time.
+    fn lesson_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Which way does it drift?");
+            for (name, friction, delay) in [
+                ("Friction alone", LESSON_FRICTION, 0.0),
+                ("Delay alone", 0.0, LESSON_DELAY),
+                ("Neither", 0.0, 0.0),
+            ] {
+                if ui.button(name).clicked() {
+                    self.figure = None;
+                    self.clock = 0.0;
+                    self.input = drifting_test();
+                    self.input.drive.motor.coulomb = friction;
+                    self.input.drive.motor.viscous = 0.0;
+                    if let Command::Relay(relay) = &mut self.input.command {
+                        relay.relay.delay = delay;
+                    }
+                }
+            }
+        });
+    }
+
     /// The paper's figures, one click each.
-    fn figures_ui(&mut self, ui: &mut egui::Ui) {
+    fn figures_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         ui.horizontal_wrapped(|ui| {
             ui.label("From the paper:");
             for figure in figures() {
@@ -35,7 +128,9 @@ impl Backlash {
                 let button = ui
                     .add(egui::Button::new(format!("Fig. {}", figure.number)).selected(chosen))
                     .on_hover_text(format!("{}: {}", figure.title, figure.claim));
+                targets.note(format!("gap:figure-{}", figure.number), ui, &button);
                 if button.clicked() {
+                    self.scene = None;
                     self.figure = (!chosen).then_some(figure.number);
                     if !chosen {
                         self.input = figure.input;
@@ -207,10 +302,12 @@ impl Backlash {
         }
     }
 
-    pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui) {
+    pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         ui.horizontal(|ui| {
             let label = if self.playing { "Pause" } else { "Play" };
-            if ui.button(label).clicked() {
+            let button = ui.button(label);
+            targets.note("gap:play", ui, &button);
+            if button.clicked() {
                 self.playing = !self.playing;
             }
             if ui
@@ -237,10 +334,18 @@ impl Backlash {
         let Some(scene) = &self.scene else {
             return;
         };
-        let events = &scene.run.events;
-        let next = events.partition_point(|e| e.time <= self.clock + 1e-9);
-        if let Some(event) = events.get(next) {
-            self.clock = event.time;
+        let run = &scene.run;
+        let after = self.clock + 1e-9;
+        // A measurement has no events: it goes from sample to sample.
+        let next = if run.events.is_empty() {
+            let next = run.time.partition_point(|t| *t <= after);
+            run.time.get(next).copied()
+        } else {
+            let next = run.events.partition_point(|e| e.time <= after);
+            run.events.get(next).map(|e| e.time)
+        };
+        if let Some(time) = next {
+            self.clock = time;
         }
     }
 }
@@ -267,4 +372,24 @@ fn slider(
         *value = shown / scale;
     }
     response
+}
+
+/// What a figure claims, and whether it is so on the drive as it is set now.
+pub(super) fn claim_ui(ui: &mut egui::Ui, number: u32, claims: &[Check]) {
+    let Some(figure) = figures().into_iter().find(|f| f.number == number) else {
+        return;
+    };
+    ui.strong(format!("Fig. {number}, {}. {}", figure.title, figure.claim));
+    ui.horizontal_wrapped(|ui| {
+        for (i, check) in claims.iter().enumerate() {
+            let (mark, color) = if check.holds {
+                ("yes:", theme::NOISE)
+            } else {
+                ("no:", theme::MODEL)
+            };
+            ui.colored_label(color, mark);
+            let end = if i + 1 == claims.len() { "." } else { ";" };
+            ui.label(format!("{}{end}", check.text));
+        }
+    });
 }

@@ -2,7 +2,8 @@
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
-use super::scene::{MILLI, Scene};
+use super::plots::{CONTACT, LOAD};
+use super::scene::Scene;
 use crate::theme;
 
 /// Share of the width that the gap takes at least.
@@ -19,61 +20,49 @@ const TOUCHING: f64 = 0.004;
 pub fn ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let (rect, _) =
         ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
-    let Some([x1, x2, _, torque]) = scene.now(clock) else {
+    let Some(now) = scene.now(clock) else {
         return;
     };
     let painter = ui.painter_at(rect);
-    let beta = MILLI * scene.input.drive.half_gap;
-    let view = View::new(rect, scene, x2);
+    let x1 = now.x1;
+    let view = View::new(rect, scene, now.x2.unwrap_or(x1));
     view.ruler(&painter, ui);
     let middle = rect.center().y - 8.0;
     let (top, bottom) = (rect.top() + 6.0, rect.bottom() - 34.0);
+    let text = |at: Pos2, text: &str| {
+        let font = FontId::proportional(13.0);
+        painter.text(at, Align2::CENTER_CENTER, text, font, Color32::BLACK);
+    };
 
     // The load: a yoke whose walls stand a half gap and the peg away from its middle.
-    let [low, high] = [view.at(x2 - beta) - PEG, view.at(x2 + beta) + PEG];
-    let touching = |distance: f64| distance < 2.0 * TOUCHING * beta;
-    for (wall, near) in [
-        (
-            Rect::from_x_y_ranges(low - WALL..=low, top..=bottom),
-            touching(x1 - x2 + beta),
-        ),
-        (
-            Rect::from_x_y_ranges(high..=high + WALL, top..=bottom),
-            touching(beta - (x1 - x2)),
-        ),
-    ] {
-        let color = if near { theme::MODEL } else { theme::NOISE };
-        painter.rect_filled(wall, 3.0, color);
+    if let (Some(x2), Some(beta)) = (now.x2, scene.half_gap()) {
+        let [low, high] = [view.at(x2 - beta) - PEG, view.at(x2 + beta) + PEG];
+        let near = |distance: f64| distance < 2.0 * TOUCHING * beta;
+        for (wall, touches) in [
+            (low - WALL..=low, near(x1 - x2 + beta)),
+            (high..=high + WALL, near(beta - (x1 - x2))),
+        ] {
+            let wall = Rect::from_x_y_ranges(wall, top..=bottom);
+            painter.rect_filled(wall, 3.0, if touches { CONTACT } else { LOAD });
+            text(wall.center(), "load");
+        }
+        let beam = Rect::from_x_y_ranges(low - WALL..=high + WALL, bottom..=bottom + 9.0);
+        painter.rect_filled(beam, 3.0, LOAD);
     }
-    let beam = Rect::from_x_y_ranges(low - WALL..=high + WALL, bottom..=bottom + 9.0);
-    painter.rect_filled(beam, 3.0, theme::NOISE);
 
     // The motor: a peg between them, with its torque.
     let x = view.at(x1);
     let peg = Rect::from_x_y_ranges(x - PEG..=x + PEG, top + 8.0..=bottom - 6.0);
     painter.rect_filled(peg, 5.0, theme::MEASURED);
-    let strongest = scene.run.input.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-    if strongest > 0.0 {
-        let length = (60.0 * torque / strongest) as f32;
+    if scene.strongest > 0.0 {
+        let length = (60.0 * now.torque / scene.strongest) as f32;
         painter.arrow(
             pos2(x, middle),
             vec2(length, 0.0),
             Stroke::new(4.0, theme::INPUT),
         );
     }
-    let font = FontId::proportional(13.0);
-    let text = |at: Pos2, text: &str| {
-        painter.text(
-            at,
-            Align2::CENTER_CENTER,
-            text,
-            font.clone(),
-            Color32::BLACK,
-        );
-    };
     text(peg.center_top() + vec2(0.0, 10.0), "motor");
-    text(pos2(low - 0.5 * WALL, middle), "load");
-    text(pos2(high + 0.5 * WALL, middle), "load");
 }
 
 /// From mrad to points.
@@ -88,7 +77,7 @@ struct View {
 
 impl View {
     fn new(rect: Rect, scene: &Scene, x2: f64) -> Self {
-        let beta = MILLI * scene.input.drive.half_gap;
+        let beta = scene.half_gap().unwrap_or(1.0);
         let [low, high] = scene.range;
         let margin = PEG + WALL + 8.0;
         let width = f64::from((rect.width() - 2.0 * margin).max(50.0));

@@ -1,9 +1,9 @@
 //! Positions over time, phase portrait and backlash map.
 
-use egui::Ui;
-use egui_plot::{Line, LineStyle, Points, Polygon, VLine};
+use egui::{Align2, Color32, Ui};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, Points, Polygon, Text, VLine};
 
-use super::scene::{MILLI, Scene};
+use super::scene::Scene;
 use crate::pages::chart::{caption_ui, curve, dot, still};
 use crate::theme;
 
@@ -11,27 +11,34 @@ use crate::theme;
 const PERIODS: f64 = 3.0;
 
 /// Colour of the load.
-const LOAD: egui::Color32 = theme::NOISE;
+pub const LOAD: Color32 = theme::NOISE;
 
-/// Positions of motor and load; shaded where they touch.
+/// Colour of contact.
+pub const CONTACT: Color32 = theme::MODEL;
+
+/// Colour of what the estimate has found.
+const ESTIMATED: Color32 = theme::RESIDUAL;
+
+/// Positions of motor and load; shaded where the motor pushes the load.
 pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
-    caption_ui(
-        ui,
-        "Positions",
-        &[
-            ("motor x1", theme::MEASURED),
-            ("load x2", LOAD),
-            ("in contact", theme::MODEL),
-        ],
-    );
+    let signature = scene.signature();
+    let mut curves = vec![("motor x1", theme::MEASURED)];
+    if !scene.load.is_empty() {
+        curves.push(("load x2", LOAD));
+    }
+    curves.push(("motor pushes load", CONTACT));
+    if !signature.is_empty() {
+        curves.push(("gap found by the motor", ESTIMATED));
+    }
+    caption_ui(ui, "Positions", &curves);
     let [low, high] = scene.range;
     still("positions", "time [s]", "position [mrad]", height).show(ui, |plot| {
-        for e in &scene.summary.engagements {
-            let corners = vec![[e.from, low], [e.to, low], [e.to, high], [e.from, high]];
+        for [from, to] in scene.engagements() {
+            let corners = vec![[from, low], [to, low], [to, high], [from, high]];
             plot.polygon(
-                Polygon::new("in contact", corners)
-                    .fill_color(theme::MODEL.gamma_multiply(0.25))
-                    .stroke((0.0, theme::MODEL)),
+                Polygon::new("motor pushes load", corners)
+                    .fill_color(CONTACT.gamma_multiply(0.22))
+                    .stroke((0.0, CONTACT)),
             );
         }
         plot.line(
@@ -44,27 +51,40 @@ pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                 .color(theme::MEASURED)
                 .width(1.5),
         );
+        for ends in &signature {
+            plot.line(
+                Line::new("gap found by the motor", ends.to_vec())
+                    .color(ESTIMATED)
+                    .style(LineStyle::dashed_loose())
+                    .width(2.0),
+            );
+            plot.points(
+                Points::new("gap found by the motor", ends.to_vec())
+                    .color(ESTIMATED)
+                    .shape(MarkerShape::Diamond)
+                    .radius(6.0),
+            );
+        }
         plot.vline(VLine::new("now", clock).color(theme::INPUT).width(1.0));
     });
 }
 
 /// Velocity over position of the motor, of the last periods.
 pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
-    let span = match &scene.summary.cycle {
-        Some(cycle) => PERIODS * cycle.period,
-        None => 0.1 * scene.input.duration,
-    };
+    let span = PERIODS * scene.period();
     // Before a few periods have passed, those to come are shown.
     let to = clock.max(span);
     let points = scene.phase(to - span, to);
-    caption_ui(
-        ui,
-        "Phase portrait of the motor",
-        &[("last periods", theme::MEASURED)],
-    );
+    let orbit = scene.orbit(to);
+    let mut curves = vec![("last periods", theme::MEASURED)];
+    if orbit.is_some() {
+        curves.push(("closed form", theme::INPUT));
+    }
+    caption_ui(ui, "Phase portrait", &curves);
+    let color = ui.visuals().text_color();
     still(
         "phase of the motor",
-        "position x1 [mrad]",
+        "motor position x1 [mrad]",
         "velocity v1 [rad/s]",
         height,
     )
@@ -74,43 +94,80 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                 .color(theme::MEASURED)
                 .width(1.5),
         );
-        if let Some([x1, _, v1, _]) = scene.now(clock) {
-            plot.points(dot("now", [x1, v1]));
+        if let Some((orbit, corners)) = &orbit {
+            plot.line(
+                Line::new("closed form", curve(orbit))
+                    .color(theme::INPUT)
+                    .style(LineStyle::dashed_dense())
+                    .width(2.0),
+            );
+            plot.points(
+                Points::new("characteristic points", corners.clone())
+                    .color(theme::INPUT)
+                    .radius(4.0),
+            );
+            for (i, [x, v]) in corners.iter().enumerate() {
+                // Labels stand outside of the orbit.
+                let align = match i {
+                    0 | 1 => Align2::CENTER_BOTTOM,
+                    2 => Align2::LEFT_CENTER,
+                    3 | 4 => Align2::CENTER_TOP,
+                    _ => Align2::RIGHT_CENTER,
+                };
+                let label = format!(" {} ", i + 1);
+                plot.text(
+                    Text::new("characteristic points", PlotPoint::new(*x, *v), label)
+                        .anchor(align)
+                        .color(color),
+                );
+            }
+        }
+        if let Some(now) = scene.now(clock) {
+            plot.points(dot("now", [now.x1, now.v1]));
         }
     });
 }
 
 /// Load over motor position.
 pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
+    if scene.map.is_empty() {
+        ui.strong("Backlash map");
+        ui.label("The load was not measured: there is no map.");
+        return;
+    }
     caption_ui(
         ui,
         "Backlash map",
-        &[("x2 over x1", LOAD), ("ends of the gap", theme::MODEL)],
+        &[("x2 over x1", LOAD), ("ends of the gap", CONTACT)],
     );
-    let beta = MILLI * scene.input.drive.half_gap;
     let [low, high] = scene.range;
     let load = scene.load_range;
     still("map", "motor x1 [mrad]", "load x2 [mrad]", height).show(ui, |plot| {
-        for side in [-1.0, 1.0] {
-            // No longer than the branch that lies on it.
-            let ends = [
-                low.max(load[0] + side * beta),
-                high.min(load[1] + side * beta),
-            ];
-            let edge = ends.map(|x| [x, x - side * beta]).to_vec();
-            plot.line(
-                Line::new("ends of the gap", edge)
-                    .color(theme::MODEL)
-                    .style(LineStyle::dashed_dense()),
-            );
+        // A measured load has no zero in common with the motor.
+        if let (Some(beta), Some(_)) = (scene.half_gap(), scene.input()) {
+            for side in [-1.0, 1.0] {
+                // No longer than the branch that lies on it.
+                let ends = [
+                    low.max(load[0] + side * beta),
+                    high.min(load[1] + side * beta),
+                ];
+                let edge = ends.map(|x| [x, x - side * beta]).to_vec();
+                plot.line(
+                    Line::new("ends of the gap", edge)
+                        .color(CONTACT)
+                        .style(LineStyle::dashed_dense()),
+                );
+            }
         }
         plot.points(
             Points::new("x2 over x1", curve(&scene.map))
                 .color(LOAD)
                 .radius(1.2),
         );
-        if let Some([x1, x2, _, _]) = scene.now(clock) {
-            plot.points(dot("now", [x1, x2]));
+        if let Some(now) = scene.now(clock)
+            && let Some(x2) = now.x2
+        {
+            plot.points(dot("now", [now.x1, x2]));
         }
     });
 }

@@ -1,6 +1,11 @@
-//! A finished run, made ready to be drawn.
+//! A finished run or a measurement, made ready to be drawn.
 
-use hysteron_core::drive::{Command, Direction, DriveInput, DriveRun, Summary, summarize};
+use hysteron_core::backlash::GapEstimate;
+use hysteron_core::drive::{
+    Command, Direction, DriveInput, DriveRun, Summary, checks, drifting_cycle, summarize,
+};
+use hysteron_core::figures::Check;
+use hysteron_core::measurement::{Measurement, Quantity};
 
 /// Buckets of a curve over the whole run; each keeps its least and largest value.
 const BUCKETS: usize = 900;
@@ -8,17 +13,35 @@ const BUCKETS: usize = 900;
 /// Points of the map that are drawn at most.
 const MAP_POINTS: usize = 4000;
 
-/// Points between two corners of the phase portrait.
+/// Points between two corners of the phase portrait, and between those of the closed form.
 const BENDS: usize = 4;
+const ORBIT: usize = 24;
 
 /// Milliradians in a radian: the page speaks of them.
 pub const MILLI: f64 = 1e3;
 
-/// A run and what is drawn of it, in mrad.
-pub struct Scene {
+/// Share of the record by which a period is guessed where no relay is known, s.
+const MEASURED_PERIOD: f64 = 5e-3;
+
+/// What is shown.
+pub enum Shown {
+    Simulated(Box<Simulated>),
+    /// The name of the file.
+    Measured(String),
+}
+
+/// A simulation and what follows from it.
+pub struct Simulated {
     pub input: DriveInput,
-    pub run: DriveRun,
     pub summary: Summary,
+    pub checks: Vec<Check>,
+}
+
+/// Curves in mrad, and what the page says about them.
+pub struct Scene {
+    pub shown: Shown,
+    /// Samples, and events of a simulation; positions of the load only if they are known.
+    pub run: DriveRun,
     /// Positions of motor and load over time, thinned.
     pub motor: Vec<[f64; 2]>,
     pub load: Vec<[f64; 2]>,
@@ -27,13 +50,65 @@ pub struct Scene {
     /// Least and largest position of either, and of the load.
     pub range: [f64; 2],
     pub load_range: [f64; 2],
-    pub answer: String,
+    /// Largest torque, N m.
+    pub strongest: f64,
+    /// What the motor alone tells, once it is known.
+    pub estimate: Option<Result<GapEstimate, String>>,
     pub lesson: String,
 }
 
 impl Scene {
-    pub fn new(input: DriveInput, run: DriveRun) -> Self {
+    /// A simulated drive, with the claim of a figure checked on it.
+    pub fn simulated(input: DriveInput, run: DriveRun, figure: Option<u32>) -> Self {
         let summary = summarize(&input, &run);
+        let lesson = lesson(&input, &summary);
+        let checks = figure.map_or_else(Vec::new, |n| checks(n, &input, &run, &summary));
+        let simulated = Simulated {
+            input,
+            summary,
+            checks,
+        };
+        Self::new(Shown::Simulated(Box::new(simulated)), run, lesson)
+    }
+
+    /// A measured drive.
+    pub fn measured(
+        measurement: &Measurement,
+        estimate: Result<GapEstimate, String>,
+    ) -> Result<Self, String> {
+        let output = |q| measurement.output(q).map(|c| c.values.clone());
+        let name = measurement.name.clone();
+        let Some(x1) = output(Quantity::Position) else {
+            return Err(format!(
+                "{name}: no motor position; expected a column x1 [rad]"
+            ));
+        };
+        let time = measurement.time.clone();
+        let v1 = output(Quantity::Velocity).unwrap_or_else(|| slopes(&time, &x1));
+        let load = measurement
+            .reference
+            .iter()
+            .find(|c| c.quantity == Quantity::LoadPosition);
+        let lesson = match load {
+            Some(_) => {
+                "The load was measured too, for comparison only: the estimate does not look at it."
+            }
+            None => "The load was not measured: the motor's columns have to tell.",
+        };
+        let run = DriveRun {
+            input: measurement.input.values.clone(),
+            x2: load.map_or_else(Vec::new, |c| c.values.clone()),
+            time,
+            x1,
+            v1,
+            ..DriveRun::default()
+        };
+        let mut scene = Self::new(Shown::Measured(name), run, lesson.to_owned());
+        scene.estimate = Some(estimate);
+        Ok(scene)
+    }
+
+    fn new(shown: Shown, run: DriveRun, lesson: String) -> Self {
         let thin = |values: &[f64]| envelope(&run.time, values);
         let skip = run.time.len().div_ceil(MAP_POINTS).max(1);
         let map = run.x1.iter().zip(&run.x2).step_by(skip);
@@ -47,22 +122,161 @@ impl Scene {
                 motor_range[1].max(load_range[1]),
             ],
             load_range,
-            answer: answer(&input, &summary),
-            lesson: lesson(&input, &summary),
-            summary,
-            input,
+            strongest: run.input.iter().fold(0.0, |m, u| u.abs().max(m)),
+            estimate: None,
+            lesson,
+            shown,
             run,
         }
     }
 
+    /// The simulation, if it is one.
+    pub fn simulation(&self) -> Option<&Simulated> {
+        match &self.shown {
+            Shown::Simulated(simulated) => Some(simulated),
+            Shown::Measured(_) => None,
+        }
+    }
+
+    /// What was simulated.
+    pub fn input(&self) -> Option<&DriveInput> {
+        self.simulation().map(|s| &s.input)
+    }
+
+    /// The file that was measured.
+    pub fn file(&self) -> Option<&str> {
+        match &self.shown {
+            Shown::Simulated(_) => None,
+            Shown::Measured(name) => Some(name),
+        }
+    }
+
+    /// Length of the record, s.
+    pub fn duration(&self) -> f64 {
+        match self.input() {
+            Some(input) => input.duration,
+            None => self.run.time.last().copied().unwrap_or(0.0),
+        }
+    }
+
+    /// Half gap that is drawn, mrad: the true one, else the estimated one.
+    pub fn half_gap(&self) -> Option<f64> {
+        match self.input() {
+            Some(input) => Some(MILLI * input.drive.half_gap),
+            None => Some(0.5 * MILLI * self.estimate.as_ref()?.as_ref().ok()?.gap?),
+        }
+    }
+
+    /// Period of the relay's cycle, s.
+    pub fn period(&self) -> f64 {
+        let cycle = self.simulation().and_then(|s| s.summary.cycle.as_ref());
+        cycle.map_or(MEASURED_PERIOD, |c| c.period)
+    }
+
+    /// Stretches in which the motor pushes the load: by the simulation, or as estimated from contacts.
+    pub fn engagements(&self) -> Vec<[f64; 2]> {
+        if let Some(simulated) = self.simulation() {
+            let all = &simulated.summary.engagements;
+            return all.iter().map(|e| [e.from, e.to]).collect();
+        }
+        let Some(Ok(estimate)) = &self.estimate else {
+            return Vec::new();
+        };
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        let mut last = None;
+        for contact in &estimate.contacts {
+            match found.last_mut() {
+                Some(stretch) if last == Some(contact.side) => stretch[1] = contact.time,
+                _ => found.push([contact.time; 2]),
+            }
+            last = Some(contact.side);
+        }
+        found
+    }
+
+    /// Where the estimate saw the motor leave one end of the gap and reach the other: time in s,
+    /// position in mrad.
+    pub fn signature(&self) -> Vec<[[f64; 2]; 2]> {
+        let Some(Ok(estimate)) = &self.estimate else {
+            return Vec::new();
+        };
+        estimate
+            .traverses
+            .iter()
+            .map(|t| {
+                [
+                    [t.from.time, MILLI * t.from.position],
+                    [t.to.time, MILLI * t.to.position],
+                ]
+            })
+            .collect()
+    }
+
+    /// The closed form of the cycle and its characteristic points at the last switch before a time.
+    pub fn orbit(&self, before: f64) -> Option<(Vec<[f64; 2]>, Vec<[f64; 2]>)> {
+        use hysteron_core::drive::EventKind;
+        let simulated = self.simulation()?;
+        let Command::Relay(relay) = simulated.input.command else {
+            return None;
+        };
+        let cycle = simulated.summary.cycle.as_ref()?;
+        let start = self
+            .run
+            .events
+            .iter()
+            .take_while(|e| e.time + cycle.period <= before)
+            .filter(|e| e.kind == EventKind::SwitchUp)
+            .last()?;
+        // With the asymmetry turned round, the cycle is another.
+        let flips = relay.flip.map_or(0.0, |f| (start.time / f).floor());
+        let mut now = relay;
+        if flips % 2.0 == 1.0 {
+            now.relay.asymmetry = -now.relay.asymmetry;
+        }
+        let motor = &simulated.input.drive.motor;
+        let cycle = drifting_cycle(motor, &now)?;
+        let place = |[x, v]: [f64; 2]| [MILLI * (start.x1 + x), v];
+        let curve = cycle.curve(motor, &now, ORBIT).into_iter().map(place);
+        let points = cycle.points[..6].iter().map(|p| place([p.x, p.v]));
+        Some((curve.collect(), points.collect()))
+    }
+
+    /// The page's answer.
+    pub fn answer(&self) -> String {
+        let found = match &self.estimate {
+            None => "Asking the motor how wide the gap is ...".to_owned(),
+            Some(Err(error)) => format!("The motor cannot tell: {error}."),
+            Some(Ok(e)) => match (e.gap, e.std_error) {
+                (Some(gap), Some(error)) => format!(
+                    "From the motor alone: 2β = {} ± {} mrad.",
+                    digits(MILLI * gap, MILLI * error),
+                    digits(MILLI * error, MILLI * error)
+                ),
+                _ => "The motor alone cannot tell the gap.".to_owned(),
+            },
+        };
+        match self.input() {
+            Some(input) => format!(
+                "{found} True: {:.2} mrad.",
+                2.0 * MILLI * input.drive.half_gap
+            ),
+            None => found,
+        }
+    }
+
+    /// The estimate's own verdict.
+    pub fn verdict(&self) -> Option<&str> {
+        Some(&self.estimate.as_ref()?.as_ref().ok()?.text)
+    }
+
     /// Index of the last sample at or before a time.
-    pub fn index_at(&self, clock: f64) -> usize {
+    fn index_at(&self, clock: f64) -> usize {
         let after = self.run.time.partition_point(|t| *t <= clock);
         after.saturating_sub(1)
     }
 
-    /// Positions of motor and load in mrad and the torque at a time, between the samples.
-    pub fn now(&self, clock: f64) -> Option<[f64; 4]> {
+    /// Positions of motor and load in mrad, motor velocity and torque at a time, between the samples.
+    pub fn now(&self, clock: f64) -> Option<Now> {
         let run = &self.run;
         let i = self.index_at(clock);
         let j = (i + 1).min(run.time.len().checked_sub(1)?);
@@ -73,12 +287,12 @@ impl Scene {
             0.0
         };
         let between = |v: &[f64]| v[i] + share * (v[j] - v[i]);
-        Some([
-            MILLI * between(&run.x1),
-            MILLI * between(&run.x2),
-            between(&run.v1),
-            run.input[i],
-        ])
+        Some(Now {
+            x1: MILLI * between(&run.x1),
+            x2: (!run.x2.is_empty()).then(|| MILLI * between(&run.x2)),
+            v1: between(&run.v1),
+            torque: run.input[i],
+        })
     }
 
     /// Motor position in mrad and velocity from one time to another: samples, corners from events, and
@@ -107,6 +321,44 @@ impl Scene {
         points.extend(places.last().map(|[_, x, v]| [MILLI * x, *v]));
         points
     }
+}
+
+/// Where everything is at an instant.
+#[derive(Clone, Copy)]
+pub struct Now {
+    /// mrad
+    pub x1: f64,
+    /// mrad, if the load is known.
+    pub x2: Option<f64>,
+    /// rad/s
+    pub v1: f64,
+    /// N m
+    pub torque: f64,
+}
+
+/// As many digits as its error leaves, two of that.
+fn digits(value: f64, error: f64) -> String {
+    let decimals = if error > 0.0 {
+        (1.0 - error.log10().floor()).clamp(0.0, 4.0) as usize
+    } else {
+        4
+    };
+    format!("{value:.decimals$}")
+}
+
+/// Slopes between the neighbours of each sample.
+fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let last = values.len().saturating_sub(1);
+    (0..values.len())
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
+            if b > a {
+                (values[b] - values[a]) / (time[b] - time[a])
+            } else {
+                0.0
+            }
+        })
+        .collect()
 }
 
 /// Least and largest value, in mrad.
@@ -138,23 +390,12 @@ fn envelope(time: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     curve
 }
 
-fn answer(input: &DriveInput, summary: &Summary) -> String {
-    let gap = 2.0 * input.drive.half_gap * MILLI;
-    match summary.gap() {
-        Some(found) => format!(
-            "The gap is {gap:.2} mrad; both positions show {:.2} mrad.",
-            MILLI * found
-        ),
-        None => format!("The gap is {gap:.2} mrad; the motor has not met both of its ends."),
-    }
-}
-
 fn lesson(input: &DriveInput, summary: &Summary) -> String {
     let Command::Relay(relay) = input.command else {
         return String::new();
     };
     let Some(cycle) = &summary.cycle else {
-        return "The relay cannot keep the motor swinging.".to_owned();
+        return "The relay cannot keep the motor swinging: friction eats up its push.".to_owned();
     };
     let speed = match summary.drifts.first() {
         Some(drift) => drift.velocity,
@@ -163,10 +404,10 @@ fn lesson(input: &DriveInput, summary: &Summary) -> String {
     let speed = (MILLI * speed).abs();
     match summary.direction(&relay) {
         Some(Direction::Against) => format!(
-            "The cycle drifts at {speed:.2} mrad/s against the stronger push: friction outweighs delay."
+            "The cycle drifts at {speed:.2} mrad/s against the stronger push: friction outweighs delay. The direction tells which effect is there."
         ),
         Some(Direction::With) => format!(
-            "The cycle drifts at {speed:.2} mrad/s with the stronger push: delay outweighs friction."
+            "The cycle drifts at {speed:.2} mrad/s with the stronger push: delay outweighs friction. The direction tells which effect is there."
         ),
         _ if relay.relay.asymmetry == 0.0 => {
             "The cycle stays where it is: both pushes are equal.".to_owned()
