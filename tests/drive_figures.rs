@@ -32,7 +32,7 @@ fn fig_7_the_backlash_map_is_a_loop_of_two_branches_a_gap_apart() {
     for (x1, x2) in done.x1.iter().zip(&done.x2) {
         assert!((x1 - x2).abs() <= 0.0095 * (1.0 + 1e-12));
     }
-    assert!(summary.traverses.len() >= 10, "{}", summary.traverses.len());
+    assert!(summary.traverses.len() >= 8, "{}", summary.traverses.len());
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn fig_10_the_limit_cycle_in_the_gap_has_its_characteristic_points() {
     let start = done
         .events
         .iter()
-        .rfind(|e| e.kind == EventKind::SwitchUp && e.time < 0.99)
+        .rfind(|e| e.kind == EventKind::SwitchUp && e.time < 0.045)
         .expect("a switch");
     for point in cycle.points {
         let wanted = match point.turn {
@@ -175,11 +175,11 @@ fn a_designed_test_crosses_the_gap_and_pushes_the_load() {
 fn a_design_says_what_it_cannot_do() {
     let said = |drive: &RoughDrive| design_drifting_test(drive).unwrap().warnings.join(" ");
     let fine = rough(0.03, 0.0, 0.019, 8.8e-4);
-    // Neither friction nor delay nor sampling: nothing makes it drift.
+    // Neither friction nor delay: nothing makes it drift but a delay that the controller adds.
     let mut smooth = rough(0.0, 0.0, 0.019, 8.8e-4);
     smooth.motor.viscous = 0.0;
-    smooth.sampling = Some(1e-9);
-    assert!(said(&smooth).contains("may not drift") || said(&smooth).contains("to cross the gap"));
+    let test = design_drifting_test(&smooth).unwrap();
+    assert!(test.added_delay > 0.0 && test.cycle.drift > 0.0, "{test:?}");
     let noisy = RoughDrive {
         velocity_noise: 10.0,
         ..fine

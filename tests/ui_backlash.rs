@@ -99,9 +99,9 @@ fn figs_7_10_11_and_12_check_their_claims_on_screen() {
 fn the_direction_of_drift_tells_friction_from_delay() {
     let mut harness = page(1280.0, 800.0);
     for (button, direction, words) in [
-        ("Friction alone", "against", "friction outweighs delay"),
-        ("Delay alone", "with", "delay outweighs friction"),
-        ("Neither", "nowhere", "stays where it is"),
+        ("friction alone", "against", "friction outweighs delay"),
+        ("delay alone", "with", "delay outweighs friction"),
+        ("neither", "nowhere", "stays where it is"),
     ] {
         click(&mut harness, button);
         let state = state(&harness);

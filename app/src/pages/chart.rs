@@ -1,6 +1,8 @@
 //! What the plots of several pages share.
 
-use egui_plot::{AxisHints, Plot, PlotPoints, Points, uniform_grid_spacer};
+use std::ops::RangeInclusive;
+
+use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoints, Points, uniform_grid_spacer};
 
 use crate::theme;
 
@@ -18,10 +20,20 @@ pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
 pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Plot<'static> {
     Plot::new(name)
         .height(height)
-        .custom_x_axes(vec![AxisHints::new_x().label(x).label_spacing(LABELS)])
-        .custom_y_axes(vec![AxisHints::new_y().label(y).label_spacing(LABELS)])
-        .x_grid_spacer(uniform_grid_spacer(|input| grid(input.bounds)))
-        .y_grid_spacer(uniform_grid_spacer(|input| grid(input.bounds)))
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label(x)
+                .label_spacing(LABELS)
+                .formatter(label),
+        ])
+        .custom_y_axes(vec![
+            AxisHints::new_y()
+                .label(y)
+                .label_spacing(LABELS)
+                .formatter(label),
+        ])
+        .x_grid_spacer(uniform_grid_spacer(grid))
+        .y_grid_spacer(uniform_grid_spacer(grid))
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_boxed_zoom(false)
@@ -29,21 +41,44 @@ pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) 
         .allow_drag(false)
 }
 
-/// Grid lines at 1, 2 or 5 times a power of ten, some seven across, with a finer and a coarser set.
-fn grid(bounds: (f64, f64)) -> [f64; 3] {
-    let wanted = ((bounds.1 - bounds.0) / 7.0).max(f64::MIN_POSITIVE);
+/// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
+fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
+    let step = mark.step_size.abs();
+    let first = step.log10().floor();
+    let lead = step / 10_f64.powf(first);
+    // 2.5 has a second digit; 1, 2 and 5 have none.
+    let more = if (lead - lead.round()).abs() > 0.1 {
+        1.0
+    } else {
+        0.0
+    };
+    let decimals = (more - first).clamp(0.0, 12.0) as usize;
+    let value = if mark.value.abs() < 1e-9 * step {
+        0.0
+    } else {
+        mark.value
+    };
+    format!("{value:.decimals$}")
+}
+
+/// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
+/// a finer and a coarser set.
+fn grid(input: GridInput) -> [f64; 3] {
+    let (low, high) = input.bounds;
+    // The smallest step that egui_plot wants is 8 points wide; a label needs more.
+    let least = f64::from(LABELS.max) / 8.0 * input.base_step_size;
+    let wanted = ((high - low) / 7.0).max(least).max(f64::MIN_POSITIVE);
     let decade = 10_f64.powf(wanted.log10().floor());
-    // Between lines at 5 the finer ones stand at 1: labels of halves would have to be rounded.
-    let [step, fine] = [[1.0, 0.5], [2.0, 1.0], [5.0, 1.0], [10.0, 5.0]]
+    let step = [1.0, 2.0, 5.0, 10.0]
         .into_iter()
-        .find(|s| s[0] * decade >= wanted)
-        .unwrap_or([wanted / decade, 0.5 * wanted / decade]);
-    [fine * decade, step * decade, 10.0 * step * decade]
+        .find(|s| s * decade >= wanted)
+        .map_or(wanted, |s| s * decade);
+    [0.5 * step, step, 10.0 * step]
 }
 
 /// Names of the curves in their colours, above a plot: they hide nothing.
 pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[(&str, egui::Color32)]) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.strong(title);
         for (name, color) in curves {
             let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 4.0), egui::Sense::hover());

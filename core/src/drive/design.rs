@@ -31,8 +31,10 @@ pub struct RoughDrive {
 /// A relay for the drifting test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DriftingTest {
-    /// The relay, with flip period and sampling time.
+    /// The relay, with flip period and sampling time; its delay is that of the drive and the added one.
     pub relay: VelocityRelay,
+    /// Delay that the controller should add, s.
+    pub added_delay: f64,
     /// Its cycle in the gap.
     pub cycle: DriftingCycle,
     /// Longest time to cross the gap, s, for a drive that is not quite as it was thought.
@@ -75,11 +77,14 @@ const NOISE: f64 = 6.0;
 const FLIP: f64 = 1.5;
 
 /// The grid: shares of the largest torque, hystereses a factor apart, asymmetries.
-const GAINS: i32 = 24;
-const GAIN_RATIO: f64 = 1.25;
-const HYSTERESES: i32 = 48;
-const HYSTERESIS_RATIO: f64 = 1.2;
-const ASYMMETRIES: [f64; 5] = [0.1, 0.15, 0.2, 0.3, 0.4];
+const GAINS: i32 = 16;
+const GAIN_RATIO: f64 = 1.4;
+const HYSTERESES: i32 = 32;
+const HYSTERESIS_RATIO: f64 = 1.3;
+const ASYMMETRIES: [f64; 4] = [0.1, 0.15, 0.2, 0.3];
+
+/// Delays that are added, as shares of the time in which the push changes the velocity by `eps`.
+const ADDED_DELAYS: [f64; 4] = [0.0, 0.2, 0.5, 1.0];
 
 /// Weight of what must be against what is wished for.
 const MUST: f64 = 100.0;
@@ -146,46 +151,62 @@ pub fn design_drifting_test(drive: &RoughDrive) -> Result<DriftingTest, DriveErr
 struct Candidate {
     relay: VelocityRelay,
     cycle: DriftingCycle,
+    added: f64,
     /// Least drift velocity of a drive that is not quite as it was thought; 0 where its direction is not
     /// even known.
     slowest: f64,
 }
 
-fn candidates(drive: &RoughDrive) -> impl Iterator<Item = Candidate> {
+fn candidates(drive: &RoughDrive) -> impl Iterator<Item = Candidate> + use<> {
     // The speed at which the wished swing is reached with the full torque, v^2 = a x, and around it.
     let wished = (WISHED_SWING * drive.gap * drive.torque / drive.motor.inertia).sqrt();
+    let drive = *drive;
     (0..GAINS).flat_map(move |i| {
         (0..HYSTERESES).flat_map(move |j| {
-            ASYMMETRIES.into_iter().filter_map(move |asymmetry| {
-                let exponent = j - 2 * HYSTERESES / 3;
-                let relay = VelocityRelay {
-                    relay: Relay {
-                        gain: drive.torque / (1.0 + asymmetry) / GAIN_RATIO.powi(i),
-                        hysteresis: wished * HYSTERESIS_RATIO.powi(exponent),
-                        asymmetry,
-                        bias: 0.0,
-                        delay: drive.delay,
-                    },
-                    flip: None,
-                    sampling: drive.sampling,
-                };
-                let mut candidate = Candidate {
-                    relay,
-                    cycle: drifting_cycle(&drive.motor, &relay)?,
-                    slowest: 0.0,
-                };
-                if drive.sampling.is_none() {
-                    // Sampling delays the switch, which makes the cycle longer: one round suffices.
-                    candidate.relay.sampling = Some(candidate.cycle.period / WISHED_SAMPLES);
-                    candidate.cycle = drifting_cycle(&drive.motor, &candidate.relay)?;
-                }
-                Some(candidate)
+            let hysteresis = wished * HYSTERESIS_RATIO.powi(j - 2 * HYSTERESES / 3);
+            ASYMMETRIES.into_iter().flat_map(move |asymmetry| {
+                let gain = drive.torque / (1.0 + asymmetry) / GAIN_RATIO.powi(i);
+                ADDED_DELAYS.into_iter().filter_map(move |share| {
+                    let added = share * drive.motor.inertia * hysteresis / gain;
+                    Candidate::new(&drive, [gain, hysteresis, asymmetry], added)
+                })
             })
         })
     })
 }
 
 impl Candidate {
+    /// The relay with this gain, hysteresis and asymmetry; `None` where it does not keep the motor swinging.
+    fn new(
+        drive: &RoughDrive,
+        [gain, hysteresis, asymmetry]: [f64; 3],
+        added: f64,
+    ) -> Option<Self> {
+        let mut relay = VelocityRelay {
+            relay: Relay {
+                gain,
+                hysteresis,
+                asymmetry,
+                bias: 0.0,
+                delay: drive.delay + added,
+            },
+            flip: None,
+            sampling: drive.sampling,
+        };
+        let mut cycle = drifting_cycle(&drive.motor, &relay)?;
+        if drive.sampling.is_none() {
+            // Sampling delays the switch, which makes the cycle longer: one round suffices.
+            relay.sampling = Some(cycle.period / WISHED_SAMPLES);
+            cycle = drifting_cycle(&drive.motor, &relay)?;
+        }
+        Some(Self {
+            relay,
+            cycle,
+            added,
+            slowest: 0.0,
+        })
+    }
+
     fn traverse(&self, drive: &RoughDrive) -> f64 {
         drive.gap / self.slowest
     }
@@ -198,8 +219,8 @@ impl Candidate {
         for inertia in [1.0 - ROUGH_INERTIA, 1.0 + ROUGH_INERTIA] {
             for friction in [1.0 - ROUGH, 1.0 + ROUGH] {
                 for delay in [
-                    (1.0 - ROUGH) * drive.delay,
-                    (1.0 + ROUGH) * drive.delay + sampling,
+                    self.added + (1.0 - ROUGH) * drive.delay,
+                    self.added + (1.0 + ROUGH) * drive.delay + sampling,
                 ] {
                     let motor = Body {
                         inertia: inertia * drive.motor.inertia,
@@ -276,6 +297,7 @@ impl Candidate {
         DriftingTest {
             duration: (TRAVERSES + 1) as f64 * flip,
             relay: self.relay,
+            added_delay: self.added,
             cycle: self.cycle,
             traverse,
             warnings,

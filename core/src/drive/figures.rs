@@ -75,7 +75,7 @@ pub fn figures() -> Vec<DriveFigure> {
         input
     };
     // A light load, which friction holds wherever the motor leaves it.
-    let mut map = with(0.0, 4.0, None, 1.0);
+    let mut map = with(0.0, 4.0, None, 0.4);
     map.drive.load.inertia = 2e-5;
     map.drive.contact = Contact::Rigid { restitution: 0.0 };
     vec![
@@ -89,7 +89,7 @@ pub fn figures() -> Vec<DriveFigure> {
             number: 10,
             title: "limit cycle in the gap",
             claim: "A symmetric relay swings the motor inside the gap without touching the load.",
-            input: with(0.0, 0.5, None, 1.0),
+            input: with(0.0, 0.5, None, 0.05),
         },
         DriveFigure {
             number: 11,
@@ -217,7 +217,7 @@ fn stays_in_the_gap(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Ve
         ),
         check(
             format!(
-                "it drifts by {:.1e} of its swing a period",
+                "it drifts by {:.0e} of its swing a period",
                 (cycle.drift / cycle.swing).abs()
             ),
             cycle.drift.abs() < CLOSED_FORM * cycle.swing,

@@ -99,11 +99,13 @@ impl Backlash {
     /// The direction of drift, with one effect at a time.
     fn lesson_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("Which way does it drift?");
+            ui.label("Drift by:").on_hover_text(
+                "Which way does it drift? The direction tells which effect is there",
+            );
             for (name, friction, delay) in [
-                ("Friction alone", LESSON_FRICTION, 0.0),
-                ("Delay alone", 0.0, LESSON_DELAY),
-                ("Neither", 0.0, 0.0),
+                ("friction alone", LESSON_FRICTION, 0.0),
+                ("delay alone", 0.0, LESSON_DELAY),
+                ("neither", 0.0, 0.0),
             ] {
                 if ui.button(name).clicked() {
                     self.figure = None;
@@ -252,7 +254,7 @@ impl Backlash {
             0.0,
             1.0,
             0.0..=0.2,
-            "sticks at the top [N m]",
+            "adhesion, upper [N m]",
         )
         .on_hover_text(
             "Pull that the upper contact withstands before it parts (adhesive side effect)",
@@ -263,7 +265,7 @@ impl Backlash {
             0.0,
             1.0,
             0.0..=0.2,
-            "sticks at the bottom [N m]",
+            "adhesion, lower [N m]",
         );
     }
 
@@ -303,7 +305,7 @@ impl Backlash {
     }
 
     pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let label = if self.playing { "Pause" } else { "Play" };
             let button = ui.button(label);
             targets.note("gap:play", ui, &button);

@@ -78,10 +78,11 @@ impl Design {
 fn proposal_ui(ui: &mut egui::Ui, test: &DriftingTest) {
     let relay = test.relay.relay;
     ui.label(format!(
-        "k = {:.3} N m, a = {:.2}, ε = {:.3} rad/s, turned round every {:.1} s, sampled every {:.2} ms or faster.",
+        "k = {:.3} N m, a = {:.2}, ε = {:.3} rad/s, {:.2} ms of added delay, turned round every {:.1} s, sampled every {:.2} ms or faster.",
         relay.gain,
         relay.asymmetry,
         relay.hysteresis,
+        1e3 * test.added_delay,
         test.relay.flip.unwrap_or(0.0),
         1e3 * test.relay.sampling.unwrap_or(0.0),
     ));

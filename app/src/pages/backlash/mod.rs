@@ -222,6 +222,9 @@ impl Backlash {
             return;
         };
         theme::answer_ui(ui, &scene.answer());
+        if let Some(why) = scene.refusal() {
+            ui.label(why);
+        }
         match (self.figure, &scene.shown) {
             (Some(number), Shown::Simulated(simulated)) => {
                 controls::claim_ui(ui, number, &simulated.checks);

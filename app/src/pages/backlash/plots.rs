@@ -78,7 +78,7 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let orbit = scene.orbit(to);
     let mut curves = vec![("last periods", theme::MEASURED)];
     if orbit.is_some() {
-        curves.push(("closed form", theme::INPUT));
+        curves.push(("closed form in the gap", theme::INPUT));
     }
     caption_ui(ui, "Phase portrait", &curves);
     let color = ui.visuals().text_color();
@@ -106,18 +106,10 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                     .color(theme::INPUT)
                     .radius(4.0),
             );
-            for (i, [x, v]) in corners.iter().enumerate() {
-                // Labels stand outside of the orbit.
-                let align = match i {
-                    0 | 1 => Align2::CENTER_BOTTOM,
-                    2 => Align2::LEFT_CENTER,
-                    3 | 4 => Align2::CENTER_TOP,
-                    _ => Align2::RIGHT_CENTER,
-                };
-                let label = format!(" {} ", i + 1);
+            for (place, label) in labels(corners) {
                 plot.text(
-                    Text::new("characteristic points", PlotPoint::new(*x, *v), label)
-                        .anchor(align)
+                    Text::new("characteristic points", place, label)
+                        .anchor(Align2::CENTER_CENTER)
                         .color(color),
                 );
             }
@@ -126,6 +118,43 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
             plot.points(dot("now", [now.x1, now.v1]));
         }
     });
+}
+
+/// Distance of a number from its point, as a share of the orbit's size.
+const LABEL_DISTANCE: f64 = 0.14;
+
+/// Numbers of the characteristic points, outside of the orbit; one for points that coincide.
+fn labels(corners: &[[f64; 2]]) -> Vec<(PlotPoint, String)> {
+    let count = corners.len().max(1) as f64;
+    let range = |k: usize| {
+        let values = corners.iter().map(|c| c[k]);
+        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+            [low.min(v), high.max(v)]
+        });
+        high - low
+    };
+    let size = [range(0), range(1)];
+    let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / count);
+    let mut found: Vec<([f64; 2], String)> = Vec::new();
+    for (i, corner) in corners.iter().enumerate() {
+        let number = (i + 1).to_string();
+        match found.last_mut() {
+            Some((at, text)) if at == corner => {
+                text.push_str(", ");
+                text.push_str(&number);
+            }
+            _ => found.push((*corner, number)),
+        }
+    }
+    found
+        .into_iter()
+        .map(|(at, text)| {
+            let out = [0, 1].map(|k| (at[k] - middle[k]) / size[k].max(f64::MIN_POSITIVE));
+            let length = out[0].hypot(out[1]).max(f64::MIN_POSITIVE);
+            let place = [0, 1].map(|k| at[k] + LABEL_DISTANCE * size[k] * out[k] / length);
+            (PlotPoint::new(place[0], place[1]), text)
+        })
+        .collect()
 }
 
 /// Load over motor position.
@@ -143,6 +172,11 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let [low, high] = scene.range;
     let load = scene.load_range;
     still("map", "motor x1 [mrad]", "load x2 [mrad]", height).show(ui, |plot| {
+        plot.points(
+            Points::new("x2 over x1", curve(&scene.map))
+                .color(LOAD)
+                .radius(1.2),
+        );
         // A measured load has no zero in common with the motor.
         if let (Some(beta), Some(_)) = (scene.half_gap(), scene.input()) {
             for side in [-1.0, 1.0] {
@@ -159,11 +193,6 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                 );
             }
         }
-        plot.points(
-            Points::new("x2 over x1", curve(&scene.map))
-                .color(LOAD)
-                .radius(1.2),
-        );
         if let Some(now) = scene.now(clock)
             && let Some(x2) = now.x2
         {

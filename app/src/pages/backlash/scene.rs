@@ -264,6 +264,16 @@ impl Scene {
         }
     }
 
+    /// Why the motor alone does not tell the gap of a simulated drive.
+    pub fn refusal(&self) -> Option<String> {
+        let estimate = self.estimate.as_ref()?.as_ref().ok()?;
+        self.input()?;
+        estimate
+            .gap
+            .is_none()
+            .then(|| format!("Why: {}.", estimate.text))
+    }
+
     /// The estimate's own verdict.
     pub fn verdict(&self) -> Option<&str> {
         Some(&self.estimate.as_ref()?.as_ref().ok()?.text)
