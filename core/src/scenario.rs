@@ -54,7 +54,7 @@ pub enum AnyScenario {
     /// A relay loop around a linear plant.
     Loop(Box<Scenario>),
     /// A drive with a hidden gap.
-    Drive(DriveInput),
+    Drive(Box<DriveInput>),
 }
 
 impl AnyScenario {
@@ -78,7 +78,7 @@ impl AnyScenario {
                 let input = file
                     .input()
                     .map_err(|(table, error)| ScenarioError::Drive { table, error })?;
-                Ok(Self::Drive(input))
+                Ok(Self::Drive(Box::new(input)))
             }
             _ => Ok(Self::Loop(Box::new(Scenario::from_toml(text)?))),
         }

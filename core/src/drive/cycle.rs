@@ -84,7 +84,6 @@ fn leg_force(motor: &Body, relay: &VelocityRelay, leg: usize) -> f64 {
     let falling = relay.output(true, false);
     let c = motor.coulomb;
     match leg {
-        0 => rising - c,
         1 => falling - c,
         2 | 3 => falling + c,
         4 => rising + c,
@@ -106,7 +105,7 @@ fn time_between(motor: &Body, from: f64, to: f64, force: f64) -> Option<f64> {
         return Some(0.0);
     }
     let end_force = force - motor.viscous * to;
-    if !(end_force * change > 0.0) {
+    if end_force * change <= 0.0 || !end_force.is_finite() {
         return None;
     }
     // m dv/dt = F - d v: t = m/d ln(1 + d (to - from)/(F - d to))

@@ -308,7 +308,7 @@ impl Candidate {
         let [swing, slow, fast, push, samples, noise] = self.misses(drive);
         let mut warnings = Vec::new();
         let mut warn = |missed: f64, text: String| {
-            if !(missed <= 1.0 + 1e-9) {
+            if missed.is_nan() || missed > 1.0 + 1e-9 {
                 warnings.push(text);
             }
         };

@@ -140,13 +140,10 @@ impl Step {
     /// `a dv1/dt + b v1 + constant` as a polynomial.
     pub fn motor_force(&self, a: f64, b: f64, constant: f64) -> Polynomial {
         let mut sum = [0.0; TERMS];
-        for k in 0..self.terms {
-            let next = if k + 1 < self.terms {
-                self.v1[k + 1]
-            } else {
-                0.0
-            };
-            sum[k] = a * (k + 1) as f64 * next / self.h + b * self.v1[k];
+        for (k, sum) in sum.iter_mut().enumerate().take(self.terms) {
+            // The last power has none above it, which is below round-off anyway.
+            let next = self.v1.get(k + 1).copied().unwrap_or(0.0);
+            *sum = a * (k + 1) as f64 * next / self.h + b * self.v1[k];
         }
         sum[0] += constant;
         sum

@@ -16,6 +16,9 @@ use crate::theme;
 const STIFFNESS: f64 = 1500.0;
 const DAMPING: f64 = 0.2;
 
+/// Length of the sliders, points: their labels stand beside them.
+const SLIDER: f32 = 120.0;
+
 /// Friction and delay of the lesson about the direction of drift.
 const LESSON_FRICTION: f64 = 0.03;
 const LESSON_DELAY: f64 = 2e-4;
@@ -24,6 +27,7 @@ impl Backlash {
     /// The panel beside the plots.
     pub(super) fn side_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         ui.add_space(4.0);
+        ui.spacing_mut().slider_width = SLIDER;
         if self.measured() {
             self.measurement_ui(ui, targets);
         } else {
@@ -326,8 +330,9 @@ impl Backlash {
             ui.add(
                 egui::Slider::new(&mut self.speed, 0.001..=2.0)
                     .logarithmic(true)
-                    .text("times real time"),
-            );
+                    .suffix(" x"),
+            )
+            .on_hover_text("Speed of the playback, times real time");
             ui.label(format!("t = {:.4} s", self.clock));
         });
     }

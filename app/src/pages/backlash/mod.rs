@@ -27,6 +27,9 @@ const BATCH: usize = 200;
 /// Width below which everything stands in one column, points.
 const NARROW: f32 = 700.0;
 
+/// Width of the panel with the controls, points.
+const SIDE: f32 = 380.0;
+
 /// Height of the drawn masses, points.
 const PICTURE: f32 = 112.0;
 
@@ -237,7 +240,7 @@ impl Backlash {
 
     fn wide_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         egui::Panel::left("drive")
-            .default_size(350.0)
+            .exact_size(SIDE)
             .resizable(false)
             .show(ui, |ui| {
                 egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, targets));
