@@ -32,8 +32,8 @@ pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) 
                 .label_spacing(LABELS)
                 .formatter(label),
         ])
-        .x_grid_spacer(uniform_grid_spacer(grid))
-        .y_grid_spacer(uniform_grid_spacer(grid))
+        .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
+        .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_boxed_zoom(false)
@@ -63,7 +63,7 @@ fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
 
 /// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
 /// a finer and a coarser set.
-fn grid(input: GridInput) -> [f64; 3] {
+fn grid(input: &GridInput) -> [f64; 3] {
     let (low, high) = input.bounds;
     // The smallest step that egui_plot wants is 8 points wide; a label needs more.
     let least = f64::from(LABELS.max) / 8.0 * input.base_step_size;

@@ -6,6 +6,8 @@ mod files;
 mod picture;
 mod plots;
 mod scene;
+mod side;
+mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test};
 

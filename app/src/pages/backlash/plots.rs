@@ -94,19 +94,19 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                 .color(theme::MEASURED)
                 .width(1.5),
         );
-        if let Some((orbit, corners)) = &orbit {
+        if let Some(orbit) = &orbit {
             plot.line(
-                Line::new("closed form", curve(orbit))
+                Line::new("closed form", curve(&orbit.curve))
                     .color(theme::INPUT)
                     .style(LineStyle::dashed_dense())
                     .width(2.0),
             );
             plot.points(
-                Points::new("characteristic points", corners.clone())
+                Points::new("characteristic points", orbit.corners.clone())
                     .color(theme::INPUT)
                     .radius(4.0),
             );
-            for (place, label) in labels(corners) {
+            for (place, label) in labels(&orbit.corners) {
                 plot.text(
                     Text::new("characteristic points", place, label)
                         .anchor(Align2::CENTER_CENTER)

@@ -2,10 +2,12 @@
 
 use hysteron_core::backlash::GapEstimate;
 use hysteron_core::drive::{
-    Command, Direction, DriveInput, DriveRun, Summary, checks, drifting_cycle, summarize,
+    Command, DriveInput, DriveRun, EventKind, Summary, checks, drifting_cycle, summarize,
 };
 use hysteron_core::figures::Check;
 use hysteron_core::measurement::{Measurement, Quantity};
+
+use super::words::lesson;
 
 /// Buckets of a curve over the whole run; each keeps its least and largest value.
 const BUCKETS: usize = 900;
@@ -213,8 +215,7 @@ impl Scene {
     }
 
     /// The closed form of the cycle and its characteristic points at the last switch before a time.
-    pub fn orbit(&self, before: f64) -> Option<(Vec<[f64; 2]>, Vec<[f64; 2]>)> {
-        use hysteron_core::drive::EventKind;
+    pub fn orbit(&self, before: f64) -> Option<Orbit> {
         let simulated = self.simulation()?;
         let Command::Relay(relay) = simulated.input.command else {
             return None;
@@ -238,45 +239,10 @@ impl Scene {
         let place = |[x, v]: [f64; 2]| [MILLI * (start.x1 + x), v];
         let curve = cycle.curve(motor, &now, ORBIT).into_iter().map(place);
         let points = cycle.points[..6].iter().map(|p| place([p.x, p.v]));
-        Some((curve.collect(), points.collect()))
-    }
-
-    /// The page's answer.
-    pub fn answer(&self) -> String {
-        let found = match &self.estimate {
-            None => "Asking the motor how wide the gap is ...".to_owned(),
-            Some(Err(error)) => format!("The motor cannot tell: {error}."),
-            Some(Ok(e)) => match (e.gap, e.std_error) {
-                (Some(gap), Some(error)) => format!(
-                    "From the motor alone: 2β = {} ± {} mrad.",
-                    digits(MILLI * gap, MILLI * error),
-                    digits(MILLI * error, MILLI * error)
-                ),
-                _ => "The motor alone cannot tell the gap.".to_owned(),
-            },
-        };
-        match self.input() {
-            Some(input) => format!(
-                "{found} True: {:.2} mrad.",
-                2.0 * MILLI * input.drive.half_gap
-            ),
-            None => found,
-        }
-    }
-
-    /// Why the motor alone does not tell the gap of a simulated drive.
-    pub fn refusal(&self) -> Option<String> {
-        let estimate = self.estimate.as_ref()?.as_ref().ok()?;
-        self.input()?;
-        estimate
-            .gap
-            .is_none()
-            .then(|| format!("Why: {}.", estimate.text))
-    }
-
-    /// The estimate's own verdict.
-    pub fn verdict(&self) -> Option<&str> {
-        Some(&self.estimate.as_ref()?.as_ref().ok()?.text)
+        Some(Orbit {
+            curve: curve.collect(),
+            corners: points.collect(),
+        })
     }
 
     /// Index of the last sample at or before a time.
@@ -333,6 +299,13 @@ impl Scene {
     }
 }
 
+/// A closed cycle in the phase plane, mrad and rad/s.
+pub struct Orbit {
+    pub curve: Vec<[f64; 2]>,
+    /// Its characteristic points.
+    pub corners: Vec<[f64; 2]>,
+}
+
 /// Where everything is at an instant.
 #[derive(Clone, Copy)]
 pub struct Now {
@@ -344,16 +317,6 @@ pub struct Now {
     pub v1: f64,
     /// N m
     pub torque: f64,
-}
-
-/// As many digits as its error leaves, two of that.
-fn digits(value: f64, error: f64) -> String {
-    let decimals = if error > 0.0 {
-        (1.0 - error.log10().floor()).clamp(0.0, 4.0) as usize
-    } else {
-        4
-    };
-    format!("{value:.decimals$}")
 }
 
 /// Slopes between the neighbours of each sample.
@@ -398,31 +361,4 @@ fn envelope(time: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
         curve.extend(pair.map(|i| [t[i], MILLI * v[i]]));
     }
     curve
-}
-
-fn lesson(input: &DriveInput, summary: &Summary) -> String {
-    let Command::Relay(relay) = input.command else {
-        return String::new();
-    };
-    let Some(cycle) = &summary.cycle else {
-        return "The relay cannot keep the motor swinging: friction eats up its push.".to_owned();
-    };
-    let speed = match summary.drifts.first() {
-        Some(drift) => drift.velocity,
-        None => cycle.drift_velocity(),
-    };
-    let speed = (MILLI * speed).abs();
-    match summary.direction(&relay) {
-        Some(Direction::Against) => format!(
-            "The cycle drifts at {speed:.2} mrad/s against the stronger push: friction outweighs delay. The direction tells which effect is there."
-        ),
-        Some(Direction::With) => format!(
-            "The cycle drifts at {speed:.2} mrad/s with the stronger push: delay outweighs friction. The direction tells which effect is there."
-        ),
-        _ if relay.relay.asymmetry == 0.0 => {
-            "The cycle stays where it is: both pushes are equal.".to_owned()
-        }
-        _ => "The cycle stays where it is: without friction and delay no asymmetry moves it."
-            .to_owned(),
-    }
 }
