@@ -8,9 +8,6 @@ use super::random::Random;
 /// With two levels of input, any static map of it is a gain and an offset, and the gain goes into the
 /// inertia: so asymmetry and constant torque are one class.
 const OFFSET: &[&str] = &["gain_asymmetry", "constant_load"];
-/// A lag commutes with a linear drive that starts at rest: whether it acts on the input or on the
-/// outputs cannot be seen.
-const LAG: &[&str] = &["actuator_lag", "sensor_lag"];
 
 const MULTISINE: Excitation = Excitation::Multisine { amplitude: 0.08 };
 const STAIRS: Excitation = Excitation::Staircase { top: 0.3 };
@@ -241,7 +238,7 @@ fn input_path(r: &mut Random) -> Vec<Case> {
             actuator_lag: time,
             ..rig
         };
-        cases.push(Case::drive(name, vec![lag(time).same(LAG)], rig));
+        cases.push(Case::drive(name, vec![lag(time)], rig));
     }
     let a = r.between(0.03, 0.08);
     let rig = DriveRig {
@@ -317,10 +314,9 @@ fn input_path(r: &mut Random) -> Vec<Case> {
     };
     cases.push(Case::drive(
         "sensor lag, multisine",
-        vec![truth.clone().same(LAG)],
+        vec![truth.clone()],
         rig,
     ));
-    // Dry friction is not linear: behind it the two lags differ.
     let c = r.between(0.03, 0.05);
     let friction = Friction::dry(c);
     let rig = DriveRig {
@@ -330,7 +326,7 @@ fn input_path(r: &mut Random) -> Vec<Case> {
     };
     cases.push(Case::drive(
         "sensor lag and Coulomb",
-        vec![truth.alike(LAG), coulomb(c)],
+        vec![truth, coulomb(c)],
         rig,
     ));
     cases
@@ -396,7 +392,7 @@ fn pairs(r: &mut Random) -> Vec<Case> {
         ),
         make(
             "Coulomb and lag",
-            vec![coulomb(c), lag(time).alike(LAG)],
+            vec![coulomb(c), lag(time)],
             relay(0.1),
             &|rig| DriveRig {
                 friction,

@@ -197,7 +197,8 @@ pub struct DriveRig {
     pub saturation: f64,
     /// The command that the amplifier swallows.
     pub dead_zone: f64,
-    /// Time constant of the filter on position and velocity.
+    /// Time constant of the filter on the velocity, which is made from the counts of an encoder; on the
+    /// position where nothing else is recorded.
     pub sensor_lag: f64,
     pub load: Option<Load>,
     /// Where the load stands at the start, rad; the motor starts at 0.
@@ -268,10 +269,12 @@ impl DriveRig {
         let mut load_position = vec![];
         for i in 0..self.samples {
             let t = i as f64 * SAMPLING;
-            let (x, v) = if self.sensor_lag > 0.0 {
-                (s.seen_x, s.seen_v)
+            let lags = self.sensor_lag > 0.0;
+            let v = if lags { s.seen_v } else { s.v1 };
+            let x = if lags && self.recorded == Recorded::PositionOnly {
+                s.seen_x
             } else {
-                (s.x1, s.v1)
+                s.x1
             };
             let measured = v + VELOCITY_NOISE * random.normal();
             let u = controller.command(t, measured);

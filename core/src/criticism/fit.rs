@@ -53,7 +53,8 @@ pub(super) struct Fit {
     pub values: Vec<f64>,
     pub starts: Vec<Start>,
     pub motion: Motion,
-    /// Squared residuals in noise units, summed over the samples used for the fit.
+    /// Squared residuals in noise units over the samples used for the fit; where windows differ widely,
+    /// by their usual size (see [`robust_cost`]).
     pub cost: f64,
     damping: f64,
     iterations: usize,
@@ -81,7 +82,7 @@ impl Fit {
     ) -> Self {
         structure.clamp(&mut values, scales);
         let motion = simulate(data, &structure, &values, &starts);
-        let cost = fit_cost(data, &motion);
+        let cost = robust_cost(data, &motion);
         let p = values.len();
         Self {
             structure,
@@ -114,8 +115,8 @@ impl Fit {
                 self.damping *= 10.0;
                 continue;
             };
-            let motion = simulate(data, &self.structure, &values, &starts);
-            let cost = fit_cost(data, &motion);
+            let (starts, motion) = self.motion_from(data, &values, starts);
+            let cost = robust_cost(data, &motion);
             if cost <= self.cost {
                 let fall = (self.cost - cost) / self.cost.max(f64::MIN_POSITIVE);
                 (self.values, self.starts, self.motion, self.cost) = (values, starts, motion, cost);
@@ -135,6 +136,34 @@ impl Fit {
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
     }
 
+    /// Motion with new values; where it got worse, each window starts from the better of its new and
+    /// its present state: near a kink, such as sticking, a step in the state may lead anywhere.
+    fn motion_from(
+        &self,
+        data: &Data,
+        values: &[f64],
+        mut starts: Vec<Start>,
+    ) -> (Vec<Start>, Motion) {
+        let moved = simulate(data, &self.structure, values, &starts);
+        if robust_cost(data, &moved) <= self.cost {
+            return (starts, moved);
+        }
+        let stayed = simulate(data, &self.structure, values, &self.starts);
+        let (after, before) = (window_costs(data, &moved), window_costs(data, &stayed));
+        let mut mixed = false;
+        for (k, start) in starts.iter_mut().enumerate() {
+            if before[k] < after[k] {
+                *start = self.starts[k];
+                mixed = true;
+            }
+        }
+        if !mixed {
+            return (starts, moved);
+        }
+        let motion = simulate(data, &self.structure, values, &starts);
+        (starts, motion)
+    }
+
     /// Steps for finite differences: as large as the uncertainty of a value, once that is known, so that
     /// curvature does not bend the derivative by more than the noise does.
     fn difference_steps(&self, data: &Data, scales: &Scales) -> Vec<f64> {
@@ -144,7 +173,7 @@ impl Fit {
             let level = (self.cost / count).sqrt().max(1.0);
             for (j, step) in steps.iter_mut().enumerate() {
                 let uncertain = level / self.information[(j, j)].max(f64::MIN_POSITIVE).sqrt();
-                let size = uncertain.clamp(LEAST_DIFFERENCE * step.abs(), step.abs());
+                let size = uncertain.max(LEAST_DIFFERENCE * step.abs()).min(step.abs());
                 *step = size.copysign(*step);
             }
         }
@@ -215,6 +244,7 @@ impl Fit {
             })
             .collect();
         let informed = informed_windows(data);
+        let robust = window_weights(data, &self.motion);
         let mut row = vec![0.0; p];
         for block in &data.blocks {
             // A held-back block in a window that is also fitted informs nothing.
@@ -223,7 +253,7 @@ impl Fit {
             }
             let sums = &mut windows[block.window];
             for output in &data.outputs {
-                let weight = 1.0 / output.noise;
+                let weight = robust[block.window].sqrt() / output.noise;
                 let modelled = self.motion.of(output.is_velocity);
                 let parts: Vec<&[f64]> = columns.iter().map(|c| c.of(output.is_velocity)).collect();
                 for i in block.from..block.to {
@@ -337,6 +367,23 @@ impl Fit {
         }
     }
 
+    /// Takes for each window the measured state where that suits the values better than the present one.
+    pub fn take_measured_starts(&mut self, data: &Data) {
+        let measured = data.guessed_starts();
+        let motion = simulate(data, &self.structure, &self.values, &measured);
+        let (before, after) = (
+            window_costs(data, &self.motion),
+            window_costs(data, &motion),
+        );
+        for (k, start) in measured.into_iter().enumerate() {
+            if after[k] < before[k] {
+                self.starts[k] = start;
+            }
+        }
+        self.motion = simulate(data, &self.structure, &self.values, &self.starts);
+        self.cost = robust_cost(data, &self.motion);
+    }
+
     /// Improves the states of all windows with the values kept, window by window where it helps.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
         for _ in 0..2 {
@@ -367,7 +414,7 @@ impl Fit {
             }
             self.motion = simulate(data, &self.structure, &self.values, &self.starts);
         }
-        self.cost = fit_cost(data, &self.motion);
+        self.cost = robust_cost(data, &self.motion);
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance.
@@ -505,6 +552,46 @@ fn fit_cost(data: &Data, motion: &Motion) -> f64 {
         .filter(|b| !b.held_back)
         .map(|b| cost_between(data, motion, b.from, b.to))
         .sum()
+}
+
+/// Mean square of a window, in noise units, from which on it counts by the logarithm.
+const ODD_MEAN_SQUARE: f64 = 30.0;
+
+/// Cost and number of residuals of each window on the fitted part.
+fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
+    let mut windows = vec![(0.0, 0.0); data.windows.len()];
+    for b in data.blocks.iter().filter(|b| !b.held_back) {
+        windows[b.window].0 += cost_between(data, motion, b.from, b.to);
+        windows[b.window].1 += ((b.to - b.from) * data.outputs.len()) as f64;
+    }
+    windows
+}
+
+/// Squared residuals as if every window were as far off as usual: the mean over windows of
+/// `ln(1 + m / K)`, taken back, with `m` the mean square of a window (Cauchy's loss; Huber 1981). Near the
+/// noise it is the sum of squares. Where a body sticks, some windows may go wrong by a thousand times the
+/// noise whatever the parameters: they must not decide alone.
+fn robust_cost(data: &Data, motion: &Motion) -> f64 {
+    let (mut logs, mut count) = (0.0, 0.0);
+    for (cost, n) in fitted_windows(data, motion) {
+        if n > 0.0 {
+            logs += n * (cost / (n * ODD_MEAN_SQUARE)).ln_1p();
+            count += n;
+        }
+    }
+    if count > 0.0 {
+        count * ODD_MEAN_SQUARE * (logs / count).exp_m1()
+    } else {
+        0.0
+    }
+}
+
+/// Weight of each window in the normal equations, from the derivative of [`robust_cost`].
+fn window_weights(data: &Data, motion: &Motion) -> Vec<f64> {
+    fitted_windows(data, motion)
+        .into_iter()
+        .map(|(cost, n)| 1.0 / (1.0 + cost / (n.max(1.0) * ODD_MEAN_SQUARE)))
+        .collect()
 }
 
 fn window_costs(data: &Data, motion: &Motion) -> Vec<f64> {

@@ -14,11 +14,14 @@ const MAX_STEPS: usize = 12;
 
 /// Other effects that are tried first where the best ones led to no end: the greedy choice may be the
 /// wrong one of two that hide each other.
-const MAX_DETOURS: usize = 3;
+const MAX_DETOURS: usize = 4;
 
 /// Steps in which alternatives are noted, and how many in each.
 const DETOUR_STEPS: usize = 2;
 const DETOURS_PER_STEP: usize = 2;
+
+/// Effects that are tried on where none helps beyond chance by itself: two that only show together.
+const BOLD_DETOURS: usize = 2;
 
 /// Share by which a detour must lower the error to be the better way.
 const DETOUR_GAIN: f64 = 0.97;
@@ -59,13 +62,24 @@ pub enum CriticismError {
     },
 }
 
+/// A way not taken yet: the steps before, and the model to go on from.
+struct Detour {
+    steps: Vec<Step>,
+    model: Scored,
+    /// Whether the model has an effect that did not help clearly by itself; such a way must explain
+    /// everything.
+    bold: bool,
+}
+
 /// From the baseline to the verdict: adds what helps, removes what is not needed, until nothing does.
 pub struct DiagnosisJob {
     job: Option<StepJob>,
     diagnosis: Diagnosis,
-    /// Ways not taken: the steps before, and the model to go on from.
-    detours: Vec<(Vec<Step>, Scored)>,
+    /// Ways not taken yet.
+    detours: Vec<Detour>,
     detours_taken: usize,
+    /// Whether the present way began with an effect that was not seen clearly.
+    bold: bool,
     /// The best that came to an end without explaining everything.
     unfinished: Option<Diagnosis>,
 }
@@ -92,6 +106,7 @@ impl DiagnosisJob {
             },
             detours: Vec::new(),
             detours_taken: 0,
+            bold: false,
             unfinished: None,
         })
     }
@@ -119,8 +134,20 @@ impl DiagnosisJob {
         if before < DETOUR_STEPS && self.detours_taken == 0 {
             let steps = &self.diagnosis.steps;
             let noted = job.alternatives(DETOURS_PER_STEP).into_iter();
-            self.detours
-                .extend(noted.map(|model| (steps.clone(), model)));
+            self.detours.extend(noted.map(|model| Detour {
+                steps: steps.clone(),
+                model,
+                bold: false,
+            }));
+        }
+        if !self.bold && report.verdict.as_ref().is_some_and(|v| !v.complete) {
+            let steps = &self.diagnosis.steps;
+            let noted = job.faint(BOLD_DETOURS).into_iter();
+            self.detours.extend(noted.map(|model| Detour {
+                steps: steps.clone(),
+                model,
+                bold: true,
+            }));
         }
         let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
@@ -149,7 +176,7 @@ impl DiagnosisJob {
         let better = self
             .unfinished
             .take()
-            .filter(|other| DETOUR_GAIN * error(other) <= error(&self.diagnosis));
+            .filter(|other| self.bold || DETOUR_GAIN * error(other) <= error(&self.diagnosis));
         let best = match better {
             Some(other) if !self.diagnosis.verdict.complete => other,
             _ => self.diagnosis.clone(),
@@ -160,9 +187,10 @@ impl DiagnosisJob {
         }
         self.unfinished = Some(best);
         self.detours_taken += 1;
-        let (steps, model) = self.detours.remove(0);
-        self.diagnosis.steps = steps;
-        self.job = Some(StepJob::from_fit(session, model));
+        let detour = self.detours.remove(0);
+        self.diagnosis.steps = detour.steps;
+        self.bold = detour.bold;
+        self.job = Some(StepJob::from_fit(session, detour.model));
         None
     }
 }

@@ -11,6 +11,9 @@ const HEAT: usize = 2;
 /// An effect is fitted to the end while it may come this close to the best cost.
 const CLOSE: f64 = 1.03;
 
+/// The same for a part of the effect that it stands in for: it may do though it does a little worse.
+const PART_CLOSE: f64 = 1.4;
+
 /// Share of the present cost below which an effect must hope to come, or it is not fitted to the end:
 /// a fall of the error by less than 3 % does not count.
 const WORTHWHILE: f64 = 0.94;
@@ -19,7 +22,15 @@ const WORTHWHILE: f64 = 0.94;
 struct Contender {
     effect: &'static dyn Effect,
     search: Search,
+    /// It is fitted to the end while it may come this close to the best cost.
+    close: f64,
     heats: usize,
+}
+
+/// Whether the effect at this place of a fit contains `part`.
+fn contains(whole: &Fit, place: usize, part: &dyn Effect) -> bool {
+    let effect = whole.structure.effects.get(place);
+    effect.is_some_and(|e| e.contains().contains(&part.id()))
 }
 
 /// A race that goes on piece by piece.
@@ -34,21 +45,27 @@ pub(super) struct Race {
 }
 
 impl Race {
-    /// Tries each of `effects` on top of `fit`. With a `target` only those that may reach that cost
-    /// are fitted to the end, otherwise those that may be the best.
+    /// Tries each of `effects` on top of `fit`. Where they stand in for an effect of another fit (at this
+    /// place in it), only those that may reach its cost are fitted to the end, otherwise those that may
+    /// be the best.
     pub fn new(
         session: &Session,
         fit: &Fit,
         effects: impl IntoIterator<Item = &'static dyn Effect>,
-        target: Option<f64>,
+        instead: Option<(&Fit, usize)>,
     ) -> Self {
+        let target = instead.map(|(whole, _)| whole.cost);
         let probe = session.probe(fit);
         Self {
             contenders: effects
                 .into_iter()
                 .map(|effect| Contender {
                     effect,
-                    search: Search::adding(&session.data, fit, effect, &probe),
+                    search: Search::adding(&session.data, fit, effect, &probe, instead),
+                    close: match instead {
+                        Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
+                        _ => CLOSE,
+                    },
                     heats: 0,
                 })
                 .collect(),
@@ -96,11 +113,11 @@ impl Race {
             .iter()
             .map(|c| c.search.cost())
             .fold(self.target, f64::min);
-        let hope = self.ceiling.min(CLOSE * best);
+        let ceiling = self.ceiling;
         let next = self
             .contenders
             .iter_mut()
-            .filter(|c| c.search.goes_on() && c.search.optimism() <= hope)
+            .filter(|c| c.search.goes_on() && c.search.optimism() <= ceiling.min(c.close * best))
             .min_by(|a, b| a.search.optimism().total_cmp(&b.search.optimism()));
         match next {
             Some(contender) => {

@@ -27,6 +27,9 @@ const FINALISTS: usize = 3;
 /// A fit that costs this many times the best one of its effect is not followed.
 const NEAR: f64 = 1.5;
 
+/// A fit on the whole record that costs this many times what it did on a part has unsuited states.
+const UNSETTLED: f64 = 1.5;
+
 /// A fit that goes on is hoped to fall by this many times its last fall.
 const HOPE: f64 = 3.0;
 
@@ -57,11 +60,40 @@ impl Search {
     }
 
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
-    /// the baseline, since a missing effect may have bent the baseline far off.
-    pub fn adding(data: &Data, fit: &Fit, effect: &'static dyn Effect, probe: &Probe) -> Self {
+    /// the baseline, since a missing effect may have bent the baseline far off. What it contains, or
+    /// what it stands in for (a fit and the place in it), lends it the values that both have.
+    pub fn adding(
+        data: &Data,
+        fit: &Fit,
+        effect: &'static dyn Effect,
+        probe: &Probe,
+        instead: Option<(&Fit, usize)>,
+    ) -> Self {
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
         let mut points = Vec::new();
+        let related = |other: &dyn Effect| {
+            other.contains().contains(&effect.id()) || same_dimensions(effect, other)
+        };
+        let contained = (0..fit.structure.effects.len())
+            .filter(|i| effect.contains().contains(&fit.structure.effects[*i].id()))
+            .map(|index| (fit, index));
+        let replaced = instead.filter(|(from, index)| related(from.structure.effects[*index]));
+        let relatives = contained.chain(replaced);
+        for (from, index) in relatives {
+            let (other, baseline) = (from.structure.effects[index], structure.baseline_len());
+            let lent = &from.values[from.structure.range(index)];
+            for mut start in effect.starts(probe) {
+                lend(effect, &mut start, other, lent);
+                let mut values = kept.clone();
+                values[..baseline].copy_from_slice(&from.values[..baseline]);
+                values.extend(start);
+                points.push((values, from.starts.clone()));
+                if same_dimensions(effect, other) {
+                    break;
+                }
+            }
+        }
         for start in effect.starts(probe) {
             let mut values = kept.clone();
             values.extend(&start);
@@ -172,6 +204,7 @@ impl Search {
             .filter(|s| scout.windows.binary_search(&s.sample).is_ok())
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
+        fit.take_measured_starts(scout);
         for _ in 0..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
@@ -194,10 +227,12 @@ impl Search {
         let near = NEAR * best.cost;
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
         first.done |= best.cost > hopeless;
+        settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {
             if fit.cost <= near.min(hopeless) {
-                let next = Fit::new(data, fit.structure, fit.values, starts, scales);
+                let mut next = Fit::new(data, fit.structure, fit.values, starts, scales);
+                settle(&mut next, fit.cost / share, data, scales);
                 self.finalists.push(next);
             }
         }
@@ -246,5 +281,33 @@ impl Search {
             best.polish_starts(data, scales);
         }
         Some(best)
+    }
+}
+
+/// Whether two effects have the same kind of parameters: two lags, say, which may do the same.
+fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
+    let dimensions = |e: &dyn Effect| e.parameters().iter().map(|p| p.dimension);
+    dimensions(a).eq(dimensions(b)) && a.id() != b.id()
+}
+
+/// Gives `start` of one effect the values of another for the parameters that both have.
+fn lend(effect: &dyn Effect, start: &mut [f64], other: &dyn Effect, lent: &[f64]) {
+    if same_dimensions(effect, other) {
+        start.copy_from_slice(lent);
+    }
+    for (value, spec) in start.iter_mut().zip(effect.parameters()) {
+        let same = other.parameters().iter().zip(lent);
+        if let Some((_, known)) = same.into_iter().find(|(o, _)| o.symbol == spec.symbol) {
+            *value = *known;
+        }
+    }
+}
+
+/// The states of the windows belong to the model before: where they do not suit the new one, which came
+/// to `expected` on the scout, they are improved first.
+fn settle(fit: &mut Fit, expected: f64, data: &Data, scales: &Scales) {
+    if !fit.done && fit.cost > UNSETTLED * expected {
+        fit.take_measured_starts(data);
+        fit.polish_starts(data, scales);
     }
 }

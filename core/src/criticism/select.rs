@@ -32,15 +32,15 @@ const NOISE_CORRELATION: f64 = 2.0;
 /// Error up to which what is left is noise even if it is correlated.
 const SURE_NOISE_ERROR: f64 = 1.05;
 
-/// Mean square of a held-back block, in units of the median one, above which it is far off, and share of
-/// the blocks that may be so in a model that is right.
-const ODD: f64 = 10.0;
-const ODD_BLOCKS: f64 = 0.06;
-
 /// A model that explains all but this share of the error that there was, down to this many times the
 /// noise, is complete: no clock, no rig and no equation is right to more digits.
 const SMALL_SHARE: f64 = 2e-3;
 const SMALL_ERROR: f64 = 3.0;
+
+/// Share of the held-back blocks that may be more than noise, and share of the error there that may be
+/// left, where a model explains all the rest.
+const ODD_STRETCHES: f64 = 0.35;
+const STRETCH_SHARE: f64 = 0.01;
 
 /// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
 fn statistic(before: &Score, after: &Score) -> f64 {
@@ -72,25 +72,31 @@ pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
     (statistic(b, a) + penalty).abs() < SAME_STATISTIC && fall(b, a).abs() < SAME_SHARE
 }
 
-/// Error without the few blocks that are far off: where a body sticks or breaks loose, a hair decides.
-fn usual_error(score: &Score) -> f64 {
-    let mut blocks = score.held_blocks.clone();
-    blocks.sort_by(f64::total_cmp);
-    let median = blocks.get(blocks.len() / 2).copied().unwrap_or(1.0);
-    let (odd, usual): (Vec<f64>, Vec<f64>) = blocks.iter().partition(|m| **m > ODD * median);
-    if odd.len() as f64 > ODD_BLOCKS * blocks.len() as f64 {
-        return score.error;
-    }
-    (usual.iter().sum::<f64>() / usual.len().max(1) as f64).sqrt()
+/// Whether what is left looks like noise in itself.
+pub(super) fn is_plain_noise(score: &Score) -> bool {
+    score.error < SURE_NOISE_ERROR
+        || (score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
 }
 
-/// Whether what is left is noise, against the error that there was at first.
-pub(super) fn is_noise(score: &Score, first: f64) -> bool {
-    let error = usual_error(score);
+/// Whether what is left is noise, against what the baseline left at first.
+pub(super) fn is_noise(score: &Score, first: &Score) -> bool {
     let excess = (score.error.powi(2) - 1.0).max(0.0).sqrt();
-    error < SURE_NOISE_ERROR
-        || (error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
-        || (score.error < SMALL_ERROR && excess < SMALL_SHARE * first)
+    is_plain_noise(score)
+        || (score.error < SMALL_ERROR && excess < SMALL_SHARE * first.error)
+        || is_noise_but_for_stretches(score, first)
+}
+
+/// Whether the held-back blocks are noise but for a few, and these are explained to a hundredth of what
+/// was there: where dry friction lets go depends on less than an encoder sees.
+fn is_noise_but_for_stretches(score: &Score, first: &Score) -> bool {
+    if score.held_blocks.len() != first.held_blocks.len() {
+        return false;
+    }
+    let pairs = || score.held_blocks.iter().zip(&first.held_blocks);
+    let noisy = |m: &f64| *m < NOISE_ERROR * NOISE_ERROR;
+    let odd = pairs().filter(|(m, _)| !noisy(m)).count();
+    let explained = |(m, f): (&f64, &f64)| noisy(m) || *m < STRETCH_SHARE * STRETCH_SHARE * f;
+    odd as f64 <= ODD_STRETCHES * score.held_blocks.len() as f64 && pairs().all(explained)
 }
 
 /// Change of the Bayesian information criterion on the fitted part; negative is better.

@@ -27,8 +27,8 @@ pub(super) struct Session {
     pub data: Data,
     /// All of a long record, if `data` is not.
     full: Option<Data>,
-    /// Error of the baseline, once it is fitted.
-    pub baseline_error: Option<f64>,
+    /// Score of the baseline, once it is fitted.
+    pub baseline: Option<Score>,
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
@@ -49,7 +49,7 @@ impl Session {
         Ok(Self {
             scales,
             scout: compared.scout(),
-            baseline_error: None,
+            baseline: None,
             full: (compared.used() < data.used()).then_some(data),
             data: compared,
             motion: measurement.motion(),
@@ -93,9 +93,9 @@ impl Session {
         })
     }
 
-    /// Error of the baseline, or of `scored` if there is none yet.
-    pub fn first_error(&self, scored: &Scored) -> f64 {
-        self.baseline_error.unwrap_or(scored.score.error)
+    /// Score of the baseline, or of `scored` if there is none yet.
+    pub fn first<'a>(&'a self, scored: &'a Scored) -> &'a Score {
+        self.baseline.as_ref().unwrap_or(&scored.score)
     }
 
     /// The whole record.
@@ -181,7 +181,7 @@ impl Session {
 
     /// Where the fit fails; empty where what is left is noise.
     pub fn findings(&self, scored: &Scored) -> Vec<super::Finding> {
-        if is_noise(&scored.score, self.first_error(scored)) {
+        if is_noise(&scored.score, self.first(scored)) {
             return Vec::new();
         }
         let unit = self

@@ -2,12 +2,12 @@
 
 use super::race::Race;
 use super::search::Search;
-use super::select::{delta_bic, fall, helps, is_noise, same};
+use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same};
 use super::session::{Scored, Session};
 use super::verdict::{Class, verdict};
 use super::{Candidate, CriticismError, Progress, Step, StepReport};
 use crate::effect::{self, Effect, EffectId};
-use crate::measurement::Measurement;
+use crate::measurement::{Kind, Measurement};
 
 /// Error of a perfect model in noise units.
 pub(super) const NOISE_FLOOR: f64 = 1.0;
@@ -147,11 +147,11 @@ impl StepJob {
                 };
                 let search = self.wanted.get(next).map(|effect| {
                     let probe = self.session.probe(&scored.fit);
-                    Search::adding(&self.session.data, &scored.fit, *effect, &probe)
+                    Search::adding(&self.session.data, &scored.fit, *effect, &probe, None)
                 });
                 self.session
-                    .baseline_error
-                    .get_or_insert(scored.score.error);
+                    .baseline
+                    .get_or_insert_with(|| scored.score.clone());
                 if search.is_none() {
                     self.wanted.clone_from(&scored.fit.structure.effects);
                 }
@@ -217,7 +217,7 @@ impl StepJob {
                     &self.session,
                     &without.fit,
                     self.rivals(place),
-                    Some(model.fit.cost),
+                    Some((&model.fit, place)),
                 ),
             },
             None => Stage::Report,
@@ -232,15 +232,12 @@ impl StepJob {
         let mut class = Class::default();
         for (effect, fit) in fits {
             let swapped = self.session.scored(fit);
-            if !alike(model, &swapped) {
-                continue;
-            }
             if own.contains().contains(&effect.id()) {
                 let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
-                if self.simpler.as_ref().is_none_or(fewer) {
+                if enough(model, &swapped) && self.simpler.as_ref().is_none_or(fewer) {
                     self.simpler = Some(swapped);
                 }
-            } else {
+            } else if alike(model, &swapped) && same_body(model, &swapped) {
                 class.push(effect);
             }
         }
@@ -248,15 +245,26 @@ impl StepJob {
         self.classes.push(class);
     }
 
-    /// The effect to add next: the best that helps; of equals the one with fewer parameters.
+    /// The effect to add next: the best that helps; of equals the one with fewer parameters, or that stands
+    /// first in the registry.
     fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
-        let helping = || self.tried.iter().filter(|(_, s)| helps_clearly(model, s));
+        // A part of an effect that leaves nothing but noise is not widened to the whole.
+        let settled = is_plain_noise(&model.score);
+        let widens = |e: &dyn Effect| self.wanted.iter().any(|w| e.contains().contains(&w.id()));
+        let helping = || {
+            self.tried
+                .iter()
+                .filter(|(e, s)| !(settled && widens(*e)) && helps_clearly(model, s))
+        };
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
             .filter(|(e, s)| {
-                alike(s, &best.1)
-                    && (s.fit.values.len() < best.1.fit.values.len()
-                        || best.0.contains().contains(&e.id()))
+                if best.0.contains().contains(&e.id()) {
+                    enough(&best.1, s)
+                } else {
+                    let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
+                    alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
+                }
             })
             .min_by_key(|(_, s)| s.fit.values.len())
             .or(Some(best))
@@ -304,7 +312,7 @@ impl StepJob {
                 &self.classes,
                 &parameters,
                 &whole,
-                is_noise(&whole.score, self.session.first_error(&whole)),
+                is_noise(&whole.score, self.session.first(&whole)),
             )
         });
         Some(StepReport {
@@ -383,15 +391,35 @@ impl StepJob {
     /// one; and the session.
     pub(super) fn successor(self) -> (Session, Option<Scored>) {
         let next = self.model.as_ref().and_then(|model| {
-            if let Some(id) = self.needless(model).first() {
-                let index = self.wanted.iter().position(|w| w.id() == *id)?;
-                self.without.get(index).cloned()
-            } else {
-                let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
-                suggested.or_else(|| self.simpler.clone())
+            let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
+            let needless = self.needless(model).into_iter().find(|id| {
+                // The newest may show only together with the next.
+                let newest = self.wanted.last().is_some_and(|w| w.id() == *id);
+                !(newest && suggested.is_some())
+            });
+            if let Some(id) = needless {
+                let index = self.wanted.iter().position(|w| w.id() == id)?;
+                return self.without.get(index).cloned();
             }
+            suggested.or_else(|| self.simpler.clone())
         });
         (self.session, next)
+    }
+
+    /// Models with an effect that lowers the error much, though not beyond chance while the rest is as
+    /// correlated as it is: the best first. Two missing effects may hide each other so.
+    pub(super) fn faint(&self, count: usize) -> Vec<Scored> {
+        let Some(model) = &self.model else {
+            return Vec::new();
+        };
+        let mut seen: Vec<&Scored> = self
+            .tried
+            .iter()
+            .map(|(_, s)| s)
+            .filter(|s| fall(&model.score, &s.score) > LARGE_FALL)
+            .collect();
+        seen.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
+        seen.into_iter().take(count).cloned().collect()
     }
 
     /// Models with another effect that would help too, the best first: where the suggestion may turn
@@ -414,9 +442,37 @@ impl StepJob {
     }
 }
 
+/// Whether a part of an effect does in place of the whole: as well, or so that noise alone is left.
+fn enough(whole: &Scored, part: &Scored) -> bool {
+    alike(whole, part) || is_plain_noise(&part.score)
+}
+
 /// Whether two models leave the same error within noise.
 fn alike(a: &Scored, b: &Scored) -> bool {
     same(&a.score, a.fit.values.len(), &b.score, b.fit.values.len())
+}
+
+/// Relative difference of error up to which two models do exactly the same.
+const TIED: f64 = 1e-3;
+
+/// Whether two models leave the same error for all that can be computed.
+fn tied(a: &Scored, b: &Scored) -> bool {
+    (a.score.error / b.score.error - 1.0).abs() < TIED
+}
+
+/// Relative difference of inertia (of a process: gain and time constant) up to which two models speak of
+/// the same body.
+const SAME_BODY: f64 = 0.2;
+
+/// Whether two models agree on the body, which the user knows roughly: with two levels of input a huge
+/// dead zone looks like a small load, on a motor half as heavy.
+fn same_body(a: &Scored, b: &Scored) -> bool {
+    let essential = match a.fit.structure.kind {
+        Kind::Drive => 1,
+        Kind::Process => 2,
+    };
+    let pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
+    pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
 }
 
 /// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how

@@ -96,7 +96,8 @@ impl Structure {
             Kind::Process => 1,
         };
         let limit = |value: &mut f64, present: f64| {
-            *value = value.clamp(present / STEP_FACTOR, present * STEP_FACTOR);
+            let (a, b) = (present / STEP_FACTOR, present * STEP_FACTOR);
+            *value = value.max(a.min(b)).min(a.max(b));
         };
         limit(&mut values[j], present[j]);
         for (index, effect) in self.effects.iter().enumerate() {

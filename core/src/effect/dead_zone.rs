@@ -52,6 +52,6 @@ impl Effect for DeadZone {
         let zone = values[0];
         model
             .input_maps
-            .push(Box::new(move |u| u - u.clamp(-zone, zone)));
+            .push(Box::new(move |u| u - u.max(-zone).min(zone)));
     }
 }

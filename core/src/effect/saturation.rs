@@ -52,6 +52,6 @@ impl Effect for Saturation {
         let limit = values[0];
         model
             .input_maps
-            .push(Box::new(move |u| u.clamp(-limit, limit)));
+            .push(Box::new(move |u| u.max(-limit).min(limit)));
     }
 }

@@ -49,5 +49,7 @@ impl Effect for SecondLag {
 
     fn apply(&self, values: &[f64], model: &mut Model) {
         model.lag = Some(values[0]);
+        // Both storages are the process's: a load fills the one after the other.
+        model.load_before_lag = true;
     }
 }

@@ -112,7 +112,7 @@ pub struct ParameterSpec {
 
 /// A displacement counts as short up to this many times that which a sample crosses after a reversal:
 /// more than that can be seen building up sample by sample.
-pub const SHORT_CROSSINGS: f64 = 3.0;
+pub const SHORT_CROSSINGS: f64 = 8.0;
 
 /// Below this share of it the contact cannot be told from a rigid one.
 pub const RIGID_CROSSINGS: f64 = 0.04;

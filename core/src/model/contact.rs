@@ -23,7 +23,7 @@ const SLIP_SHARE: f64 = 1e-3;
 const PIECE: f64 = 0.12;
 
 /// Longest piece in units of `s`, and in radians of the contact's oscillation.
-const LONGEST_PIECE: f64 = 0.3;
+const LONGEST_PIECE: f64 = 1.0;
 const PIECE_RADIANS: f64 = 0.35;
 
 /// The contact of one body.
@@ -70,7 +70,7 @@ impl Contact {
     /// Deflection after a known displacement `moved` at friction `level`.
     pub fn followed(&self, deflection: f64, moved: f64, level: f64) -> f64 {
         let limit = level / self.stiffness;
-        let z = deflection.clamp(-limit, limit);
+        let z = deflection.max(-limit).min(limit);
         let steady = limit * moved.signum();
         steady + (z - steady) * (-moved.abs() / limit).exp()
     }
@@ -93,11 +93,12 @@ impl Contact {
     ) {
         // The stiffness stays, so a lower level is reached at a smaller deflection.
         let limit = level / self.stiffness;
-        *deflection = deflection.clamp(-limit, limit);
+        *deflection = deflection.max(-limit).min(limit);
         let acting = Acting { w, force, level };
         let mut left = h;
         for _ in 0..MAX_PIECES {
-            if left <= 0.0 {
+            // Also where a wild state has made it no number.
+            if left.is_nan() || left <= 0.0 {
                 return;
             }
             let direction = if motion.v == 0.0 {
@@ -163,7 +164,7 @@ impl Contact {
         if moved * direction > 0.0 {
             *deflection = bent(moved);
         } else {
-            *deflection = (z + moved).clamp(-limit, limit);
+            *deflection = (z + moved).max(-limit).min(limit);
         }
         *motion = Motion {
             x: start.x + moved,

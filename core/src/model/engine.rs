@@ -139,7 +139,7 @@ impl<'m> Engine<'m> {
                 .map_or(f64::INFINITY, |load| load.longest_step(model.inertia)),
             plain: model.load.is_none()
                 && model.forces.is_empty()
-                && model.force_ramp == 0.0
+                && model.late_load().1 == 0.0
                 && model.friction.static_excess == 0.0,
             model,
         }
@@ -180,7 +180,7 @@ impl<'m> Engine<'m> {
         }
         if self.plain {
             let held = Held {
-                body: self.model.constant_force,
+                body: self.model.late_load().0,
                 load: 0.0,
                 level: self.model.friction.level,
             };
@@ -235,8 +235,9 @@ impl<'m> Engine<'m> {
             load.coupling.force(state.twist, v - state.load.v)
         });
         let own: f64 = model.forces.iter().map(|f| f(x, v)).sum();
+        let (constant, rise) = model.late_load();
         Held {
-            body: model.constant_force + model.force_ramp * state.time + own - between,
+            body: constant + rise * state.time + own - between,
             load: between,
             level: model.friction.level_at(v),
         }

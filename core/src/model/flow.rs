@@ -230,7 +230,7 @@ impl Flow {
         } else {
             ratio.ln_1p() / self.lambda
         };
-        time.clamp(0.0, until)
+        time.max(0.0).min(until)
     }
 
     /// Acceleration in state `m`.

@@ -73,6 +73,9 @@ pub struct Model {
     pub constant_force: f64,
     /// Its rise per second, counted from the first sample.
     pub force_ramp: f64,
+    /// Whether these two act before the lag, as a load on a process with two storages does, or after it,
+    /// as a load on a drive behind its actuator.
+    pub load_before_lag: bool,
     /// Dry friction at the body.
     pub friction: DryFriction,
     /// Further forces on the body.
@@ -97,6 +100,7 @@ impl Model {
             lag: None,
             constant_force: 0.0,
             force_ramp: 0.0,
+            load_before_lag: false,
             friction: DryFriction::default(),
             forces: Vec::new(),
             load: None,
@@ -108,6 +112,24 @@ impl Model {
     /// Input after the static maps.
     pub fn map_input(&self, u: f64) -> f64 {
         self.input_maps.iter().fold(u, |u, map| map(u))
+    }
+
+    /// Constant force and ramp that the lag passes on, `t` seconds after the first sample.
+    fn early_load(&self, t: f64) -> f64 {
+        if self.load_before_lag {
+            self.constant_force + self.force_ramp * t
+        } else {
+            0.0
+        }
+    }
+
+    /// Constant force and its rise per second that act on the body itself.
+    fn late_load(&self) -> (f64, f64) {
+        if self.load_before_lag {
+            (0.0, 0.0)
+        } else {
+            (self.constant_force, self.force_ramp)
+        }
     }
 
     /// Output after the static maps.
@@ -126,6 +148,7 @@ impl std::fmt::Debug for Model {
             .field("lag", &self.lag)
             .field("constant_force", &self.constant_force)
             .field("force_ramp", &self.force_ramp)
+            .field("load_before_lag", &self.load_before_lag)
             .field("friction", &self.friction)
             .field("forces", &self.forces.len())
             .field("load", &self.load)

@@ -172,14 +172,17 @@ impl Excitation {
             let Some((from, end)) = runs.peek() else {
                 break;
             };
+            // Held at its value in the middle of the interval.
+            let end_of_step = self.time[(i + 1).min(self.len() - 1)];
+            let load = model.early_load(f64::midpoint(self.time[i], end_of_step) - self.time[0]);
             if *from > i {
-                path.pieces(i, |w, h| state.wait(model, w, h));
+                path.pieces(i, |w, h| state.wait(model, w + load, h));
                 continue;
             }
             position[i] = state.position();
             velocity[i] = state.velocity();
             if i + 1 < *end || (i + 1 == *end && i + 1 < self.len()) {
-                path.pieces(i, |w, h| engine.advance(&mut state, w, h));
+                path.pieces(i, |w, h| engine.advance(&mut state, w + load, h));
             }
         }
         if !model.output_maps.is_empty() {
@@ -253,7 +256,7 @@ struct Bristle<'e> {
 impl Bristle<'_> {
     fn follow(&mut self, measured: f64, h: f64, friction: &DryFriction) {
         let width = TREMBLING * self.noise;
-        let position = self.position.clamp(measured - width, measured + width);
+        let position = self.position.max(measured - width).min(measured + width);
         let moved = position - self.position;
         self.position = position;
         if moved != 0.0 {
