@@ -472,7 +472,9 @@ fn same_body(a: &Scored, b: &Scored) -> bool {
         Kind::Process => 2,
     };
     let pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
-    pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
+    pairs
+        .into_iter()
+        .all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
 }
 
 /// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how

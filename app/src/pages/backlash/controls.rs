@@ -11,6 +11,9 @@ use super::scene::MILLI;
 use crate::hook::Targets;
 use crate::theme;
 
+/// Width below which the playback stands in two rows, points.
+const NARROW_PLAYBACK: f32 = 520.0;
+
 /// Values that a contact begins with when its kind is chosen.
 const STIFFNESS: f64 = 1500.0;
 const DAMPING: f64 = 0.2;
@@ -39,7 +42,7 @@ impl Backlash {
     /// The paper's figures, one click each.
     fn figures_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("From the paper:");
+            ui.label("Paper:");
             for figure in figures() {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
@@ -219,8 +222,10 @@ impl Backlash {
         }
     }
 
+    /// Play, pause, step and speed; the speed beneath where the window is narrow.
     pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
-        ui.horizontal_wrapped(|ui| {
+        let narrow = ui.available_width() < NARROW_PLAYBACK;
+        ui.horizontal(|ui| {
             let label = if self.playing { "Pause" } else { "Play" };
             let button = ui.button(label);
             targets.note("gap:play", ui, &button);
@@ -238,14 +243,23 @@ impl Backlash {
             if ui.button("From the start").clicked() {
                 self.clock = 0.0;
             }
-            ui.add(
-                egui::Slider::new(&mut self.speed, 0.001..=2.0)
-                    .logarithmic(true)
-                    .suffix(" x"),
-            )
-            .on_hover_text("Speed of the playback, times real time");
-            ui.label(format!("t = {:.4} s", self.clock));
+            if !narrow {
+                self.speed_ui(ui);
+            }
         });
+        if narrow {
+            ui.horizontal(|ui| self.speed_ui(ui));
+        }
+    }
+
+    fn speed_ui(&mut self, ui: &mut egui::Ui) {
+        ui.add(
+            egui::Slider::new(&mut self.speed, 0.001..=2.0)
+                .logarithmic(true)
+                .suffix(" x"),
+        )
+        .on_hover_text("Speed of the playback, times real time");
+        ui.label(format!("t = {:.4} s", self.clock));
     }
 
     fn step_to_next_event(&mut self) {

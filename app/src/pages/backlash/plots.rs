@@ -164,11 +164,11 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         ui.label("The load was not measured: there is no map.");
         return;
     }
-    caption_ui(
-        ui,
-        "Backlash map",
-        &[("x2 over x1", LOAD), ("ends of the gap", CONTACT)],
-    );
+    let mut curves = vec![("x2 over x1", LOAD)];
+    if scene.input().is_some() {
+        curves.push(("ends of the gap", CONTACT));
+    }
+    caption_ui(ui, "Backlash map", &curves);
     let [low, high] = scene.range;
     let load = scene.load_range;
     still("map", "motor x1 [mrad]", "load x2 [mrad]", height).show(ui, |plot| {

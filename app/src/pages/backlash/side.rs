@@ -1,10 +1,15 @@
 //! The panel beside the plots: a measurement that is open, or what can be set.
 
+use hysteron_core::backlash::GapEstimate;
 use hysteron_core::drive::{Command, drifting_test};
 
 use super::Backlash;
 use super::files::BUILT_IN;
+use super::scene::MILLI;
 use crate::hook::Targets;
+
+/// Crossings that are listed.
+const LISTED: usize = 12;
 
 /// Length of the sliders, points: their labels stand beside them.
 const SLIDER: f32 = 120.0;
@@ -34,6 +39,9 @@ impl Backlash {
         }
         if self.estimation.is_some() {
             ui.spinner();
+        }
+        if let Some(Ok(estimate)) = self.scene.as_ref().and_then(|s| s.estimate.as_ref()) {
+            traverses_ui(ui, estimate);
         }
         let back = ui.button("Back to the simulation");
         targets.note("gap:back", ui, &back);
@@ -94,4 +102,26 @@ impl Backlash {
             }
         });
     }
+}
+
+/// The gap by every crossing.
+fn traverses_ui(ui: &mut egui::Ui, estimate: &GapEstimate) {
+    if estimate.traverses.is_empty() {
+        return;
+    }
+    egui::Grid::new("traverses")
+        .striped(true)
+        .num_columns(3)
+        .show(ui, |ui| {
+            for title in ["left at [s]", "reached at [s]", "gap [mrad]"] {
+                ui.strong(title);
+            }
+            ui.end_row();
+            for t in estimate.traverses.iter().take(LISTED) {
+                ui.label(format!("{:.3}", t.from.time));
+                ui.label(format!("{:.3}", t.to.time));
+                ui.label(format!("{:.2} ± {:.2}", MILLI * t.gap, MILLI * t.std_error));
+                ui.end_row();
+            }
+        });
 }
