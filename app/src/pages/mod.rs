@@ -40,8 +40,8 @@ pub fn registry() -> Vec<Box<dyn View>> {
         Box::<explore::Explore>::default(),
         Box::<maps::Maps>::default(),
         Box::<tune::Tune>::default(),
-        Box::<backlash::Backlash>::default(),
         Box::<compare::Compare>::default(),
+        Box::<backlash::Backlash>::default(),
     ]
 }
 

@@ -73,10 +73,14 @@ impl Step {
             });
             let scale = h / (k + 1) as f64;
             if free1 {
-                step.v1[k + 1] = scale * (first * push1 - l1 * v1 - force * j1);
+                let rate = first * push1 - l1 * v1 - force * j1;
+                let forces = (u.abs() + motor.coulomb + force.abs()) * j1;
+                step.v1[k + 1] = scale * at_break_away(rate, k == 0 && v1 == 0.0, forces);
             }
             if free2 {
-                step.v2[k + 1] = scale * (first * push2 - l2 * v2 + force * j2);
+                let rate = first * push2 - l2 * v2 + force * j2;
+                let forces = (load.coulomb + force.abs()) * j2;
+                step.v2[k + 1] = scale * at_break_away(rate, k == 0 && v2 == 0.0, forces);
             }
             step.gap[k + 1] = scale * (v1 - v2);
             let term_v = step.v1[k + 1].abs().max(step.v2[k + 1].abs());
@@ -161,6 +165,19 @@ impl Step {
             value(&self.v2[..self.terms], z),
             value(&self.gap[..self.terms], z),
         ]
+    }
+}
+
+/// Share of the forces below which they count as balanced.
+const BALANCED: f64 = 1e-12;
+
+/// The acceleration of a mass that may just break away: at rest, with forces that balance its friction, it
+/// is zero, and round-off must not choose the direction. What the forces do next does.
+fn at_break_away(rate: f64, at_rest: bool, forces: f64) -> f64 {
+    if at_rest && rate.abs() <= BALANCED * forces {
+        0.0
+    } else {
+        rate
     }
 }
 

@@ -142,7 +142,7 @@ pub struct DriveInput {
 
 /// Events after which a run is cut, unless the caller says otherwise; 12 s of a drifting drive have
 /// some 30,000.
-pub const MAX_EVENTS: usize = 2_000_000;
+pub const MAX_EVENTS: usize = 500_000;
 
 /// Samples that a run may have.
 pub const MAX_SAMPLES: f64 = 10_000_000.0;

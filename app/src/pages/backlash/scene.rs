@@ -63,7 +63,7 @@ impl Scene {
     /// A simulated drive, with the claim of a figure checked on it.
     pub fn simulated(input: DriveInput, run: DriveRun, figure: Option<u32>) -> Self {
         let summary = summarize(&input, &run);
-        let lesson = lesson(&input, &summary);
+        let lesson = lesson(&input, &run, &summary);
         let checks = figure.map_or_else(Vec::new, |n| checks(n, &input, &run, &summary));
         let simulated = Simulated {
             input,

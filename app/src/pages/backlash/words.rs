@@ -1,6 +1,6 @@
 //! What the page says.
 
-use hysteron_core::drive::{Command, Direction, DriveInput, Summary};
+use hysteron_core::drive::{Command, Direction, DriveInput, DriveRun, Summary};
 
 use super::scene::{MILLI, Scene};
 
@@ -55,7 +55,12 @@ fn digits(value: f64, error: f64) -> String {
 }
 
 /// Which way the cycle drifts, and what that means.
-pub fn lesson(input: &DriveInput, summary: &Summary) -> String {
+pub fn lesson(input: &DriveInput, run: &DriveRun, summary: &Summary) -> String {
+    if let Some(time) = run.chattering {
+        return format!(
+            "The run was cut at {time:.3} s: there it switches or bounces without end. Some loss at impact (restitution below 1), or a delay, would end that."
+        );
+    }
     let Command::Relay(relay) = input.command else {
         return String::new();
     };

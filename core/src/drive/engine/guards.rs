@@ -19,10 +19,13 @@ pub(super) enum Guard {
     Relax,
 }
 
-/// Share of the fastest speed below which a rebound counts as none: with loss at every impact, and
-/// without (round-off).
+/// Share of the fastest speed below which a rebound counts as none.
 const NO_BOUNCE: f64 = 1e-9;
-const NO_ELASTIC_BOUNCE: f64 = 1e-13;
+
+/// The same where rebounds lose next to nothing, [`LASTING`] or more: pressed together, such masses would go on
+/// trembling for as long as the pressure lasts. What is lost is 1e-12 of the energy.
+const NO_LASTING_BOUNCE: f64 = 1e-6;
+const LASTING: f64 = 0.99;
 
 impl DriveJob {
     /// The first guard that a step meets, and where; its end and `None` if it meets none.
@@ -205,12 +208,13 @@ impl DriveJob {
         let s = &mut self.state;
         let before = self.drive.kinetic_energy(s.v1, s.v2);
         let approach = sign * (s.v1 - s.v2);
-        let least = if restitution < 1.0 {
+        let least = if restitution < LASTING {
             NO_BOUNCE
         } else {
-            NO_ELASTIC_BOUNCE
+            NO_LASTING_BOUNCE
         };
-        let stays = restitution * approach <= least * self.fastest;
+        // Without a gap there is no room to bounce.
+        let stays = self.drive.half_gap == 0.0 || restitution * approach <= least * self.fastest;
         if stays {
             let common = (j1 * s.v1 + j2 * s.v2) / (j1 + j2);
             (s.v1, s.v2) = (common, common);
