@@ -250,9 +250,12 @@ fn the_interval_holds_the_truth_over_seeds() {
     assert!(covered(&rigs) >= 10);
 }
 
+/// Such a load may rattle to and fro faster than the motor drifts. Gap and speed of the load can then be
+/// scaled together nearly as one likes: the estimate is less good, and its interval must say so.
 #[test]
 fn a_load_without_dry_friction_flies_between_the_contacts() {
-    let rig = |seed| {
+    let mut held = 0;
+    for seed in 400..404 {
         let base = with_gap(0.012, seed);
         let load = base.load.map(|load| Load {
             coulomb: 0.0,
@@ -260,9 +263,13 @@ fn a_load_without_dry_friction_flies_between_the_contacts() {
             inertia: 8.8e-4,
             ..load
         });
-        (0.012, DriveRig { load, ..base })
-    };
-    assert!(covered(&[rig(400), rig(401), rig(402)]) >= 2);
+        let estimate = estimate(&DriveRig { load, ..base }.measure());
+        let gap = estimate.gap.unwrap();
+        assert!((gap / 0.012 - 1.0).abs() < 0.1, "{}", estimate.text);
+        let [low, high] = estimate.interval.unwrap();
+        held += usize::from(low < 0.012 && 0.012 < high);
+    }
+    assert!(held >= 3);
 }
 
 #[test]
