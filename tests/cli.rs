@@ -257,3 +257,100 @@ fn an_unfinished_diagnosis_can_be_shown() {
     diagnosis.noise_floor = f64::INFINITY;
     assert!(render(&diagnosis, "rig.csv", &[]).contains("unknown"));
 }
+
+fn gap(file: &Path, arguments: &[&str]) -> Output {
+    hysteron()
+        .arg("gap")
+        .arg(file)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn asset(name: &str) -> PathBuf {
+    data("../../assets/measurements").join(name)
+}
+
+#[test]
+fn the_gap_keeps_the_contract() {
+    let output = gap(&asset("drive-10.csv"), &["--format", "json"]);
+    assert!(output.status.success() && output.stderr.is_empty());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["schema"], 1);
+    assert!(
+        (json["gap"].as_f64().unwrap() / 0.012 - 1.0).abs() < 0.05,
+        "{json}"
+    );
+    assert!(json["std_error"].as_f64().unwrap() < 0.05 * 0.012, "{json}");
+    assert_eq!(
+        (&json["unit"], &json["traverses"]),
+        (&"rad".into(), &3.into())
+    );
+    assert!(
+        json["text"]
+            .as_str()
+            .unwrap()
+            .contains("three traverses agree")
+    );
+
+    let output = gap(&data("drive-02.csv"), &["--format", "json"]);
+    assert!(output.status.success());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["schema"], 1);
+    assert!(
+        json["gap"].is_null() && json["std_error"].is_null(),
+        "{json}"
+    );
+    assert_eq!(
+        (&json["unit"], &json["traverses"]),
+        (&"rad".into(), &0.into())
+    );
+    assert!(
+        json["text"]
+            .as_str()
+            .unwrap()
+            .contains("no engagement seen")
+    );
+}
+
+#[test]
+fn the_gap_in_words() {
+    let output = gap(&asset("drive-03.csv"), &[]);
+    assert!(output.status.success() && output.stderr.is_empty());
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.starts_with("drive-03.csv: the gap is 0.019"), "{text}");
+    for part in [
+        "if the motor stood in its middle at the start",
+        "95 % interval",
+        "pushed one way at most",
+    ] {
+        assert!(text.contains(part), "expected '{part}' in {text}");
+    }
+    let text =
+        String::from_utf8(gap(&asset("drive-10.csv"), &["--format", "text"]).stdout).unwrap();
+    assert!(
+        text.contains("reached [s]") && text.contains("By the backlash map"),
+        "{text}"
+    );
+}
+
+#[test]
+fn bad_input_for_a_gap_is_one_line_and_code_2() {
+    refused(
+        &gap(Path::new("no-such-file.csv"), &[]),
+        &["no-such-file.csv", "cannot be read"],
+    );
+    refused(
+        &gap(&data("process-01.csv"), &[]),
+        &["process-01.csv", "a process has no gap", "x1 or v1"],
+    );
+    refused(
+        &gap(&written("gap-empty.csv", b""), &[]),
+        &["gap-empty.csv", "empty"],
+    );
+    refused(&gap(&data("drive-02.csv"), &["--format", "xml"]), &["xml"]);
+    refused(
+        &hysteron().arg("gap").output().unwrap(),
+        &["FILE.csv", "--help"],
+    );
+}

@@ -35,7 +35,7 @@ const FREE: f64 = 0.25;
 /// the force in a contact that may act there.
 const ABOUT: f64 = 0.35;
 const LEAST_ABOUT: f64 = 4.0;
-const SHARP: f64 = 0.3;
+const SHARP: f64 = 0.12;
 
 /// Samples after the end of a contact in which a little push may be left.
 const TAIL_SAMPLES: usize = 2;

@@ -38,7 +38,7 @@ const FEWEST_CONTACTS: usize = 3;
 /// Crossings of the gap within so many cycles, from how many on the load rattles, and the relative error
 /// that this leaves; seen with independent rigs.
 const RATTLE_CYCLES: f64 = 20.0;
-const RATTLES: usize = 40;
+const RATTLES: usize = 20;
 const RATTLE_ERROR: f64 = 0.05;
 
 /// Speed at the start, of the cycle's, up to which the motor starts at rest.
