@@ -193,3 +193,87 @@ fn what_is_no_scenario_is_one_line_with_its_place() {
         assert_eq!(output.status.code(), Some(2));
     }
 }
+
+#[test]
+fn a_drive_is_simulated_into_what_a_rig_would_have_recorded() {
+    let csv = Path::new(env!("CARGO_TARGET_TMPDIR")).join("drive.csv");
+    let said = text(&hysteron(
+        "simulate",
+        &scenario("drive-drifting.toml"),
+        &["--csv", csv.to_str().unwrap()],
+    ));
+    assert!(said.contains("crosses the gap 3 times"), "{said}");
+    let written = std::fs::read(&csv).unwrap();
+    let measurement = hysteron_core::measurement::import_csv("drive.csv", &written, None).unwrap();
+    assert_eq!(measurement.kind, hysteron_core::measurement::Kind::Drive);
+    assert_eq!(measurement.len(), 40_001);
+    // The map of both positions shows the gap.
+    let map = hysteron_core::backlash::backlash_map(&measurement).unwrap();
+    let gap = map.gap.expect("both ends were met");
+    assert!((gap / 0.019 - 1.0).abs() < 0.02, "{gap}");
+}
+
+#[test]
+fn the_cycle_of_a_drive_in_its_gap_by_hand() {
+    // m = 8.8e-4, d small, eps = 0.5, k+ = 0.65 and k- = 0.35 less or more friction 0.03:
+    // T = m eps (1/0.62 + 1/0.38 + 1/0.68 + 1/0.32), the drift 1/2 m eps^2 (1/0.62 + 1/0.38 - ...).
+    let found = limit_cycle("drive-drifting.toml");
+    let (p, q) = (1.0 / 0.62 + 1.0 / 0.38, 1.0 / 0.68 + 1.0 / 0.32);
+    let exact = &found["exact"][0];
+    close(&exact["period"], 8.8e-4 * 0.5 * (p + q), 1e-3);
+    close(&exact["drift"], 0.5 * 8.8e-4 * 0.25 * (p - q), 0.03);
+    assert_eq!(found["exists"], true);
+    assert!(
+        found["text"]
+            .as_str()
+            .unwrap()
+            .contains("against the stronger push")
+    );
+}
+
+#[test]
+fn what_is_no_drive_is_one_line_with_its_place() {
+    let masses = "motor = { inertia = 1e-3 }\nload = { inertia = 1e-3 }\n";
+    let relay = "[relay]\ngain = 0.5\nhysteresis = 0.5\n";
+    for (name, content, parts) in [
+        (
+            "drive-and-plant.toml",
+            format!("[drive]\n{masses}half_gap = 0.01\n[plant]\nformula = \"1/s\"\n{relay}"),
+            vec!["[drive] as well"],
+        ),
+        (
+            "drive-inertia.toml",
+            format!(
+                "[drive]\nmotor = {{ inertia = 0.0 }}\nload = {{ inertia = 1e-3 }}\nhalf_gap = 0.01\n{relay}"
+            ),
+            vec!["[drive]", "motor inertia is 0", "above 0"],
+        ),
+        (
+            "drive-typo.toml",
+            format!("[drive]\n{masses}halfgap = 0.01\n{relay}"),
+            vec!["line 4", "halfgap", "half_gap"],
+        ),
+        (
+            "drive-flip.toml",
+            format!("[drive]\n{masses}half_gap = 0.01\n{relay}flip = -1.0\n"),
+            vec!["[relay]", "flip is -1"],
+        ),
+        (
+            "drive-start.toml",
+            format!("[drive]\n{masses}half_gap = 0.01\n{relay}[run]\nstart = {{ x1 = 1.0 }}\n"),
+            vec!["[run]", "start x1 - x2 is 1", "half gap"],
+        ),
+    ] {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::write(&path, content).unwrap();
+        for command in ["simulate", "limit-cycle"] {
+            let output = hysteron(command, &path, &[]);
+            let line = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{name}: {line}");
+            assert_eq!(line.lines().count(), 1, "{line}");
+            for part in &parts {
+                assert!(line.contains(part), "{name}: expected '{part}' in: {line}");
+            }
+        }
+    }
+}

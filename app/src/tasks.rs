@@ -1,10 +1,12 @@
 //! Long computations by name: what they need, what they do, what they say meanwhile. The same code runs
 //! on a thread natively and in the worker on the web, which gets its tasks as JSON text.
 
+use hysteron_core::backlash::{GapEstimate, estimate_gap};
 use hysteron_core::criticism::{Progress, StepJob, StepReport};
+use hysteron_core::drive::{DriveInput, Recorder, record};
 use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, MapJob, Tile};
-use hysteron_core::measurement::Measurement;
+use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::tuning::{TuningInput, TuningReport, tune};
 use hysteron_core::user_model::UserModel;
 use serde::de::DeserializeOwned;
@@ -117,6 +119,49 @@ impl Task for TuneTask {
         say(match tune(&self.0) {
             Ok(report) => News::Report(Box::new(report)),
             Err(error) => News::Failed(error.to_string()),
+        });
+    }
+}
+
+/// Estimates a gap from the motor's columns alone.
+#[derive(Serialize, Deserialize)]
+pub enum GapTask {
+    /// Of a simulated drive, recorded as a rig would.
+    Simulated(Box<DriveInput>),
+    /// Of a file: its name and its text.
+    File(String, String),
+}
+
+/// What the motor tells about the gap.
+#[derive(Serialize, Deserialize)]
+pub struct GapReport {
+    /// What was read, where a file was.
+    pub measurement: Option<Measurement>,
+    /// The estimate, or why there can be none.
+    pub estimate: Result<GapEstimate, String>,
+}
+
+impl Task for GapTask {
+    const NAME: &'static str = "gap";
+    type Report = GapReport;
+
+    fn run(self, say: Say<'_, GapReport>) {
+        let (read, keep) = match self {
+            Self::Simulated(input) => (
+                record(&input, &Recorder::default()).map_err(|e| e.to_string()),
+                false,
+            ),
+            Self::File(name, text) => (
+                import_csv(&name, text.as_bytes(), None).map_err(|e| e.to_string()),
+                true,
+            ),
+        };
+        say(match read {
+            Ok(measurement) => News::Report(Box::new(GapReport {
+                estimate: estimate_gap(&measurement).map_err(|e| e.to_string()),
+                measurement: keep.then_some(measurement),
+            })),
+            Err(error) => News::Failed(error),
         });
     }
 }

@@ -10,7 +10,6 @@
 //! | [`plant`] | what does it act on? |
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
-//! | [`scenario`] | a loop in a file |
 //! | [`tuning`] | how do I tune a controller from it? |
 //! | [`explore`] | everything about one loop at once |
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
@@ -18,6 +17,9 @@
 //! | [`measurement`] | what was measured? |
 //! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
+//! | [`drive`] | what does a drive with a hidden gap do? |
+//! | [`scenario`] | a loop or a drive in a file |
+//! | [`backlash`] | how wide is the hidden gap? |
 //! | [`effect`] | which physics can be added? |
 //! | [`user_model`] | what does the user know of the model? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
@@ -26,6 +28,7 @@
 
 pub mod backlash;
 pub mod criticism;
+pub mod drive;
 pub mod effect;
 pub mod explore;
 pub mod figures;

@@ -20,10 +20,15 @@
 //! initial = [0.0, 0.0, 0.0]              # state; at rest if left out
 //! noise = { std_dev = 0.01, interval = 0.01, seed = 1 }
 //! ```
+//!
+//! With `[drive]` in place of `[plant]` it is a motor and a load with play between them, under a relay on
+//! the motor's velocity; see [`crate::drive`] for its parameters.
 
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
+use crate::drive::{DriveError, DriveFile, DriveInput};
 use crate::plant::{
     MAX_ORDER, ParseError, PlantError, StateSpace, TransferFunction, ZeroPoleGain, parse,
 };
@@ -41,6 +46,43 @@ pub struct Scenario {
     pub relay: Relay,
     /// How to run it.
     pub options: Options,
+}
+
+/// What a file can hold.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyScenario {
+    /// A relay loop around a linear plant.
+    Loop(Box<Scenario>),
+    /// A drive with a hidden gap.
+    Drive(Box<DriveInput>),
+}
+
+impl AnyScenario {
+    /// Reads a scenario: a drive if it has a table `[drive]`, else a loop.
+    ///
+    /// # Errors
+    /// Line and column of what is no TOML or not expected, or the table and value that cannot be.
+    pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
+        #[derive(Deserialize)]
+        struct Tables {
+            drive: Option<IgnoredAny>,
+            plant: Option<IgnoredAny>,
+        }
+        let tables: Tables = toml::from_str(text).map_err(|e| located(text, &e))?;
+        match (tables.drive, tables.plant) {
+            (Some(_), Some(_)) => Err(ScenarioError::Form(
+                "there is a [drive] as well; a scenario has one of both",
+            )),
+            (Some(_), None) => {
+                let file: DriveFile = toml::from_str(text).map_err(|e| located(text, &e))?;
+                let input = file
+                    .input()
+                    .map_err(|(table, error)| ScenarioError::Drive { table, error })?;
+                Ok(Self::Drive(Box::new(input)))
+            }
+            _ => Ok(Self::Loop(Box::new(Scenario::from_toml(text)?))),
+        }
+    }
 }
 
 /// Why a file is no scenario.
@@ -74,6 +116,14 @@ pub enum ScenarioError {
     /// The run.
     #[error("[run]: {0}")]
     Run(SimulateError),
+    /// A drive, its relay or its run.
+    #[error("{table}: {error}")]
+    Drive {
+        /// Where it stands.
+        table: &'static str,
+        /// What is wrong.
+        error: DriveError,
+    },
 }
 
 #[derive(Deserialize)]

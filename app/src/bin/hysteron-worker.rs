@@ -20,7 +20,7 @@ mod web {
     use wasm_bindgen::prelude::*;
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
-    use crate::tasks::{MapTask, News, READY, StepTask, Task, TuneTask};
+    use crate::tasks::{GapTask, MapTask, News, READY, StepTask, Task, TuneTask};
 
     /// Share of progress below which nothing new is said.
     const PROGRESS_STEP: f64 = 0.01;
@@ -54,6 +54,7 @@ mod web {
         match name.as_str() {
             StepTask::NAME => run::<StepTask>(scope, task),
             MapTask::NAME => run::<MapTask>(scope, task),
+            GapTask::NAME => run::<GapTask>(scope, task),
             TuneTask::NAME => run::<TuneTask>(scope, task),
             _ => Err(serde::de::Error::custom(format!(
                 "no task is called {name}"

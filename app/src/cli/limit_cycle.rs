@@ -6,9 +6,11 @@ use std::path::PathBuf;
 
 use hysteron_core::limit_cycle::{Prediction, describing_function, dominant, predict};
 use hysteron_core::relay::Relay;
-use hysteron_core::scenario::Scenario;
+use hysteron_core::scenario::{AnyScenario, Scenario};
 use hysteron_core::simulate::Options;
 use serde_json::json;
+
+use super::limit_cycle_drive::DriveReport;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
@@ -21,7 +23,7 @@ const SETTLED: f64 = 1e-6;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Loop to predict: tables [plant] and [relay]
+    /// Loop or drive to predict: tables [plant] or [drive], and [relay]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
     /// For a person or for a program
@@ -51,11 +53,22 @@ struct Report {
 
 /// The report, or one line that says what is wrong with the input.
 pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
-    let scenario = super::simulate::read(&arguments.file)?;
-    let report = report(&scenario).map_err(|e| format!("{}: {e}", arguments.file.display()))?;
-    Ok(match arguments.format {
-        Format::Text => text(&report),
-        Format::Json => format!("{:#}\n", json(&report)),
+    let located = |e| format!("{}: {e}", arguments.file.display());
+    Ok(match super::simulate::read(&arguments.file)? {
+        AnyScenario::Loop(scenario) => {
+            let report = report(&scenario).map_err(located)?;
+            match arguments.format {
+                Format::Text => text(&report),
+                Format::Json => format!("{:#}\n", json(&report)),
+            }
+        }
+        AnyScenario::Drive(input) => {
+            let report = DriveReport::new(&input).map_err(located)?;
+            match arguments.format {
+                Format::Text => report.text(),
+                Format::Json => format!("{:#}\n", report.json()),
+            }
+        }
     })
 }
 

@@ -7,6 +7,7 @@ mod batch;
 mod diagnose;
 mod gap;
 mod limit_cycle;
+mod limit_cycle_drive;
 mod simulate;
 mod text;
 
@@ -30,7 +31,7 @@ struct Arguments {
 enum Command {
     /// Say where a model of a measured system fails and which physical effect is missing.
     Diagnose(diagnose::Arguments),
-    /// Run a relay loop from a file.
+    /// Run a relay loop or a drive from a file.
     Simulate(simulate::Arguments),
     /// Predict a loop's oscillation: describing function, exact, simulated.
     LimitCycle(limit_cycle::Arguments),

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use hysteron_core::scenario::Scenario;
+use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
+use hysteron_core::scenario::AnyScenario;
 use hysteron_core::simulate::Trajectory;
 
 /// Share by which the last two cycles may differ and still count as settled.
@@ -11,7 +12,7 @@ const SETTLED: f64 = 1e-3;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Loop to run: tables [plant], [relay] and [run]
+    /// Loop or drive to run: tables [plant] or [drive], [relay] and [run]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
     /// Where to write time, input and output
@@ -21,25 +22,28 @@ pub(super) struct Arguments {
 
 /// What happened in words, or one line that says what is wrong with the input.
 pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
-    let scenario = read(&arguments.file)?;
     let shown = arguments.file.display();
-    let trajectory = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
-    let mut text = summary(&trajectory);
+    let (mut text, table, samples) = match read(&arguments.file)? {
+        AnyScenario::Loop(scenario) => {
+            let run = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
+            (summary(&run), table(&run), run.time.len())
+        }
+        AnyScenario::Drive(input) => {
+            let run = drive::run(&input).map_err(|e| format!("{shown}: {e}"))?;
+            let said = drive_summary(&input, &run);
+            (said, drive_table(&run), run.time.len())
+        }
+    };
     if let Some(path) = &arguments.csv {
-        std::fs::write(path, table(&trajectory))
+        std::fs::write(path, table)
             .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
-        let _ = writeln!(
-            text,
-            "{} samples written to {}.",
-            trajectory.time.len(),
-            path.display()
-        );
+        let _ = writeln!(text, "{samples} samples written to {}.", path.display());
     }
     Ok(text)
 }
 
 /// Reads a scenario file.
-pub(super) fn read(path: &Path) -> Result<Scenario, String> {
+pub(super) fn read(path: &Path) -> Result<AnyScenario, String> {
     let shown = path.display();
     if path.is_dir() {
         return Err(format!("{shown} is a directory; expected a TOML file"));
@@ -49,7 +53,7 @@ pub(super) fn read(path: &Path) -> Result<Scenario, String> {
         let line = bytes[..e.valid_up_to()].split(|b| *b == b'\n').count();
         format!("{shown}, line {line}: not UTF-8 text; expected a TOML file")
     })?;
-    Scenario::from_toml(text).map_err(|e| format!("{shown}: {e}"))
+    AnyScenario::from_toml(text).map_err(|e| format!("{shown}: {e}"))
 }
 
 fn summary(run: &Trajectory) -> String {
@@ -96,6 +100,52 @@ fn table(run: &Trajectory) -> String {
             u = change[1];
         }
         let _ = writeln!(text, "{t},{u},{y}");
+    }
+    text
+}
+
+/// What a drive did.
+fn drive_summary(input: &DriveInput, run: &DriveRun) -> String {
+    let mut text = String::new();
+    let end = run.time.last().copied().unwrap_or(0.0);
+    let _ = writeln!(
+        text,
+        "{} switches and {} impacts up to {end:.6} s.",
+        run.switches(),
+        run.impacts()
+    );
+    if let Some(time) = run.chattering {
+        let _ = writeln!(
+            text,
+            "It switches without end at {time:.6} s, and the run was cut there."
+        );
+    }
+    let found: Summary = summarize(input, run);
+    if let Some(drift) = found.drifts.first() {
+        let _ = writeln!(
+            text,
+            "In the gap the motor drifts at {:.6e} rad/s (or m/s) from {:.3} s to {:.3} s.",
+            drift.velocity, drift.from, drift.to
+        );
+    }
+    let count = found.traverses.len();
+    if count > 0 {
+        let mean = found.traverses.iter().map(|t| t.travel).sum::<f64>() / count as f64;
+        let _ = writeln!(
+            text,
+            "It crosses the gap {count} times, {mean:.6} rad (or m) from contact to contact; the gap is {:.6}.",
+            2.0 * input.drive.half_gap
+        );
+    }
+    text
+}
+
+/// Torque, motor and load at the sampling instants, in the columns that `hysteron gap` and `diagnose` read.
+fn drive_table(run: &DriveRun) -> String {
+    let mut text = String::from("t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]\n");
+    for (i, t) in run.time.iter().enumerate() {
+        let (u, x1, v1, x2) = (run.input[i], run.x1[i], run.v1[i], run.x2[i]);
+        let _ = writeln!(text, "{t},{u},{x1},{v1},{x2}");
     }
     text
 }

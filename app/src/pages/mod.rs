@@ -1,6 +1,8 @@
 //! One file (or folder) per page. A new page is its file, its `mod` line and its line in [`registry`]:
 //! tabs, links, tests and the state for tests follow from there.
 
+mod backlash;
+mod chart;
 mod compare;
 mod explore;
 mod maps;
@@ -39,6 +41,7 @@ pub fn registry() -> Vec<Box<dyn View>> {
         Box::<maps::Maps>::default(),
         Box::<tune::Tune>::default(),
         Box::<compare::Compare>::default(),
+        Box::<backlash::Backlash>::default(),
     ]
 }
 

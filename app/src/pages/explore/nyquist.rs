@@ -6,7 +6,7 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, PlotTransfo
 use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
-use super::plots::{caption_ui, curve, dot, still};
+use crate::pages::chart::{caption_ui, curve, dot, still};
 use crate::theme;
 
 /// How near the pointer must come to take hold, points.

@@ -1,60 +1,11 @@
 //! Time series and phase portrait, with the place that the playback has reached.
 
-use egui_plot::{
-    AxisHints, HLine, Line, LineStyle, Plot, PlotPoints, Points, VLine, uniform_grid_spacer,
-};
+use egui_plot::{HLine, Line, LineStyle, PlotPoints, VLine};
 use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
+use crate::pages::chart::{caption_ui, curve, dot, still};
 use crate::theme;
-
-/// Points between labels of an axis, where they begin to show and where they are full.
-const LABELS: egui::Rangef = egui::Rangef {
-    min: 28.0,
-    max: 40.0,
-};
-
-pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
-    points.iter().copied().collect()
-}
-
-/// A plot that shows its data and stays where it is.
-pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Plot<'static> {
-    Plot::new(name)
-        .height(height)
-        .custom_x_axes(vec![AxisHints::new_x().label(x).label_spacing(LABELS)])
-        .custom_y_axes(vec![AxisHints::new_y().label(y).label_spacing(LABELS)])
-        .x_grid_spacer(uniform_grid_spacer(|input| grid(input.bounds)))
-        .y_grid_spacer(uniform_grid_spacer(|input| grid(input.bounds)))
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_drag(false)
-}
-
-/// Grid lines at 1, 2 or 5 times a power of ten, some seven across, with a finer and a coarser set.
-fn grid(bounds: (f64, f64)) -> [f64; 3] {
-    let wanted = ((bounds.1 - bounds.0) / 7.0).max(f64::MIN_POSITIVE);
-    let decade = 10_f64.powf(wanted.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|s| s * decade >= wanted)
-        .map_or(wanted, |s| s * decade);
-    [0.5 * step, step, 10.0 * step]
-}
-
-/// Names of the curves in their colours, above a plot: they hide nothing.
-pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[(&str, egui::Color32)]) {
-    ui.horizontal(|ui| {
-        ui.strong(title);
-        for (name, color) in curves {
-            let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 4.0), egui::Sense::hover());
-            ui.painter().rect_filled(rect, 1.0, *color);
-            ui.label(*name);
-        }
-    });
-}
 
 /// Index of the sample at a time.
 fn index_at(data: &ExploreData, clock: f64) -> usize {
@@ -99,11 +50,6 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) 
             plot.points(dot("now", now));
         }
     });
-}
-
-/// The place that the playback has reached.
-pub fn dot(name: &'static str, at: [f64; 2]) -> Points<'static> {
-    Points::new(name, vec![at]).color(theme::MODEL).radius(6.0)
 }
 
 pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64, height: f32) {

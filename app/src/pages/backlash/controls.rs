@@ -1,0 +1,327 @@
+//! What can be set: figure, relay, gap, masses, contact, playback.
+
+use std::ops::RangeInclusive;
+
+use hysteron_core::drive::{Command, Contact, drifting_test, figures};
+
+use hysteron_core::figures::Check;
+
+use super::Backlash;
+use super::scene::MILLI;
+use crate::hook::Targets;
+use crate::theme;
+
+/// Width below which the playback stands in two rows, points.
+const NARROW_PLAYBACK: f32 = 520.0;
+
+/// Values that a contact begins with when its kind is chosen.
+const STIFFNESS: f64 = 1500.0;
+const DAMPING: f64 = 0.2;
+
+impl Backlash {
+    pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        let before = self.input;
+        self.figures_ui(ui, targets);
+        self.lesson_ui(ui);
+        self.files_ui(ui, targets);
+        ui.separator();
+        self.relay_ui(ui);
+        egui::CollapsingHeader::new("Design a drifting test").show(ui, |ui| {
+            if self.design.ui(ui, &mut self.input) {
+                self.clock = 0.0;
+            }
+        });
+        self.gap_ui(ui);
+        self.masses_ui(ui);
+        ui.small("Double-click a slider to reset it.");
+        if self.input != before {
+            self.message = None;
+        }
+    }
+
+    /// The paper's figures, one click each.
+    fn figures_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Paper:");
+            for figure in figures() {
+                let chosen = self.figure == Some(figure.number);
+                let button = ui
+                    .add(egui::Button::new(format!("Fig. {}", figure.number)).selected(chosen))
+                    .on_hover_text(format!("{}: {}", figure.title, figure.claim));
+                targets.note(format!("gap:figure-{}", figure.number), ui, &button);
+                if button.clicked() {
+                    self.scene = None;
+                    self.figure = (!chosen).then_some(figure.number);
+                    if !chosen {
+                        self.input = figure.input;
+                        self.clock = 0.0;
+                    }
+                }
+            }
+        });
+    }
+
+    fn relay_ui(&mut self, ui: &mut egui::Ui) {
+        ui.strong("Relay on the motor's velocity");
+        let normal = drifting_test();
+        let (Command::Relay(relay), Command::Relay(usual)) =
+            (&mut self.input.command, normal.command)
+        else {
+            return;
+        };
+        let r = &mut relay.relay;
+        slider(
+            ui,
+            &mut r.gain,
+            usual.relay.gain,
+            1.0,
+            0.05..=2.0,
+            "gain k [N m]",
+        )
+        .on_hover_text("How strongly the relay pushes");
+        slider(
+            ui,
+            &mut r.asymmetry,
+            usual.relay.asymmetry,
+            1.0,
+            -0.6..=0.6,
+            "asymmetry a",
+        )
+        .on_hover_text("How much stronger it pushes up than down");
+        slider(
+            ui,
+            &mut r.hysteresis,
+            usual.relay.hysteresis,
+            1.0,
+            0.05..=8.0,
+            "hysteresis ε [rad/s]",
+        )
+        .on_hover_text("Speed at which the relay turns the push round");
+        slider(ui, &mut r.delay, 0.0, 1e3, 0.0..=2.0, "delay [ms]")
+            .on_hover_text("How late the push follows the switch");
+        let mut flip = relay.flip.unwrap_or(0.0);
+        let before = flip;
+        slider(
+            ui,
+            &mut flip,
+            usual.flip.unwrap_or(0.0),
+            1.0,
+            0.0..=5.0,
+            "turn round every [s]",
+        )
+        .on_hover_text(
+            "The asymmetry changes its sign, so that the drift turns round; 0 for never",
+        );
+        if flip != before {
+            relay.flip = (flip > 0.0).then_some(flip.max(0.01));
+        }
+        slider(
+            ui,
+            &mut self.input.duration,
+            normal.duration,
+            1.0,
+            0.2..=20.0,
+            "duration [s]",
+        );
+    }
+
+    fn gap_ui(&mut self, ui: &mut egui::Ui) {
+        ui.strong("Gap and contact");
+        let normal = drifting_test().drive;
+        let drive = &mut self.input.drive;
+        slider(
+            ui,
+            &mut drive.half_gap,
+            normal.half_gap,
+            MILLI,
+            0.5..=20.0,
+            "half gap β [mrad]",
+        );
+        ui.horizontal(|ui| {
+            let rigid = matches!(drive.contact, Contact::Rigid { .. });
+            if ui.radio(rigid, "rigid").clicked() && !rigid {
+                drive.contact = normal.contact;
+            }
+            if ui.radio(!rigid, "compliant").clicked() && rigid {
+                drive.contact = Contact::Compliant {
+                    stiffness: STIFFNESS,
+                    damping: DAMPING,
+                };
+            }
+        });
+        match &mut drive.contact {
+            Contact::Rigid { restitution } => {
+                slider(ui, restitution, 1.0, 1.0, 0.0..=1.0, "restitution")
+                    .on_hover_text("Share of the speed with which they part after an impact");
+            }
+            Contact::Compliant { stiffness, damping } => {
+                slider(
+                    ui,
+                    stiffness,
+                    STIFFNESS,
+                    1.0,
+                    50.0..=20_000.0,
+                    "stiffness [N m/rad]",
+                );
+                slider(ui, damping, DAMPING, 1.0, 0.0..=2.0, "damping [N m s/rad]");
+            }
+        }
+        slider(
+            ui,
+            &mut drive.adhesion.upper,
+            0.0,
+            1.0,
+            0.0..=0.2,
+            "adhesion, upper [N m]",
+        )
+        .on_hover_text(
+            "Pull that the upper contact withstands before it parts (adhesive side effect)",
+        );
+        slider(
+            ui,
+            &mut drive.adhesion.lower,
+            0.0,
+            1.0,
+            0.0..=0.2,
+            "adhesion, lower [N m]",
+        );
+    }
+
+    fn masses_ui(&mut self, ui: &mut egui::Ui) {
+        let normal = drifting_test().drive;
+        let drive = &mut self.input.drive;
+        for (name, body, usual) in [
+            ("Motor", &mut drive.motor, normal.motor),
+            ("Load", &mut drive.load, normal.load),
+        ] {
+            ui.strong(name);
+            slider(
+                ui,
+                &mut body.inertia,
+                usual.inertia,
+                1e6,
+                100.0..=5000.0,
+                "inertia [kg mm²]",
+            );
+            slider(
+                ui,
+                &mut body.coulomb,
+                usual.coulomb,
+                1.0,
+                0.0..=0.2,
+                "Coulomb friction [N m]",
+            );
+            slider(
+                ui,
+                &mut body.viscous,
+                usual.viscous,
+                1e3,
+                0.0..=20.0,
+                "viscous [mN m s/rad]",
+            );
+        }
+    }
+
+    /// Play, pause, step and speed; the speed beneath where the window is narrow.
+    pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        let narrow = ui.available_width() < NARROW_PLAYBACK;
+        ui.horizontal(|ui| {
+            let label = if self.playing { "Pause" } else { "Play" };
+            let button = ui.button(label);
+            targets.note("gap:play", ui, &button);
+            if button.clicked() {
+                self.playing = !self.playing;
+            }
+            if ui
+                .button("Step")
+                .on_hover_text("To the next event")
+                .clicked()
+            {
+                self.playing = false;
+                self.step_to_next_event();
+            }
+            if ui.button("From the start").clicked() {
+                self.clock = 0.0;
+            }
+            if !narrow {
+                self.speed_ui(ui);
+            }
+        });
+        if narrow {
+            ui.horizontal(|ui| self.speed_ui(ui));
+        }
+    }
+
+    fn speed_ui(&mut self, ui: &mut egui::Ui) {
+        ui.add(
+            egui::Slider::new(&mut self.speed, 0.001..=2.0)
+                .logarithmic(true)
+                .suffix(" x"),
+        )
+        .on_hover_text("Speed of the playback, times real time");
+        ui.label(format!("t = {:.4} s", self.clock));
+    }
+
+    fn step_to_next_event(&mut self) {
+        let Some(scene) = &self.scene else {
+            return;
+        };
+        let run = &scene.run;
+        let after = self.clock + 1e-9;
+        // A measurement has no events: it goes from sample to sample.
+        let next = if run.events.is_empty() {
+            let next = run.time.partition_point(|t| *t <= after);
+            run.time.get(next).copied()
+        } else {
+            let next = run.events.partition_point(|e| e.time <= after);
+            run.events.get(next).map(|e| e.time)
+        };
+        if let Some(time) = next {
+            self.clock = time;
+        }
+    }
+}
+
+/// A slider over `value * scale`, reset by a double click.
+fn slider(
+    ui: &mut egui::Ui,
+    value: &mut f64,
+    normal: f64,
+    scale: f64,
+    range: RangeInclusive<f64>,
+    label: &str,
+) -> egui::Response {
+    let mut shown = *value * scale;
+    let response = ui.add(
+        egui::Slider::new(&mut shown, range)
+            .text(label)
+            .max_decimals(3)
+            .clamping(egui::SliderClamping::Edits),
+    );
+    if response.double_clicked() {
+        *value = normal;
+    } else if response.changed() {
+        *value = shown / scale;
+    }
+    response
+}
+
+/// What a figure claims, and whether it is so on the drive as it is set now.
+pub(super) fn claim_ui(ui: &mut egui::Ui, number: u32, claims: &[Check]) {
+    let Some(figure) = figures().into_iter().find(|f| f.number == number) else {
+        return;
+    };
+    ui.strong(format!("Fig. {number}, {}. {}", figure.title, figure.claim));
+    ui.horizontal_wrapped(|ui| {
+        for (i, check) in claims.iter().enumerate() {
+            let (mark, color) = if check.holds {
+                ("yes:", theme::NOISE)
+            } else {
+                ("no:", theme::MODEL)
+            };
+            ui.colored_label(color, mark);
+            let end = if i + 1 == claims.len() { "." } else { ";" };
+            ui.label(format!("{}{end}", check.text));
+        }
+    });
+}

@@ -1,0 +1,98 @@
+//! Which relay should one use on a drive that is known only roughly?
+
+use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
+
+use super::scene::MILLI;
+
+/// What is asked for, and the last proposal.
+pub struct Design {
+    /// Expected gap, rad, and the largest torque, N m.
+    gap: f64,
+    torque: f64,
+    proposal: Option<Result<DriftingTest, String>>,
+}
+
+impl Default for Design {
+    fn default() -> Self {
+        Self {
+            gap: 0.02,
+            torque: 0.7,
+            proposal: None,
+        }
+    }
+}
+
+impl Design {
+    /// Inputs, a button, and what was proposed; true where the drive was given a new relay.
+    pub fn ui(&mut self, ui: &mut egui::Ui, input: &mut DriveInput) -> bool {
+        let Command::Relay(relay) = input.command else {
+            return false;
+        };
+        let mut shown = MILLI * self.gap;
+        let gap = egui::Slider::new(&mut shown, 0.5..=100.0)
+            .logarithmic(true)
+            .text("expected gap [mrad]");
+        if ui.add(gap).changed() {
+            self.gap = shown / MILLI;
+        }
+        let torque = egui::Slider::new(&mut self.torque, 0.01..=5.0)
+            .logarithmic(true)
+            .text("largest torque [N m]");
+        ui.add(torque);
+        let mut changed = false;
+        let button = ui.button("Propose a drifting test").on_hover_text(
+            "For inertia, friction and delay as set on this page, each known only roughly",
+        );
+        if button.clicked() {
+            let rough = RoughDrive {
+                motor: input.drive.motor,
+                load_coulomb: input.drive.load.coulomb,
+                delay: relay.relay.delay,
+                gap: self.gap,
+                torque: self.torque,
+                sampling: None,
+                velocity_noise: 2e-3,
+            };
+            let proposal = design_drifting_test(&rough).map_err(|e| e.to_string());
+            if let Ok(test) = &proposal {
+                let mut proposed = test.relay;
+                // What runs here is the ideal relay; a controller should sample so fast.
+                proposed.sampling = None;
+                input.command = Command::Relay(proposed);
+                input.duration = test.duration;
+                changed = true;
+            }
+            self.proposal = Some(proposal);
+        }
+        match &self.proposal {
+            Some(Ok(test)) => proposal_ui(ui, test),
+            Some(Err(error)) => {
+                ui.colored_label(ui.visuals().warn_fg_color, error);
+            }
+            None => {}
+        }
+        changed
+    }
+}
+
+fn proposal_ui(ui: &mut egui::Ui, test: &DriftingTest) {
+    let relay = test.relay.relay;
+    ui.label(format!(
+        "k = {:.3} N m, a = {:.2}, ε = {:.3} rad/s, {:.2} ms of added delay, turned round every {:.1} s, sampled every {:.2} ms or faster.",
+        relay.gain,
+        relay.asymmetry,
+        relay.hysteresis,
+        1e3 * test.added_delay,
+        test.relay.flip.unwrap_or(0.0),
+        1e3 * test.relay.sampling.unwrap_or(0.0),
+    ));
+    ui.label(format!(
+        "The cycle swings over {:.2} mrad in {:.2} ms and crosses the gap in {:.1} s at most.",
+        MILLI * test.cycle.swing,
+        1e3 * test.cycle.period,
+        test.traverse
+    ));
+    for warning in &test.warnings {
+        ui.colored_label(ui.visuals().warn_fg_color, warning);
+    }
+}

@@ -1,0 +1,339 @@
+//! How wide is the hidden gap? A drive under a relay that makes it drift, simulated or measured.
+
+mod controls;
+mod design;
+mod files;
+mod picture;
+mod plots;
+mod scene;
+mod side;
+mod words;
+
+use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test};
+
+use super::{Desk, View};
+use crate::hook::Targets;
+use crate::jobs::{Job, News};
+use crate::tasks::{GapReport, GapTask};
+use crate::theme;
+use design::Design;
+use files::Files;
+use scene::{Scene, Shown};
+
+/// Time that a frame gives to the simulation, s.
+const BUDGET: f64 = 1.5e-3;
+
+/// Events between two looks at the clock.
+const BATCH: usize = 200;
+
+/// Width below which everything stands in one column, points.
+const NARROW: f32 = 700.0;
+
+/// Width of the panel with the controls, points.
+const SIDE: f32 = 380.0;
+
+/// Height of the drawn masses, points.
+const PICTURE: f32 = 112.0;
+
+/// The page: what is set, and what follows from it.
+pub struct Backlash {
+    input: DriveInput,
+    /// Number of the figure whose claim is checked.
+    figure: Option<u32>,
+    design: Design,
+    playing: bool,
+    /// The time that is shown, s, and seconds of the drive in a second.
+    clock: f64,
+    speed: f64,
+    /// The simulation that is under way, and for what.
+    simulation: Option<(DriveInput, DriveJob)>,
+    /// The last one that was finished, or the measurement that is open.
+    scene: Option<Scene>,
+    /// The estimate that is under way, and for which simulation.
+    estimation: Option<(Option<DriveInput>, Job<GapTask>)>,
+    files: Files,
+    message: Option<String>,
+}
+
+impl Default for Backlash {
+    fn default() -> Self {
+        Self {
+            input: drifting_test(),
+            figure: None,
+            design: Design::default(),
+            playing: true,
+            clock: 0.0,
+            speed: 0.1,
+            simulation: None,
+            scene: None,
+            estimation: None,
+            files: Files::default(),
+            message: None,
+        }
+    }
+}
+
+impl Backlash {
+    /// Whether a measurement is open, or about to be.
+    fn measured(&self) -> bool {
+        let opening = self.estimation.as_ref().is_some_and(|(of, _)| of.is_none());
+        opening || self.scene.as_ref().is_some_and(|s| s.input().is_none())
+    }
+
+    /// Simulates for a part of a frame; the last result stays until the next is finished.
+    fn simulate(&mut self, ctx: &egui::Context) {
+        let known = self
+            .scene
+            .as_ref()
+            .is_some_and(|s| s.input() == Some(&self.input));
+        if self.simulation.is_none() && !known && !self.measured() && self.message.is_none() {
+            match DriveJob::new(&self.input) {
+                Ok(job) => self.simulation = Some((self.input, job)),
+                Err(error) => self.message = Some(error.to_string()),
+            }
+        }
+        let Some((_, job)) = &mut self.simulation else {
+            return;
+        };
+        let begin = web_time::Instant::now();
+        let mut done = false;
+        while !done && begin.elapsed().as_secs_f64() < BUDGET {
+            done = job.advance(BATCH);
+        }
+        if done && let Some((input, job)) = self.simulation.take() {
+            self.scene = Some(Scene::simulated(input, job.finish(), self.figure));
+        }
+        ctx.request_repaint();
+    }
+
+    /// Has the gap of what is on the screen estimated, one estimate at a time.
+    fn estimate(&mut self, ctx: &egui::Context) {
+        if self.estimation.is_some() || self.simulation.is_some() {
+            return;
+        }
+        if let Some(scene) = &self.scene
+            && scene.estimate.is_none()
+            && let Some(input) = scene.input()
+            && *input == self.input
+        {
+            let task = GapTask::Simulated(Box::new(*input));
+            self.estimation = Some((Some(*input), Job::run(ctx, task)));
+        }
+    }
+
+    /// Opens a measurement from the bytes of a file; a bad one leaves everything as it was.
+    fn open_bytes(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        let text = String::from_utf8_lossy(bytes).into_owned();
+        self.simulation = None;
+        let task = GapTask::File(name.to_owned(), text);
+        self.estimation = Some((None, Job::run(ctx, task)));
+        self.message = None;
+    }
+
+    /// Takes what jobs and files have brought.
+    fn take_news(&mut self, ctx: &egui::Context) {
+        while let Some((name, bytes)) = self.files.arrived() {
+            match bytes {
+                Ok(bytes) => self.open_bytes(ctx, &name, &bytes),
+                Err(error) => self.message = Some(format!("{name}: cannot be read ({error})")),
+            }
+        }
+        let Some((of, job)) = &mut self.estimation else {
+            return;
+        };
+        let of = *of;
+        for news in job.news() {
+            match news {
+                News::Report(report) => {
+                    self.estimation = None;
+                    self.take_estimate(of.as_ref(), *report);
+                    return;
+                }
+                News::Failed(error) => {
+                    self.estimation = None;
+                    self.message = Some(error);
+                    return;
+                }
+                News::Progress(..) => {}
+            }
+        }
+    }
+
+    fn take_estimate(&mut self, of: Option<&DriveInput>, report: GapReport) {
+        match (report.measurement, &mut self.scene) {
+            (Some(measurement), _) => match Scene::measured(&measurement, report.estimate) {
+                Ok(scene) => {
+                    self.scene = Some(scene);
+                    self.clock = 0.0;
+                    self.figure = None;
+                }
+                Err(error) => self.message = Some(error),
+            },
+            (None, Some(scene)) if scene.input() == of => scene.estimate = Some(report.estimate),
+            // It was about a simulation that is gone.
+            (None, _) => {}
+        }
+    }
+
+    /// Back to the simulation.
+    fn close(&mut self) {
+        self.scene = None;
+        self.estimation = None;
+        self.message = None;
+    }
+
+    /// Moves the playback on; at its end it begins again.
+    fn play(&mut self, ui: &egui::Ui) {
+        let Some(scene) = &self.scene else {
+            return;
+        };
+        let end = scene.duration();
+        if self.playing {
+            let seconds = f64::from(ui.input(|i| i.stable_dt).min(0.1));
+            self.clock += seconds * self.speed;
+            ui.ctx().request_repaint();
+        }
+        if self.clock > end {
+            self.clock = 0.0;
+        }
+    }
+
+    fn relay(&self) -> Option<VelocityRelay> {
+        match self.input.command {
+            Command::Relay(relay) => Some(relay),
+            Command::Torque(_) => None,
+        }
+    }
+
+    fn answer_ui(&mut self, ui: &mut egui::Ui) {
+        if let Some(message) = self.message.clone() {
+            ui.horizontal_wrapped(|ui| {
+                ui.colored_label(ui.visuals().warn_fg_color, message);
+                if ui.small_button("Dismiss").clicked() {
+                    self.message = None;
+                }
+            });
+        }
+        let Some(scene) = &self.scene else {
+            let opening = self.estimation.is_some();
+            theme::answer_ui(
+                ui,
+                if opening {
+                    "Reading the measurement ..."
+                } else {
+                    "Simulating ..."
+                },
+            );
+            return;
+        };
+        theme::answer_ui(ui, &scene.answer());
+        if let Some(why) = scene.refusal() {
+            ui.label(why);
+        }
+        match (self.figure, &scene.shown) {
+            (Some(number), Shown::Simulated(simulated)) => {
+                controls::claim_ui(ui, number, &simulated.checks);
+            }
+            _ => {
+                ui.label(&scene.lesson);
+            }
+        }
+    }
+
+    fn wide_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        egui::Panel::left("drive")
+            .exact_size(SIDE)
+            .resizable(false)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, targets));
+            });
+        egui::CentralPanel::default().show(ui, |ui| {
+            self.answer_ui(ui);
+            self.playback_ui(ui, targets);
+            let Some(scene) = &self.scene else {
+                return;
+            };
+            picture::ui(ui, scene, self.clock, PICTURE);
+            let height = (0.5 * ui.available_height() - 34.0).max(120.0);
+            plots::time_ui(ui, scene, self.clock, height);
+            ui.columns(2, |columns| {
+                plots::phase_ui(&mut columns[0], scene, self.clock, height);
+                plots::map_ui(&mut columns[1], scene, self.clock, height);
+            });
+        });
+    }
+
+    fn narrow_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        egui::CentralPanel::default().show(ui, |ui| {
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                self.answer_ui(ui);
+                self.playback_ui(ui, targets);
+                if let Some(scene) = &self.scene {
+                    picture::ui(ui, scene, self.clock, PICTURE);
+                    plots::time_ui(ui, scene, self.clock, 220.0);
+                    plots::phase_ui(ui, scene, self.clock, 240.0);
+                    plots::map_ui(ui, scene, self.clock, 240.0);
+                }
+                self.side_ui(ui, targets);
+            });
+        });
+    }
+}
+
+impl View for Backlash {
+    fn id(&self) -> &'static str {
+        "backlash"
+    }
+
+    fn title(&self) -> &'static str {
+        "Backlash"
+    }
+
+    fn update(&mut self, ctx: &egui::Context) {
+        self.take_news(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        self.simulate(ui.ctx());
+        self.estimate(ui.ctx());
+        self.play(ui);
+        if ui.available_width() < NARROW {
+            self.narrow_ui(ui, &mut desk.targets);
+        } else {
+            self.wide_ui(ui, &mut desk.targets);
+        }
+    }
+
+    fn takes_files(&self) -> bool {
+        true
+    }
+
+    fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        self.open_bytes(ctx, name, bytes);
+    }
+
+    fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {
+        self.files.open_dropped(ctx, file);
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        let scene = self.scene.as_ref();
+        let estimate = scene.and_then(|s| s.estimate.as_ref()?.as_ref().ok());
+        let simulated = scene.and_then(Scene::simulation);
+        serde_json::json!({
+            "busy": self.simulation.is_some() || self.estimation.is_some(),
+            "message": self.message,
+            "figure": self.figure,
+            "checks": simulated.map(|s| s.checks.iter().map(|c| c.holds).collect::<Vec<_>>()),
+            "answer": scene.map(Scene::answer),
+            "lesson": scene.map(|s| s.lesson.clone()),
+            "file": scene.and_then(|s| s.file()),
+            "gap": 2.0 * self.input.drive.half_gap,
+            "gap_by_positions": simulated.and_then(|s| s.summary.gap()),
+            "gap_estimated": estimate.and_then(|e| e.gap),
+            "direction": simulated.zip(self.relay()).and_then(|(s, r)| s.summary.direction(&r)),
+            "clock": self.clock,
+            "playing": self.playing,
+        })
+    }
+}

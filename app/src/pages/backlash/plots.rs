@@ -1,0 +1,202 @@
+//! Positions over time, phase portrait and backlash map.
+
+use egui::{Align2, Color32, Ui};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, Points, Polygon, Text, VLine};
+
+use super::scene::Scene;
+use crate::pages::chart::{caption_ui, curve, dot, still};
+use crate::theme;
+
+/// Periods of the relay that the phase portrait shows before the present one.
+const PERIODS: f64 = 3.0;
+
+/// Colour of the load.
+pub const LOAD: Color32 = theme::NOISE;
+
+/// Colour of contact.
+pub const CONTACT: Color32 = theme::MODEL;
+
+/// Colour of what the estimate has found.
+const ESTIMATED: Color32 = theme::RESIDUAL;
+
+/// Positions of motor and load; shaded where the motor pushes the load.
+pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
+    let signature = scene.signature();
+    let mut curves = vec![("motor x1", theme::MEASURED)];
+    if !scene.load.is_empty() {
+        curves.push(("load x2", LOAD));
+    }
+    curves.push(("motor pushes load", CONTACT));
+    if !signature.is_empty() {
+        curves.push(("gap found by the motor", ESTIMATED));
+    }
+    caption_ui(ui, "Positions", &curves);
+    let [low, high] = scene.range;
+    still("positions", "time [s]", "position [mrad]", height).show(ui, |plot| {
+        for [from, to] in scene.engagements() {
+            let corners = vec![[from, low], [to, low], [to, high], [from, high]];
+            plot.polygon(
+                Polygon::new("motor pushes load", corners)
+                    .fill_color(CONTACT.gamma_multiply(0.22))
+                    .stroke((0.0, CONTACT)),
+            );
+        }
+        plot.line(
+            Line::new("load x2", curve(&scene.load))
+                .color(LOAD)
+                .width(2.5),
+        );
+        plot.line(
+            Line::new("motor x1", curve(&scene.motor))
+                .color(theme::MEASURED)
+                .width(1.5),
+        );
+        for ends in &signature {
+            plot.line(
+                Line::new("gap found by the motor", ends.to_vec())
+                    .color(ESTIMATED)
+                    .style(LineStyle::dashed_loose())
+                    .width(2.0),
+            );
+            plot.points(
+                Points::new("gap found by the motor", ends.to_vec())
+                    .color(ESTIMATED)
+                    .shape(MarkerShape::Diamond)
+                    .radius(6.0),
+            );
+        }
+        plot.vline(VLine::new("now", clock).color(theme::INPUT).width(1.0));
+    });
+}
+
+/// Velocity over position of the motor, of the last periods.
+pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
+    let span = PERIODS * scene.period();
+    // Before a few periods have passed, those to come are shown.
+    let to = clock.max(span);
+    let points = scene.phase(to - span, to);
+    let orbit = scene.orbit(to);
+    let mut curves = vec![("last periods", theme::MEASURED)];
+    if orbit.is_some() {
+        curves.push(("closed form in the gap", theme::INPUT));
+    }
+    caption_ui(ui, "Phase portrait", &curves);
+    let color = ui.visuals().text_color();
+    still(
+        "phase of the motor",
+        "motor position x1 [mrad]",
+        "velocity v1 [rad/s]",
+        height,
+    )
+    .show(ui, |plot| {
+        plot.line(
+            Line::new("last periods", curve(&points))
+                .color(theme::MEASURED)
+                .width(1.5),
+        );
+        if let Some(orbit) = &orbit {
+            plot.line(
+                Line::new("closed form", curve(&orbit.curve))
+                    .color(theme::INPUT)
+                    .style(LineStyle::dashed_dense())
+                    .width(2.0),
+            );
+            plot.points(
+                Points::new("characteristic points", orbit.corners.clone())
+                    .color(theme::INPUT)
+                    .radius(4.0),
+            );
+            for (place, label) in labels(&orbit.corners) {
+                plot.text(
+                    Text::new("characteristic points", place, label)
+                        .anchor(Align2::CENTER_CENTER)
+                        .color(color),
+                );
+            }
+        }
+        if let Some(now) = scene.now(clock) {
+            plot.points(dot("now", [now.x1, now.v1]));
+        }
+    });
+}
+
+/// Distance of a number from its point, as a share of the orbit's size.
+const LABEL_DISTANCE: f64 = 0.14;
+
+/// Numbers of the characteristic points, outside of the orbit; one for points that coincide.
+fn labels(corners: &[[f64; 2]]) -> Vec<(PlotPoint, String)> {
+    let count = corners.len().max(1) as f64;
+    let range = |k: usize| {
+        let values = corners.iter().map(|c| c[k]);
+        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+            [low.min(v), high.max(v)]
+        });
+        high - low
+    };
+    let size = [range(0), range(1)];
+    let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / count);
+    let mut found: Vec<([f64; 2], String)> = Vec::new();
+    for (i, corner) in corners.iter().enumerate() {
+        let number = (i + 1).to_string();
+        match found.last_mut() {
+            Some((at, text)) if at == corner => {
+                text.push_str(", ");
+                text.push_str(&number);
+            }
+            _ => found.push((*corner, number)),
+        }
+    }
+    found
+        .into_iter()
+        .map(|(at, text)| {
+            let out = [0, 1].map(|k| (at[k] - middle[k]) / size[k].max(f64::MIN_POSITIVE));
+            let length = out[0].hypot(out[1]).max(f64::MIN_POSITIVE);
+            let place = [0, 1].map(|k| at[k] + LABEL_DISTANCE * size[k] * out[k] / length);
+            (PlotPoint::new(place[0], place[1]), text)
+        })
+        .collect()
+}
+
+/// Load over motor position.
+pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
+    if scene.map.is_empty() {
+        ui.strong("Backlash map");
+        ui.label("The load was not measured: there is no map.");
+        return;
+    }
+    let mut curves = vec![("x2 over x1", LOAD)];
+    if scene.input().is_some() {
+        curves.push(("ends of the gap", CONTACT));
+    }
+    caption_ui(ui, "Backlash map", &curves);
+    let [low, high] = scene.range;
+    let load = scene.load_range;
+    still("map", "motor x1 [mrad]", "load x2 [mrad]", height).show(ui, |plot| {
+        plot.points(
+            Points::new("x2 over x1", curve(&scene.map))
+                .color(LOAD)
+                .radius(1.2),
+        );
+        // A measured load has no zero in common with the motor.
+        if let (Some(beta), Some(_)) = (scene.half_gap(), scene.input()) {
+            for side in [-1.0, 1.0] {
+                // No longer than the branch that lies on it.
+                let ends = [
+                    low.max(load[0] + side * beta),
+                    high.min(load[1] + side * beta),
+                ];
+                let edge = ends.map(|x| [x, x - side * beta]).to_vec();
+                plot.line(
+                    Line::new("ends of the gap", edge)
+                        .color(CONTACT)
+                        .style(LineStyle::dashed_dense()),
+                );
+            }
+        }
+        if let Some(now) = scene.now(clock)
+            && let Some(x2) = now.x2
+        {
+            plot.points(dot("now", [now.x1, x2]));
+        }
+    });
+}

@@ -1,0 +1,127 @@
+//! The panel beside the plots: a measurement that is open, or what can be set.
+
+use hysteron_core::backlash::GapEstimate;
+use hysteron_core::drive::{Command, drifting_test};
+
+use super::Backlash;
+use super::files::BUILT_IN;
+use super::scene::MILLI;
+use crate::hook::Targets;
+
+/// Crossings that are listed.
+const LISTED: usize = 12;
+
+/// Length of the sliders, points: their labels stand beside them.
+const SLIDER: f32 = 120.0;
+
+/// Friction and delay of the lesson about the direction of drift.
+const LESSON_FRICTION: f64 = 0.03;
+const LESSON_DELAY: f64 = 2e-4;
+
+impl Backlash {
+    /// The panel beside the plots.
+    pub(super) fn side_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        ui.add_space(4.0);
+        ui.spacing_mut().slider_width = SLIDER;
+        if self.measured() {
+            self.measurement_ui(ui, targets);
+        } else {
+            self.controls_ui(ui, targets);
+        }
+    }
+
+    /// What is open, and the way back.
+    fn measurement_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        let name = self.scene.as_ref().and_then(|s| s.file());
+        ui.strong(name.unwrap_or("Reading ..."));
+        if let Some(verdict) = self.scene.as_ref().and_then(|s| s.verdict()) {
+            ui.label(verdict);
+        }
+        if self.estimation.is_some() {
+            ui.spinner();
+        }
+        if let Some(Ok(estimate)) = self.scene.as_ref().and_then(|s| s.estimate.as_ref()) {
+            traverses_ui(ui, estimate);
+        }
+        let back = ui.button("Back to the simulation");
+        targets.note("gap:back", ui, &back);
+        if back.clicked() {
+            self.close();
+        }
+        ui.separator();
+        self.files_ui(ui, targets);
+    }
+
+    pub(super) fn files_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+        ui.strong("Measured drifting tests");
+        let mut chosen = None;
+        ui.horizontal_wrapped(|ui| {
+            for built_in in &BUILT_IN {
+                let button = ui
+                    .button(format!("Open {}", built_in.id))
+                    .on_hover_text(built_in.story);
+                targets.note(format!("gap:{}", built_in.id), ui, &button);
+                if button.clicked() {
+                    chosen = Some(built_in);
+                }
+            }
+            if ui
+                .button("Open a file ...")
+                .on_hover_text("Or drop it on this window: t [s],u [N m],x1 [rad],v1 [rad/s]")
+                .clicked()
+            {
+                self.files.open_dialog(ui.ctx());
+            }
+        });
+        if let Some(built_in) = chosen {
+            self.open_bytes(ui.ctx(), built_in.id, &built_in.csv());
+        }
+    }
+
+    /// The direction of drift, with one effect at a time.
+    pub(super) fn lesson_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Drift by:").on_hover_text(
+                "Which way does it drift? The direction tells which effect is there",
+            );
+            for (name, friction, delay) in [
+                ("friction alone", LESSON_FRICTION, 0.0),
+                ("delay alone", 0.0, LESSON_DELAY),
+                ("neither", 0.0, 0.0),
+            ] {
+                if ui.button(name).clicked() {
+                    self.figure = None;
+                    self.clock = 0.0;
+                    self.input = drifting_test();
+                    self.input.drive.motor.coulomb = friction;
+                    self.input.drive.motor.viscous = 0.0;
+                    if let Command::Relay(relay) = &mut self.input.command {
+                        relay.relay.delay = delay;
+                    }
+                }
+            }
+        });
+    }
+}
+
+/// The gap by every crossing.
+fn traverses_ui(ui: &mut egui::Ui, estimate: &GapEstimate) {
+    if estimate.traverses.is_empty() {
+        return;
+    }
+    egui::Grid::new("traverses")
+        .striped(true)
+        .num_columns(3)
+        .show(ui, |ui| {
+            for title in ["left at [s]", "reached at [s]", "gap [mrad]"] {
+                ui.strong(title);
+            }
+            ui.end_row();
+            for t in estimate.traverses.iter().take(LISTED) {
+                ui.label(format!("{:.3}", t.from.time));
+                ui.label(format!("{:.3}", t.to.time));
+                ui.label(format!("{:.2} ± {:.2}", MILLI * t.gap, MILLI * t.std_error));
+                ui.end_row();
+            }
+        });
+}

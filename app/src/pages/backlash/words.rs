@@ -1,0 +1,88 @@
+//! What the page says.
+
+use hysteron_core::drive::{Command, Direction, DriveInput, DriveRun, Summary};
+
+use super::scene::{MILLI, Scene};
+
+impl Scene {
+    /// The page's answer.
+    pub fn answer(&self) -> String {
+        let found = match &self.estimate {
+            None => "Asking the motor how wide the gap is ...".to_owned(),
+            Some(Err(error)) => format!("The motor cannot tell: {error}."),
+            Some(Ok(e)) => match (e.gap, e.std_error) {
+                (Some(gap), Some(error)) => format!(
+                    "From the motor alone: 2β = {} ± {} mrad.",
+                    digits(MILLI * gap, MILLI * error),
+                    digits(MILLI * error, MILLI * error)
+                ),
+                _ => "The motor alone cannot tell the gap.".to_owned(),
+            },
+        };
+        match self.input() {
+            Some(input) => format!(
+                "{found} True: {:.2} mrad.",
+                2.0 * MILLI * input.drive.half_gap
+            ),
+            None => found,
+        }
+    }
+
+    /// Why the motor alone does not tell the gap of a simulated drive.
+    pub fn refusal(&self) -> Option<String> {
+        let estimate = self.estimate.as_ref()?.as_ref().ok()?;
+        self.input()?;
+        estimate
+            .gap
+            .is_none()
+            .then(|| format!("Why: {}.", estimate.text))
+    }
+
+    /// The estimate's own verdict.
+    pub fn verdict(&self) -> Option<&str> {
+        Some(&self.estimate.as_ref()?.as_ref().ok()?.text)
+    }
+}
+
+/// As many digits as its error leaves, two of that.
+fn digits(value: f64, error: f64) -> String {
+    let decimals = if error > 0.0 {
+        (1.0 - error.log10().floor()).clamp(0.0, 4.0) as usize
+    } else {
+        4
+    };
+    format!("{value:.decimals$}")
+}
+
+/// Which way the cycle drifts, and what that means.
+pub fn lesson(input: &DriveInput, run: &DriveRun, summary: &Summary) -> String {
+    if let Some(time) = run.chattering {
+        return format!(
+            "The run was cut at {time:.3} s: there it switches or bounces without end. Some loss at impact (restitution below 1), or a delay, would end that."
+        );
+    }
+    let Command::Relay(relay) = input.command else {
+        return String::new();
+    };
+    let Some(cycle) = &summary.cycle else {
+        return "The relay cannot keep the motor swinging: friction eats up its push.".to_owned();
+    };
+    let speed = match summary.drifts.first() {
+        Some(drift) => drift.velocity,
+        None => cycle.drift_velocity(),
+    };
+    let speed = (MILLI * speed).abs();
+    match summary.direction(&relay) {
+        Some(Direction::Against) => format!(
+            "The cycle drifts at {speed:.2} mrad/s against the stronger push: friction outweighs delay. The direction tells which effect is there."
+        ),
+        Some(Direction::With) => format!(
+            "The cycle drifts at {speed:.2} mrad/s with the stronger push: delay outweighs friction. The direction tells which effect is there."
+        ),
+        _ if relay.relay.asymmetry == 0.0 => {
+            "The cycle stays where it is: both pushes are equal.".to_owned()
+        }
+        _ => "The cycle stays where it is: without friction and delay no asymmetry moves it."
+            .to_owned(),
+    }
+}

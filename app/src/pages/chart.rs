@@ -1,0 +1,94 @@
+//! What the plots of several pages share.
+
+use std::ops::RangeInclusive;
+
+use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoints, Points, uniform_grid_spacer};
+
+use crate::theme;
+
+/// Points between labels of an axis, where they begin to show and where they are full.
+const LABELS: egui::Rangef = egui::Rangef {
+    min: 28.0,
+    max: 40.0,
+};
+
+pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
+    points.iter().copied().collect()
+}
+
+/// A plot that shows its data and stays where it is.
+pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Plot<'static> {
+    Plot::new(name)
+        .height(height)
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label(x)
+                .label_spacing(LABELS)
+                .formatter(label),
+        ])
+        .custom_y_axes(vec![
+            AxisHints::new_y()
+                .label(y)
+                .label_spacing(LABELS)
+                .formatter(label),
+        ])
+        .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
+        .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_drag(false)
+}
+
+/// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
+fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
+    let step = mark.step_size.abs();
+    let first = step.log10().floor();
+    let lead = step / 10_f64.powf(first);
+    // 2.5 has a second digit; 1, 2 and 5 have none.
+    let more = if (lead - lead.round()).abs() > 0.1 {
+        1.0
+    } else {
+        0.0
+    };
+    let decimals = (more - first).clamp(0.0, 12.0) as usize;
+    let value = if mark.value.abs() < 1e-9 * step {
+        0.0
+    } else {
+        mark.value
+    };
+    format!("{value:.decimals$}")
+}
+
+/// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
+/// a finer and a coarser set.
+fn grid(input: &GridInput) -> [f64; 3] {
+    let (low, high) = input.bounds;
+    // The smallest step that egui_plot wants is 8 points wide; a label needs more.
+    let least = f64::from(LABELS.max) / 8.0 * input.base_step_size;
+    let wanted = ((high - low) / 7.0).max(least).max(f64::MIN_POSITIVE);
+    let decade = 10_f64.powf(wanted.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|s| s * decade >= wanted)
+        .map_or(wanted, |s| s * decade);
+    [0.5 * step, step, 10.0 * step]
+}
+
+/// Names of the curves in their colours, above a plot: they hide nothing.
+pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[(&str, egui::Color32)]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.strong(title);
+        for (name, color) in curves {
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 4.0), egui::Sense::hover());
+            ui.painter().rect_filled(rect, 1.0, *color);
+            ui.label(*name);
+        }
+    });
+}
+
+/// The place that the playback has reached.
+pub fn dot(name: &'static str, at: [f64; 2]) -> Points<'static> {
+    Points::new(name, vec![at]).color(theme::MODEL).radius(6.0)
+}

@@ -1,0 +1,314 @@
+//! Figs. 7, 10, 11 and 12 of the paper: a drive for each.
+
+use super::{
+    Adhesion, Body, Command, Contact, Direction, Drive, DriveInput, DriveRun, EventKind, Summary,
+    VelocityRelay, drifting_cycle, engaged_drift,
+};
+use crate::figures::Check;
+use crate::relay::Relay;
+
+/// A figure of the paper as a run of a drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DriveFigure {
+    /// Its number in the paper.
+    pub number: u32,
+    /// What it shows, in a few words.
+    pub title: &'static str,
+    /// What it claims.
+    pub claim: &'static str,
+    /// The run.
+    pub input: DriveInput,
+}
+
+/// Distance of the samples, s.
+const STEP: f64 = 2.5e-4;
+
+/// The reference rig: motor and load of 8.8e-4 kg m^2 and a gap of 0.019 rad.
+pub fn reference_drive() -> Drive {
+    Drive {
+        motor: Body {
+            inertia: 8.8e-4,
+            viscous: 2e-3,
+            coulomb: 0.03,
+        },
+        load: Body {
+            inertia: 8.8e-4,
+            viscous: 2e-3,
+            coulomb: 0.15,
+        },
+        half_gap: 0.0095,
+        contact: Contact::Rigid { restitution: 1.0 },
+        adhesion: Adhesion::default(),
+    }
+}
+
+/// A drifting relay on the reference rig.
+pub fn drifting_test() -> DriveInput {
+    let relay = VelocityRelay {
+        relay: Relay {
+            gain: 0.5,
+            hysteresis: 0.5,
+            asymmetry: 0.3,
+            ..Relay::default()
+        },
+        flip: Some(2.5),
+        sampling: None,
+    };
+    DriveInput::new(reference_drive(), Command::Relay(relay), 10.0, Some(STEP))
+}
+
+/// Figs. 7, 10, 11 and 12.
+pub fn figures() -> Vec<DriveFigure> {
+    let with = |asymmetry: f64, hysteresis: f64, flip: Option<f64>, duration: f64| {
+        let mut input = drifting_test();
+        input.command = Command::Relay(VelocityRelay {
+            relay: Relay {
+                gain: 0.5,
+                hysteresis,
+                asymmetry,
+                ..Relay::default()
+            },
+            flip,
+            sampling: None,
+        });
+        input.duration = duration;
+        input
+    };
+    // A light load, which friction holds wherever the motor leaves it.
+    let mut map = with(0.0, 4.0, None, 0.4);
+    map.drive.load.inertia = 2e-5;
+    map.drive.contact = Contact::Rigid { restitution: 0.0 };
+    vec![
+        DriveFigure {
+            number: 7,
+            title: "backlash map",
+            claim: "Load over motor position is a loop of two parallel branches, 2β apart.",
+            input: map,
+        },
+        DriveFigure {
+            number: 10,
+            title: "limit cycle in the gap",
+            claim: "A symmetric relay swings the motor inside the gap without touching the load.",
+            input: with(0.0, 0.5, None, 0.05),
+        },
+        DriveFigure {
+            number: 11,
+            title: "drifting cycle",
+            claim: "An asymmetric relay makes the same cycle drift through the gap.",
+            input: with(0.3, 0.5, None, 0.6),
+        },
+        DriveFigure {
+            number: 12,
+            title: "drifted position",
+            claim: "Where the motor meets the load, its drift changes: between two such changes lies the gap.",
+            input: with(0.3, 0.5, Some(2.5), 10.0),
+        },
+    ]
+}
+
+/// Share by which the branches of the map may miss the gap.
+const BRANCHES: f64 = 1e-3;
+
+/// Share by which a simulated cycle may miss its closed form.
+const CLOSED_FORM: f64 = 1e-9;
+
+/// Share of the gap that a single crossing may miss it by: the load moves a little after the last contact.
+const CROSSING: f64 = 0.1;
+
+/// Milliradians in a radian.
+const MILLI: f64 = 1e3;
+
+/// Checks the claim of a figure on a run; none for a number that is not among [`figures`].
+pub fn checks(number: u32, input: &DriveInput, run: &DriveRun, summary: &Summary) -> Vec<Check> {
+    match number {
+        7 => map_has_two_branches(input, run, summary),
+        10 => stays_in_the_gap(input, run, summary),
+        11 => drifts_as_the_formula_says(input, summary),
+        12 => changes_its_drift_at_the_ends(input, run, summary),
+        _ => Vec::new(),
+    }
+}
+
+fn check(text: String, holds: bool) -> Check {
+    Check { text, holds }
+}
+
+fn map_has_two_branches(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Vec<Check> {
+    let gap = 2.0 * input.drive.half_gap;
+    let branches = summary.gap();
+    let apart = branches.unwrap_or(0.0);
+    let (mut pushed, mut slope) = (0.0_f64, 0.0);
+    let (mut between, mut slipped) = (0.0_f64, 0.0);
+    for i in 1..run.time.len() {
+        let (dx1, dx2) = (run.x1[i] - run.x1[i - 1], run.x2[i] - run.x2[i - 1]);
+        let inside = |i: usize| (run.x1[i] - run.x2[i]).abs() < (1.0 - BRANCHES) * 0.5 * gap;
+        if inside(i) && inside(i - 1) {
+            between += dx1.abs();
+            slipped += dx2.abs();
+        } else if !inside(i) && !inside(i - 1) {
+            pushed += dx1.abs();
+            slope += dx2.abs();
+        }
+    }
+    vec![
+        check(
+            format!(
+                "the branches are {:.2} mrad apart, 2β is {:.2} mrad",
+                MILLI * apart,
+                MILLI * gap
+            ),
+            (apart / gap - 1.0).abs() < BRANCHES,
+        ),
+        check(
+            format!(
+                "on them the load moves {:.3} times as far as the motor",
+                slope / pushed
+            ),
+            (slope / pushed - 1.0).abs() < 0.01,
+        ),
+        check(
+            format!(
+                "between them the load moves {:.0} % as far as the motor",
+                100.0 * slipped / between
+            ),
+            slipped < 0.5 * between,
+        ),
+    ]
+}
+
+fn stays_in_the_gap(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Vec<Check> {
+    let gap = 2.0 * input.drive.half_gap;
+    let Some(cycle) = &summary.cycle else {
+        return vec![check(
+            "the relay keeps the motor swinging".to_owned(),
+            false,
+        )];
+    };
+    let ups: Vec<f64> = run
+        .events
+        .iter()
+        .filter(|e| e.kind == EventKind::SwitchUp)
+        .map(|e| e.time)
+        .collect();
+    let period = match ups.as_slice() {
+        [.., a, b] => b - a,
+        _ => f64::NAN,
+    };
+    let missed = (period / cycle.period - 1.0).abs();
+    vec![
+        check(
+            format!(
+                "it swings over {:.2} of {:.2} mrad",
+                MILLI * cycle.swing,
+                MILLI * gap
+            ),
+            cycle.swing < gap,
+        ),
+        check(
+            format!("{} contacts with the load", run.impacts()),
+            run.impacts() == 0,
+        ),
+        check(
+            format!(
+                "its period, {:.4} ms, is that of the closed form to {missed:.0e} of it",
+                1e3 * period
+            ),
+            missed < CLOSED_FORM,
+        ),
+        check(
+            format!(
+                "it drifts by {:.0e} of its swing a period",
+                (cycle.drift / cycle.swing).abs()
+            ),
+            cycle.drift.abs() < CLOSED_FORM * cycle.swing,
+        ),
+    ]
+}
+
+fn drifts_as_the_formula_says(input: &DriveInput, summary: &Summary) -> Vec<Check> {
+    let (Some(cycle), Command::Relay(relay)) = (&summary.cycle, input.command) else {
+        return vec![check(
+            "the relay keeps the motor swinging".to_owned(),
+            false,
+        )];
+    };
+    let Some(drift) = summary.drifts.first() else {
+        return vec![check("the motor drifts freely".to_owned(), false)];
+    };
+    let missed = (drift.velocity / cycle.drift_velocity() - 1.0).abs();
+    let direction = summary.direction(&relay);
+    // The same drive without its friction, late instead.
+    let mut late = relay;
+    late.relay.delay = LATE;
+    let smooth = Body {
+        viscous: 0.0,
+        coulomb: 0.0,
+        ..input.drive.motor
+    };
+    let other = drifting_cycle(&smooth, &late).map_or(0.0, |c| c.drift_velocity());
+    vec![
+        check(
+            format!(
+                "it drifts at {:.3} mrad/s, the closed form to {missed:.0e} of it",
+                MILLI * drift.velocity
+            ),
+            missed < CLOSED_FORM,
+        ),
+        check(
+            "with friction it drifts against the stronger push".to_owned(),
+            direction == Some(Direction::Against),
+        ),
+        check(
+            format!(
+                "without friction, but {:.1} ms late, it would drift with it, at {:.1} mrad/s",
+                1e3 * LATE,
+                MILLI * other
+            ),
+            other * relay.relay.mean_output() > 0.0,
+        ),
+    ]
+}
+
+/// Delay of the drive that Fig. 11 is compared with, s.
+const LATE: f64 = 3e-4;
+
+fn changes_its_drift_at_the_ends(
+    input: &DriveInput,
+    run: &DriveRun,
+    summary: &Summary,
+) -> Vec<Check> {
+    let gap = 2.0 * input.drive.half_gap;
+    let mut all = Vec::new();
+    let free = summary.drifts.first().map(|d| d.velocity.abs());
+    if let (Some(free), Some(engaged)) = (free, engaged_drift(run, summary)) {
+        let engaged = engaged.abs();
+        all.push(check(
+            format!(
+                "it drifts at {:.2} mrad/s in the gap, at {:.2} where it pushes the load",
+                MILLI * free,
+                MILLI * engaged
+            ),
+            (engaged / free - 1.0).abs() > 0.05,
+        ));
+    } else {
+        all.push(check(
+            "it drifts in the gap and pushes the load".to_owned(),
+            false,
+        ));
+    }
+    let count = summary.traverses.len();
+    all.push(check(
+        format!("it crosses the gap {count} times"),
+        count >= 2,
+    ));
+    let mean = summary.traverses.iter().map(|t| t.travel).sum::<f64>() / count.max(1) as f64;
+    all.push(check(
+        format!(
+            "from contact to contact the motor moves {:.2} mrad, 2β is {:.2} mrad",
+            MILLI * mean,
+            MILLI * gap
+        ),
+        (mean / gap - 1.0).abs() < CROSSING,
+    ));
+    all
+}

@@ -1,0 +1,156 @@
+//! Sticking, slipping and touching: which mode follows from a state and the torque that acts.
+
+use super::flow::Spring;
+use super::trajectory::Side;
+use super::{Body, Contact, Drive};
+
+/// How a mass rubs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Friction {
+    /// Held at rest.
+    Stuck,
+    /// Moves (or begins to move) up.
+    Up,
+    /// Moves down.
+    Down,
+}
+
+impl Friction {
+    /// Sign of the motion.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Stuck => 0.0,
+            Self::Up => 1.0,
+            Self::Down => -1.0,
+        }
+    }
+
+    fn towards(direction: f64) -> Self {
+        if direction < 0.0 {
+            Self::Down
+        } else {
+            Self::Up
+        }
+    }
+
+    /// Of a mass with velocity `v` under a `force` besides its friction of this level.
+    pub fn of(v: f64, force: f64, level: f64) -> Self {
+        if v != 0.0 {
+            Self::towards(v)
+        } else if level > 0.0 && force.abs() <= level {
+            Self::Stuck
+        } else {
+            Self::towards(force)
+        }
+    }
+}
+
+/// State of a drive: what moves continuously, and the modes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    pub x1: f64,
+    pub v1: f64,
+    pub v2: f64,
+    /// `x1 - x2`, kept by itself so that the ends of the gap are met exactly.
+    pub gap: f64,
+    pub motor: Friction,
+    pub load: Friction,
+    /// Where the masses touch.
+    pub joint: Option<Side>,
+}
+
+/// Share of the forces by which a contact must pull before it counts as parting: above round-off, so
+/// that a contact without force is no endless coming and going.
+const PULL: f64 = 1e-12;
+
+impl State {
+    /// The spring of the contact, if the masses touch and it has one.
+    pub fn spring(&self, drive: &Drive) -> Option<Spring> {
+        Spring::at(drive, self.joint?)
+    }
+
+    /// Torque or force on the load from the spring.
+    pub fn spring_force(&self, drive: &Drive) -> f64 {
+        self.spring(drive).map_or(0.0, |s| s.force(self))
+    }
+
+    /// Sets the modes that follow from the velocities, the gap and the torque `u`.
+    pub fn settle(&mut self, drive: &Drive, u: f64) {
+        if matches!(drive.contact, Contact::Rigid { .. }) {
+            if self.joint.is_none() {
+                self.joint = self.begins_to_press(drive, u);
+            }
+            if let Some(side) = self.joint {
+                if self.stays_together(drive, u, side) {
+                    return;
+                }
+                self.joint = None;
+            }
+        }
+        let force = self.spring_force(drive);
+        self.motor = Friction::of(self.v1, u - force, drive.motor.coulomb);
+        self.load = Friction::of(self.v2, force, drive.load.coulomb);
+    }
+
+    /// The end at which masses without relative speed would move into each other.
+    fn begins_to_press(&self, drive: &Drive, u: f64) -> Option<Side> {
+        if self.v1 != self.v2 || self.gap.abs() != drive.half_gap {
+            return None;
+        }
+        let closing =
+            acceleration(&drive.motor, self.v1, u) - acceleration(&drive.load, self.v2, 0.0);
+        [Side::Upper, Side::Lower]
+            .into_iter()
+            .find(|s| s.sign() * self.gap == drive.half_gap && s.sign() * closing > 0.0)
+    }
+
+    /// Whether rigidly touching masses go on so; sets their friction if they do.
+    fn stays_together(&mut self, drive: &Drive, u: f64, side: Side) -> bool {
+        let (motor, load) = (drive.motor, drive.load);
+        let sign = side.sign();
+        let pull = holding(drive, side) + pull_share(drive, u);
+        let level = motor.coulomb + load.coulomb;
+        let push = sign * u;
+        if self.v1 == 0.0 && level > 0.0 {
+            // At rest the force on the load is any that both frictions can bear.
+            let least = (-pull).max(-load.coulomb).max(push - motor.coulomb);
+            let most = load.coulomb.min(push + motor.coulomb);
+            if least <= most {
+                (self.motor, self.load) = (Friction::Stuck, Friction::Stuck);
+                return true;
+            }
+            if u.abs() <= level {
+                return false;
+            }
+        }
+        let friction = Friction::of(self.v1, u, 0.0);
+        let dry = friction.sign();
+        let inertia = motor.inertia + load.inertia;
+        let a = (u - dry * level - (motor.viscous + load.viscous) * self.v1) / inertia;
+        let force = load.inertia * a + load.viscous * self.v1 + dry * load.coulomb;
+        (self.motor, self.load) = (friction, friction);
+        sign * force >= -pull
+    }
+}
+
+/// Pull that the contact at an end withstands.
+pub(super) fn holding(drive: &Drive, side: Side) -> f64 {
+    match side {
+        Side::Upper => drive.adhesion.upper,
+        Side::Lower => drive.adhesion.lower,
+    }
+}
+
+/// Pull that counts as none.
+pub(super) fn pull_share(drive: &Drive, u: f64) -> f64 {
+    PULL * (u.abs() + drive.motor.coulomb + drive.load.coulomb)
+}
+
+/// Acceleration of a mass by itself.
+fn acceleration(body: &Body, v: f64, force: f64) -> f64 {
+    let friction = Friction::of(v, force, body.coulomb);
+    if friction == Friction::Stuck {
+        return 0.0;
+    }
+    (force - friction.sign() * body.coulomb - body.viscous * v) / body.inertia
+}
