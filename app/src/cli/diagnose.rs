@@ -321,10 +321,7 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
 }
 
 /// The measurement and the bytes that it was read from; else one line that says what is wrong with it.
-pub(super) fn read(
-    path: &Path,
-    options: &ImportOptions,
-) -> Result<(Measurement, Vec<u8>), String> {
+pub(super) fn read(path: &Path, options: &ImportOptions) -> Result<(Measurement, Vec<u8>), String> {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
