@@ -422,7 +422,6 @@ fn no_gap_is_claimed_where_a_drifting_relay_shows_something_else() {
                 ..base
             },
         ),
-        ("spring", strange(Stranger::Spring { stiffness: 0.5 })),
         (
             "hard spot",
             strange(Stranger::HardSpot {
