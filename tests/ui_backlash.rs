@@ -78,6 +78,13 @@ fn the_page_opens_on_a_drive_whose_gap_the_motor_finds() {
     // Play may have moved the clock by a few frames.
     click(&mut harness, "From the start");
     picture(&mut harness, "backlash");
+    // The first event is the first switch, at eps J/(k(1 + a) - c) after the start.
+    click(&mut harness, "Step");
+    let clock = state(&harness)["clock"].as_f64().expect("a time");
+    assert!(
+        (clock / (0.5 * 8.8e-4 / 0.62) - 1.0).abs() < 0.01,
+        "{clock}"
+    );
 }
 
 #[test]

@@ -12,29 +12,48 @@ pub(super) fn value(c: &[f64], z: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, c| sum * z + c)
 }
 
+/// `1/(k + 1)`: divisions are the slowest part of an integral.
+static INVERSES: [f64; 2 * TERMS] = inverses();
+
+const fn inverses() -> [f64; 2 * TERMS] {
+    let mut table = [0.0; 2 * TERMS];
+    let mut k = 0;
+    while k < table.len() {
+        table[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    table
+}
+
 /// Integral from 0 to `z`.
 pub(super) fn integral(c: &[f64], z: f64) -> f64 {
     let sum = c
         .iter()
-        .enumerate()
+        .zip(&INVERSES)
         .rev()
-        .fold(0.0, |sum, (k, c)| sum * z + c / (k + 1) as f64);
+        .fold(0.0, |sum, (c, inverse)| sum * z + c * inverse);
     sum * z
 }
 
 /// Integral of the square from 0 to `z`.
 pub(super) fn integral_of_square(c: &[f64], z: f64) -> f64 {
-    let mut sum = 0.0;
-    let mut outer = z;
-    for (i, a) in c.iter().enumerate() {
-        let mut power = outer;
-        for (j, b) in c.iter().enumerate() {
-            sum += a * b * power / (i + j + 1) as f64;
-            power *= z;
-        }
-        outer *= z;
+    let mut terms = [0.0; TERMS];
+    let mut power = 1.0;
+    for (term, c) in terms.iter_mut().zip(c) {
+        *term = c * power;
+        power *= z;
     }
-    sum
+    let terms = &terms[..c.len().min(TERMS)];
+    let mut sum = 0.0;
+    for (i, a) in terms.iter().enumerate() {
+        sum += a * a * INVERSES[2 * i];
+        let mut mixed = 0.0;
+        for (b, inverse) in terms[i + 1..].iter().zip(&INVERSES[2 * i + 1..]) {
+            mixed += b * inverse;
+        }
+        sum += 2.0 * a * mixed;
+    }
+    sum * z
 }
 
 /// Halvings before a pair of crossings counts as a touch.

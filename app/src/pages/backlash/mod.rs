@@ -151,7 +151,11 @@ impl Backlash {
                 }
                 News::Failed(error) => {
                     self.estimation = None;
-                    self.message = Some(error);
+                    match (of, &mut self.scene) {
+                        // Asked again, it would only fail again.
+                        (Some(_), Some(scene)) => scene.estimate = Some(Err(error)),
+                        _ => self.message = Some(error),
+                    }
                     return;
                 }
                 News::Progress(..) => {}
