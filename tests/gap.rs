@@ -1,7 +1,11 @@
 //! The gap found from the motor's side, in records of rigs that are not the project's model, and nothing
 //! claimed where there is none to see.
 
-#[allow(dead_code)]
+#![allow(
+    clippy::large_types_passed_by_value,
+    reason = "definitions of rigs are plain values"
+)]
+
 #[path = "support/mod.rs"]
 mod support;
 

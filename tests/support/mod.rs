@@ -1,5 +1,16 @@
 //! Rigs that are not the project's model, and what is hidden in them.
 
+#![allow(
+    clippy::disallowed_methods,
+    clippy::disallowed_macros,
+    reason = "the core neither prints nor starts threads nor reads the clock; its bench does"
+)]
+#![allow(
+    clippy::large_types_passed_by_value,
+    reason = "definitions of rigs are plain values"
+)]
+#![allow(dead_code, reason = "each test uses a part of the rigs")]
+
 pub mod case;
 pub mod drive_cases;
 pub mod drive_rig;
