@@ -16,24 +16,25 @@ pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
 }
 
-/// A plot that shows its data and stays where it is.
-pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Plot<'static> {
-    Plot::new(name)
-        .height(height)
-        .custom_x_axes(vec![
-            AxisHints::new_x()
-                .label(x)
-                .label_spacing(LABELS)
-                .formatter(label),
-        ])
-        .custom_y_axes(vec![
-            AxisHints::new_y()
-                .label(y)
-                .label_spacing(LABELS)
-                .formatter(label),
-        ])
+/// Axes whose labels have as many decimals as they need; that of y at least this wide, so that plots above
+/// each other line up.
+pub fn axes<'a>(
+    plot: Plot<'a>,
+    x: &'static str,
+    y: impl Into<egui::WidgetText>,
+    width: f32,
+) -> Plot<'a> {
+    let axis = |hints: AxisHints<'static>| hints.label_spacing(LABELS).formatter(label);
+    plot.custom_x_axes(vec![axis(AxisHints::new_x().label(x))])
+        .custom_y_axes(vec![axis(AxisHints::new_y().label(y).min_thickness(width))])
         .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
         .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
+}
+
+/// A plot that shows its data and stays where it is.
+pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Plot<'static> {
+    axes(Plot::new(name), x, y, 0.0)
+        .height(height)
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_boxed_zoom(false)

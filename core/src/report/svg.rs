@@ -325,8 +325,8 @@ mod tests {
     fn ticks_are_round_and_inside() {
         let axis = Axis::new("t", "s", (0.13, 0.87));
         let ticks = axis.ticks(5.0);
-        assert_eq!(ticks.len(), 3);
-        for (tick, expected) in ticks.iter().zip([0.2, 0.4, 0.6]) {
+        assert_eq!(ticks.len(), 4);
+        for (tick, expected) in ticks.iter().zip([0.2, 0.4, 0.6, 0.8]) {
             assert!((tick - expected).abs() < 1e-12);
         }
         assert_eq!(tick_text(0.2, 0.2), "0.2");

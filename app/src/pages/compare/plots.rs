@@ -5,6 +5,7 @@ use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement};
 
 use super::Compare;
+use crate::pages::chart::axes;
 use crate::theme;
 
 /// Most points of a curve that are drawn; above, each stretch shows its extremes.
@@ -12,6 +13,9 @@ const MAX_POINTS: usize = 10_000;
 
 /// Seconds that are shown at first, as a share of the record: a few periods, not a solid band.
 const FIRST_VIEW: f64 = 0.03;
+
+/// Width of the labels of y, so that the plots line up.
+const AXIS_WIDTH: f32 = 78.0;
 
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 110.0;
@@ -36,7 +40,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
 fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32) -> Plot<'a> {
     let (start, end) = (measurement.time[0], measurement.time[measurement.len() - 1]);
     let group = egui::Id::unique(("compare", &measurement.name));
-    Plot::new(id)
+    axes(Plot::new(id), "time [s]", y_label, AXIS_WIDTH)
         .height(height)
         .default_x_bounds(
             start,
@@ -45,9 +49,6 @@ fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32)
         .auto_bounds([false, true])
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
-        .x_axis_label("time [s]")
-        .y_axis_label(y_label)
-        .y_axis_min_width(60.0)
         .allow_scroll(false)
         .legend(Legend::default())
 }

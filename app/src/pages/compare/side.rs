@@ -11,6 +11,11 @@ use crate::theme;
 /// Width of the widest bar, in points.
 const BAR_WIDTH: f32 = 150.0;
 
+/// Width of a narrow one, of the names beside the bars, and of these with the numbers and gaps.
+const LEAST_BAR: f32 = 50.0;
+const WATERFALL_LABEL: f32 = 140.0;
+const WATERFALL_TEXT: f32 = 230.0;
+
 pub(super) fn ui(
     page: &Compare,
     ui: &mut egui::Ui,
@@ -116,11 +121,21 @@ fn waterfall_ui(
         .collect();
     let largest = steps.iter().map(|(_, r)| r.step.error).fold(2.0, f64::max);
     let floor = steps.first().map_or(1.0, |(_, r)| r.noise_floor);
+    let width = (ui.available_width() - WATERFALL_TEXT).clamp(LEAST_BAR, BAR_WIDTH);
     egui::Grid::new("waterfall").num_columns(3).show(ui, |ui| {
+        let mut row = |label: &str, error: f64, color: Color32| {
+            ui.allocate_ui(egui::vec2(WATERFALL_LABEL, 18.0), |ui| {
+                ui.set_width(WATERFALL_LABEL);
+                ui.add(egui::Label::new(label).truncate());
+            });
+            ui.label(times_noise(error));
+            bar_ui(ui, error, floor, largest, color, width);
+            ui.end_row();
+        };
         for (label, report) in &steps {
-            bar_row(ui, label, report.step.error, floor, largest, theme::MODEL);
+            row(label, report.step.error, theme::MODEL);
         }
-        bar_row(ui, "Noise floor", floor, floor, largest, theme::NOISE);
+        row("Noise floor", floor, theme::NOISE);
     });
     ui.small("Bars on a logarithmic scale.");
     if !page.effects.is_empty() && page.job.is_none() {
@@ -135,18 +150,11 @@ fn waterfall_ui(
     }
 }
 
-fn bar_row(ui: &mut egui::Ui, label: &str, error: f64, floor: f64, largest: f64, color: Color32) {
-    ui.label(label);
-    ui.label(times_noise(error));
-    bar_ui(ui, error, floor, largest, color);
-    ui.end_row();
-}
-
-fn bar_ui(ui: &mut egui::Ui, error: f64, floor: f64, largest: f64, color: Color32) {
+fn bar_ui(ui: &mut egui::Ui, error: f64, floor: f64, largest: f64, color: Color32, width: f32) {
     let share = ((error / floor).max(1.0).ln() / (largest / floor).ln()).clamp(0.0, 1.0) as f32;
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(BAR_WIDTH, 12.0), egui::Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(width, 12.0), egui::Sense::hover());
     let mut bar = rect;
-    bar.set_width(3.0 + share * (BAR_WIDTH - 3.0));
+    bar.set_width(3.0 + share * (width - 3.0));
     ui.painter().rect_filled(bar, 2.0, color);
 }
 
@@ -216,6 +224,7 @@ fn card_ui(
             report.noise_floor,
             report.step.error.max(2.0),
             theme::MODEL,
+            ui.available_width().min(BAR_WIDTH),
         );
         ui.label(sentence);
         if !candidate.equivalent_to.is_empty() {
