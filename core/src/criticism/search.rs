@@ -116,10 +116,9 @@ impl Search {
         points.extend(Self::other_valleys(
             data, fit, &rest, &kept, &structure, effect, probe,
         ));
-        let present = instead.map_or(fit.cost, |(whole, _)| whole.cost);
         Self {
             scouted: scouted.unwrap_or(f64::INFINITY),
-            ..Self::from_points(structure, points, present)
+            ..Self::from_points(structure, points, fit.cost)
         }
     }
 
