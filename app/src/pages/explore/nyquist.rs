@@ -103,8 +103,9 @@ impl Nyquist {
                         .shape(MarkerShape::Square),
                 );
                 let text = format!("S: margin φ = {:.1}°", phi.to_degrees());
-                let beside = [at[0] + 0.08 * view, at[1] - 0.1 * view];
-                plot.text(label("S", text, beside).anchor(egui::Align2::LEFT_CENTER));
+                // Above it: below the line stands the amplitude.
+                let above = [at[0] - 0.08 * view, at[1] + 0.08 * view];
+                plot.text(label("S", text, above).anchor(egui::Align2::LEFT_BOTTOM));
             }
             if let Some((a, at)) = marker {
                 plot.points(dot("a", at));
