@@ -20,7 +20,7 @@ pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
 /// each other line up.
 pub fn axes<'a>(
     plot: Plot<'a>,
-    x: &'static str,
+    x: impl Into<egui::WidgetText>,
     y: impl Into<egui::WidgetText>,
     width: f32,
 ) -> Plot<'a> {

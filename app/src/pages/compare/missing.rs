@@ -3,6 +3,7 @@
 use egui_plot::{HLine, Line, Plot, PlotPoints};
 use hysteron_core::criticism::{MissingPart, StepReport};
 
+use crate::pages::chart::axes;
 use crate::theme;
 
 /// Estimates that are drawn.
@@ -24,6 +25,9 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
     ui.small("Steps over one axis at a time, with bars of two standard errors.");
 }
 
+/// Width of the labels of y, so that the plots line up.
+const AXIS_WIDTH: f32 = 60.0;
+
 fn plot_ui(part: &MissingPart, ui: &mut egui::Ui) {
     let label = |name: &str, unit: &str| {
         if unit == "1" {
@@ -33,29 +37,35 @@ fn plot_ui(part: &MissingPart, ui: &mut egui::Ui) {
         }
     };
     let size = part.parts.iter().map(|p| p.value.abs()).fold(0.0, f64::max);
-    Plot::new(("missing", &part.what, &part.axis))
-        .height(HEIGHT)
-        .x_axis_label(label(&part.axis, &part.axis_unit))
-        .y_axis_label(label(&part.what, &part.unit))
-        .y_axis_min_width(50.0)
-        .allow_scroll(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .show(ui, |plot| {
-            for p in &part.parts {
-                // Bars that know nothing would squeeze the rest.
-                let half = (2.0 * p.std_error).min(2.0 * size);
-                let middle = 0.5 * (p.from + p.to);
-                let bar = vec![[middle, p.value - half], [middle, p.value + half]];
-                let step = vec![[p.from, p.value], [p.to, p.value]];
-                let faint = theme::RESIDUAL.gamma_multiply(0.5);
-                plot.line(Line::new("", PlotPoints::from(bar)).color(faint).width(1.5));
-                plot.line(
-                    Line::new("", PlotPoints::from(step))
-                        .color(theme::RESIDUAL)
-                        .width(3.0),
-                );
-            }
-            plot.hline(HLine::new("", 0.0).color(theme::NOISE).width(1.0));
-        });
+    let (x, y) = (
+        label(&part.axis, &part.axis_unit),
+        label(&part.what, &part.unit),
+    );
+    axes(
+        Plot::new(("missing", &part.what, &part.axis)),
+        x,
+        y,
+        AXIS_WIDTH,
+    )
+    .height(HEIGHT)
+    .allow_scroll(false)
+    .allow_drag(false)
+    .allow_zoom(false)
+    .show(ui, |plot| {
+        for p in &part.parts {
+            // Bars that know nothing would squeeze the rest.
+            let half = (2.0 * p.std_error).min(2.0 * size);
+            let middle = 0.5 * (p.from + p.to);
+            let bar = vec![[middle, p.value - half], [middle, p.value + half]];
+            let step = vec![[p.from, p.value], [p.to, p.value]];
+            let faint = theme::RESIDUAL.gamma_multiply(0.5);
+            plot.line(Line::new("", PlotPoints::from(bar)).color(faint).width(1.5));
+            plot.line(
+                Line::new("", PlotPoints::from(step))
+                    .color(theme::RESIDUAL)
+                    .width(3.0),
+            );
+        }
+        plot.hline(HLine::new("", 0.0).color(theme::NOISE).width(1.0));
+    });
 }
