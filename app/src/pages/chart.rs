@@ -18,12 +18,12 @@ pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
 
 /// Axes whose labels have as many decimals as they need; that of y at least this wide, so that plots above
 /// each other line up.
-pub fn axes<'a>(
-    plot: Plot<'a>,
+pub fn axes(
+    plot: Plot<'_>,
     x: impl Into<egui::WidgetText>,
     y: impl Into<egui::WidgetText>,
     width: f32,
-) -> Plot<'a> {
+) -> Plot<'_> {
     let axis = |hints: AxisHints<'static>| hints.label_spacing(LABELS).formatter(label);
     plot.custom_x_axes(vec![axis(AxisHints::new_x().label(x))])
         .custom_y_axes(vec![axis(AxisHints::new_y().label(y).min_thickness(width))])
