@@ -64,6 +64,26 @@ fn the_welcome_of_compare_offers_three_measurements() {
 }
 
 #[test]
+fn a_diagnosis_that_is_cancelled_leaves_what_was_there() {
+    let mut harness = app("compare");
+    harness.step();
+    harness.get_by_label("Open drive-02").click();
+    harness.step();
+    wait_until_idle(&mut harness);
+    let before = error(&harness);
+    harness.get_by_label("Add Coulomb friction").click();
+    harness.step();
+    assert_eq!(harness.state().hook_state()["busy"], true);
+    harness.step();
+    harness.get_by_label("Cancel").click();
+    harness.step();
+    harness.step();
+    let state = harness.state().hook_state();
+    assert_eq!((&state["busy"], error(&harness)), (&false.into(), before));
+    harness.get_by_label("Add Coulomb friction");
+}
+
+#[test]
 fn adding_coulomb_friction_to_drive_02_lowers_the_error_to_the_noise() {
     let mut harness = app("compare");
     harness.step();
