@@ -146,7 +146,7 @@ impl Fit {
                 self.damping *= 10.0;
                 continue;
             };
-            let (starts, motion) = self.motion_from(data, &values, starts, scale);
+            let (starts, motion) = self.motion_from(data, &values, starts, scale, present);
             let cost = self.objective(data, &motion, &values, scale);
             if cost <= present {
                 let fall = (present - cost) / present.max(f64::MIN_POSITIVE);
@@ -187,7 +187,7 @@ impl Fit {
         self.done = !self.cost.is_finite();
     }
 
-    /// Motion with new values; where it got worse, each window starts from the better of its new and
+    /// Motion with new values; where it got worse than the `present` cost, each window starts from the better of its new and
     /// its present state: near a kink, such as sticking, a step in the state may lead anywhere.
     fn motion_from(
         &self,
@@ -195,9 +195,9 @@ impl Fit {
         values: &[f64],
         mut starts: Vec<Start>,
         scale: f64,
+        present: f64,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-        let present = self.objective(data, &self.motion, &self.values, scale);
         if self.objective(data, &moved, values, scale) <= present {
             return (starts, moved);
         }
@@ -424,19 +424,7 @@ impl Fit {
 
     /// Takes for each window the measured state where that suits the values better than the present one.
     pub fn take_measured_starts(&mut self, data: &Data) {
-        let measured = data.guessed_starts();
-        let motion = simulate(data, &self.structure, &self.values, &measured);
-        let (before, after) = (
-            window_costs(data, &self.motion),
-            window_costs(data, &motion),
-        );
-        for (k, start) in measured.into_iter().enumerate() {
-            if after[k] < before[k] {
-                self.starts[k] = start;
-            }
-        }
-        self.motion = simulate(data, &self.structure, &self.values, &self.starts);
-        self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
+        self.take_better(data, data.guessed_starts());
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
@@ -444,7 +432,7 @@ impl Fit {
         for _ in 0..2 {
             let columns = self.columns(data, &[], scales);
             let (_, _, windows) = self.normal_equations(data, &columns, f64::INFINITY);
-            let trial: Vec<Start> = self
+            let trial = self
                 .starts
                 .iter()
                 .zip(&windows)
@@ -457,18 +445,21 @@ impl Fit {
                     }
                 })
                 .collect();
-            let motion = simulate(data, &self.structure, &self.values, &trial);
-            let (before, after) = (
-                window_costs(data, &self.motion),
-                window_costs(data, &motion),
-            );
-            for (k, start) in trial.into_iter().enumerate() {
-                if after[k] < before[k] {
-                    self.starts[k] = start;
-                }
-            }
-            self.motion = simulate(data, &self.structure, &self.values, &self.starts);
+            self.take_better(data, trial);
         }
+    }
+
+    /// Takes for each window its state of `trial` where that fits better.
+    fn take_better(&mut self, data: &Data, trial: Vec<Start>) {
+        let motion = simulate(data, &self.structure, &self.values, &trial);
+        let before = window_costs(data, &self.motion);
+        let after = window_costs(data, &motion);
+        for (k, start) in trial.into_iter().enumerate() {
+            if after[k] < before[k] {
+                self.starts[k] = start;
+            }
+        }
+        self.motion = simulate(data, &self.structure, &self.values, &self.starts);
         self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
     }
 
@@ -642,22 +633,18 @@ fn oddness(data: &Data, motion: &Motion) -> f64 {
 /// Huber 1981). For `m` below `K` it is the sum of squares. Where a body sticks, some windows may go wrong by a thousand times the
 /// noise whatever the parameters: they must not decide alone.
 fn robust_cost(data: &Data, motion: &Motion, scale: f64) -> f64 {
-    let (mut logs, mut count) = (0.0, 0.0);
-    for (cost, n) in fitted_windows(data, motion) {
-        if n > 0.0 {
-            logs += n * (cost / (n * scale)).ln_1p();
-            count += n;
-        }
-    }
-    if count > 0.0 {
-        count * scale * (logs / count).exp_m1()
-    } else {
-        0.0
-    }
+    let (mean, count) = mean_logarithm(data, motion, scale);
+    count * scale * mean.exp_m1()
 }
 
 /// Change of [`robust_cost`] for a change of the squared residuals as [`window_weights`] weigh them.
 fn robust_share(data: &Data, motion: &Motion, scale: f64) -> f64 {
+    mean_logarithm(data, motion, scale).0.exp()
+}
+
+/// Mean over the fitted residuals of `ln(1 + m / scale)` with `m` the mean square of their window, and
+/// their number.
+fn mean_logarithm(data: &Data, motion: &Motion, scale: f64) -> (f64, f64) {
     let (mut logs, mut count) = (0.0, 0.0);
     for (cost, n) in fitted_windows(data, motion) {
         if n > 0.0 {
@@ -665,11 +652,7 @@ fn robust_share(data: &Data, motion: &Motion, scale: f64) -> f64 {
             count += n;
         }
     }
-    if count > 0.0 {
-        (logs / count).exp()
-    } else {
-        1.0
-    }
+    (if count > 0.0 { logs / count } else { 0.0 }, count)
 }
 
 /// Weight of each window in the normal equations, from the derivative of [`robust_cost`].

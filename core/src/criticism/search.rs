@@ -80,6 +80,7 @@ impl Search {
     ) -> Self {
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
+        let own = effect.starts(probe);
         let mut points = Vec::new();
         let related = |other: &dyn Effect| {
             other.contains().contains(&effect.id()) || same_dimensions(effect, other)
@@ -96,7 +97,7 @@ impl Search {
             if rest.len() != kept.len() {
                 continue;
             }
-            for mut start in effect.starts(probe) {
+            for mut start in own.iter().cloned() {
                 lend(effect, &mut start, other, &lent);
                 let mut values = rest.clone();
                 values.extend(start);
@@ -106,15 +107,15 @@ impl Search {
                 }
             }
         }
-        for start in effect.starts(probe) {
+        for start in &own {
             let mut values = kept.clone();
-            values.extend(&start);
+            values.extend(start);
             structure.begin(&mut values, kept.len());
             points.push((values.clone(), fit.starts.clone()));
             points.extend(Self::regressed(data, fit, &structure, values));
         }
         points.extend(Self::other_valleys(
-            data, fit, &rest, &kept, &structure, effect, probe,
+            data, fit, &rest, &kept, &structure, &own, probe,
         ));
         Self {
             scouted: scouted.unwrap_or(f64::INFINITY),
@@ -149,11 +150,10 @@ impl Search {
         rest: &Structure,
         kept: &[f64],
         structure: &Structure,
-        effect: &'static dyn Effect,
+        own: &[Vec<f64>],
         probe: &Probe,
     ) -> Vec<(Vec<f64>, Vec<Start>)> {
         let mut points = Vec::new();
-        let own = effect.starts(probe);
         if own.len() > FEW_STARTS {
             return points;
         }
@@ -165,7 +165,7 @@ impl Search {
             if starts.len() <= FEW_STARTS {
                 continue;
             }
-            for start in &own {
+            for start in own {
                 for other in &starts {
                     let mut values = kept.to_vec();
                     values[rest.range(index)].copy_from_slice(other);
