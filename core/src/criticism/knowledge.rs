@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::baseline;
-use super::fit::{Fit, score};
+use super::fit::Fit;
+use super::score::score;
 use super::select::helps;
 use super::session::{Scored, Session};
 use super::structure::Structure;

@@ -2,6 +2,7 @@
 
 mod atlas;
 mod baseline;
+mod cost;
 mod data;
 mod fit;
 mod job;
@@ -11,6 +12,7 @@ mod missing;
 mod noise;
 mod race;
 mod report;
+mod score;
 mod search;
 mod select;
 mod session;

@@ -4,7 +4,7 @@
 //! statistic with the number of residuals divided by their autocorrelation, so that structured
 //! residuals do not pass for evidence.
 
-use super::fit::Score;
+use super::score::Score;
 
 /// Least statistic for an effect to be added. For a needless effect it is chi-squared with a few
 /// degrees of freedom; 30 keeps the chance below 1e-5 even for five parameters, and there are some

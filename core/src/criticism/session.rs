@@ -3,9 +3,10 @@
 use super::atlas::atlas;
 use super::baseline;
 use super::data::Data;
-use super::fit::{Fit, Score, score};
+use super::fit::Fit;
 use super::knowledge::{self, Knowledge};
 use super::locate::locate;
+use super::score::{Score, score};
 use super::select::is_noise;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::effect::{

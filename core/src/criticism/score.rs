@@ -1,0 +1,107 @@
+//! How well a fit explains the record, on the part that it saw and on the part that it did not.
+
+use super::cost::{cost_between, fit_cost, informed_windows};
+use super::data::Data;
+use super::fit::{Fit, Motion, residuals};
+
+/// How well a motion fits: on the fitted and on the held-back part.
+#[derive(Clone, Debug)]
+pub(super) struct Score {
+    pub error: f64,
+    pub error_fit: f64,
+    /// Mean squared residuals of each held-back block.
+    pub held_blocks: Vec<f64>,
+    /// Number of residuals on each part.
+    pub held_count: f64,
+    pub fit_count: f64,
+    /// Squared residuals on the fitted part.
+    pub fit_cost: f64,
+    /// By how much autocorrelation widens variances: at least 1.
+    pub correlation: f64,
+}
+
+/// Scores a fit; each window's states count as fitted on its own data.
+pub(super) fn score(data: &Data, fit: &Fit) -> Score {
+    let states = if data.has_position { 2.0 } else { 1.0 };
+    let informed = informed_windows(data);
+    let outputs = data.outputs.len() as f64;
+    let count = |held: bool| -> f64 {
+        data.blocks
+            .iter()
+            .filter(|b| b.held_back == held)
+            .map(|b| (b.to - b.from) as f64 * outputs)
+            .sum()
+    };
+    // A held-back block that is a window of its own has its states fitted.
+    let own_states = if informed.iter().all(|i| *i) {
+        0.0
+    } else {
+        states
+    };
+    let own = |flag: bool| states * informed.iter().filter(|i| **i == flag).count() as f64;
+    let held_blocks: Vec<f64> = data
+        .blocks
+        .iter()
+        .filter(|b| b.held_back)
+        .map(|b| cost_between(data, &fit.motion, b.from, b.to))
+        .collect();
+    let sizes = data
+        .blocks
+        .iter()
+        .filter(|b| b.held_back)
+        .map(|b| ((b.to - b.from) as f64 * outputs - own_states).max(1.0));
+    let fit_cost = fit_cost(data, &fit.motion);
+    let held_count = (count(true) - own(false)).max(1.0);
+    let fit_count = (count(false) - own(true) - fit.structure.free_count() as f64).max(1.0);
+    Score {
+        error: (held_blocks.iter().sum::<f64>() / held_count).sqrt(),
+        error_fit: (fit_cost / fit_count).sqrt(),
+        held_blocks: held_blocks.iter().zip(sizes).map(|(c, n)| c / n).collect(),
+        held_count,
+        fit_count,
+        fit_cost,
+        correlation: correlation_inflation(data, &fit.motion),
+    }
+}
+
+/// Longest lag, in samples, over which autocorrelation is summed.
+const MAX_LAG: usize = 200;
+
+/// `1 + 2 sum rho_k` of the residuals, summed up to the first lag without correlation; the mean of
+/// the outputs weighted by their squared error.
+fn correlation_inflation(data: &Data, motion: &Motion) -> f64 {
+    let (mut weighted, mut weights) = (0.0, 0.0);
+    let runs = data.runs();
+    for r in residuals(data, motion) {
+        let power: f64 = runs
+            .iter()
+            .flat_map(|(from, to)| &r[*from..*to])
+            .map(|r| r * r)
+            .sum();
+        if power == 0.0 {
+            continue;
+        }
+        let count = data.used();
+        let white = 2.0 / (count as f64).sqrt();
+        let mut sum = 1.0;
+        for lag in 1..MAX_LAG.min(count / 4) {
+            let product: f64 = runs
+                .iter()
+                .flat_map(|(from, to)| r[*from..*to].windows(lag + 1))
+                .map(|w| w[0] * w[lag])
+                .sum();
+            let rho = product / power;
+            if rho < white {
+                break;
+            }
+            sum += 2.0 * rho;
+        }
+        weighted += sum * power;
+        weights += power;
+    }
+    if weights > 0.0 {
+        weighted / weights
+    } else {
+        1.0
+    }
+}
