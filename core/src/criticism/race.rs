@@ -1,7 +1,9 @@
 //! Many effects tried side by side on top of one model: only those that may win are fitted to the end.
 
 use super::fit::Fit;
-use super::search::Search;
+use super::score::score;
+use super::search::{Ground, Search};
+use super::select::is_plain_noise;
 use super::session::Session;
 use crate::effect::Effect;
 
@@ -57,13 +59,16 @@ impl Race {
         let target = instead.map(|(whole, _)| whole.cost);
         let probe = session.probe(fit);
         // What takes the place of another effect must first come back to where that was.
-        let scouted = instead.is_none().then(|| session.scouted(fit));
+        let ground = instead.is_none().then(|| Ground {
+            scouted: session.scouted(fit),
+            settled: is_plain_noise(&score(&session.data, fit)),
+        });
         Self {
             contenders: effects
                 .into_iter()
                 .map(|effect| Contender {
                     effect,
-                    search: Search::adding(&session.data, fit, effect, &probe, instead, scouted),
+                    search: Search::adding(&session.data, fit, effect, &probe, instead, ground),
                     close: match instead {
                         Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
                         _ => CLOSE,

@@ -37,6 +37,16 @@ const UNSETTLED: f64 = 1.5;
 /// A fit that goes on is hoped to fall by this many times its last fall.
 const HOPE: f64 = 3.0;
 
+/// The fitted model that effects are added to.
+#[derive(Clone, Copy)]
+pub(super) struct Ground {
+    /// Its cost on the scout, which an effect must lower to be followed.
+    pub scouted: f64,
+    /// It leaves nothing but noise: its body and its effects are not led astray by a missing one, so that
+    /// no other values of theirs are tried with a new effect.
+    pub settled: bool,
+}
+
 /// A search that goes on piece by piece.
 pub(super) struct Search {
     structure: Structure,
@@ -45,8 +55,8 @@ pub(super) struct Search {
     finalists: Vec<Fit>,
     /// Cost of the model that this one would replace.
     present: f64,
-    /// The same on the scout; infinite where every fit is followed.
-    scouted: f64,
+    /// The model to which an effect is added; none where every fit is followed.
+    ground: Option<Ground>,
     total: usize,
     optimism: f64,
 }
@@ -68,16 +78,16 @@ impl Search {
 
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
     /// the baseline, since a missing effect may have bent the baseline far off. What it contains, or
-    /// what it stands in for (a fit and the place in it), lends it the values that both have. `scouted`
-    /// is the cost of the fitted model on the scout, which the effect must lower to be followed.
+    /// what it stands in for (a fit and the place in it), lends it the values that both have.
     pub fn adding(
         data: &Data,
         fit: &Fit,
         effect: &'static dyn Effect,
         probe: &Probe,
         instead: Option<(&Fit, usize)>,
-        scouted: Option<f64>,
+        ground: Option<Ground>,
     ) -> Self {
+        let settled = ground.is_some_and(|g| g.settled);
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
         let own = effect.starts(probe);
@@ -112,13 +122,17 @@ impl Search {
             values.extend(start);
             structure.begin(&mut values, kept.len());
             points.push((values.clone(), fit.starts.clone()));
-            points.extend(Self::regressed(data, fit, &structure, values));
+            if !settled {
+                points.extend(Self::regressed(data, fit, &structure, values));
+            }
         }
-        points.extend(Self::other_valleys(
-            data, fit, &rest, &kept, &structure, &own, probe,
-        ));
+        if !settled {
+            points.extend(Self::other_valleys(
+                data, fit, &rest, &kept, &structure, &own, probe,
+            ));
+        }
         Self {
-            scouted: scouted.unwrap_or(f64::INFINITY),
+            ground,
             ..Self::from_points(structure, points, fit.cost)
         }
     }
@@ -200,7 +214,7 @@ impl Search {
             scanned: Vec::new(),
             finalists: Vec::new(),
             present,
-            scouted: f64::INFINITY,
+            ground: None,
             optimism: f64::INFINITY,
         }
     }
@@ -222,11 +236,11 @@ impl Search {
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
         fit.take_measured_starts(scout);
-        let mut other = fit.clone();
+        let retry = self.ground.filter(|g| !g.settled).map(|_| fit.clone());
         for _ in 0..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
-        if fit.cost > PROMISING * self.scouted {
+        if let Some(mut other) = retry.filter(|_| fit.cost > self.promising()) {
             // Perhaps a wrong body led the new effect astray.
             other.fit_body(scout, scales);
             for _ in 0..SCAN_ITERATIONS {
@@ -243,6 +257,11 @@ impl Search {
         true
     }
 
+    /// Cost on the scout below which a starting point must come to be followed.
+    fn promising(&self) -> f64 {
+        self.ground.map_or(f64::INFINITY, |g| PROMISING * g.scouted)
+    }
+
     /// Goes on with the best of the scanned points on the whole record.
     fn choose_finalists(&mut self, data: &Data, scout: &Data, scales: &Scales) {
         self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
@@ -252,9 +271,10 @@ impl Search {
             return;
         };
         let hopeless = HOPELESS * self.present * share;
-        let near = NEAR * best.cost;
+        let promising = self.promising();
+        let near = (NEAR * best.cost).min(promising);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        first.done |= best.cost > hopeless.min(PROMISING * self.scouted);
+        first.done |= best.cost > hopeless.min(promising);
         settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {
