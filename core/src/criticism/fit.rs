@@ -281,8 +281,7 @@ impl Fit {
     /// Derivatives of the motion: one column per value, then position and velocity of the starts.
     fn columns(&self, data: &Data, steps: &[f64], scales: &Scales) -> Vec<Motion> {
         let spans = data.spans();
-        let difference =
-            |moved: Motion, step: f64| difference(moved, &self.motion, step, &spans);
+        let difference = |moved: Motion, step: f64| difference(moved, &self.motion, step, &spans);
         let fixed = self.structure.fixed();
         let mut columns: Vec<Motion> = steps
             .iter()
