@@ -20,6 +20,13 @@ const PART_CLOSE: f64 = 1.4;
 /// a fall of the error by less than 3 % does not count.
 const WORTHWHILE: f64 = 0.94;
 
+/// Share of the present cost on the scout below which a starting point must come to be followed.
+const PROMISING: f64 = 0.995;
+
+/// The same in the place of another effect, in times of the cost with that one: what first has to come back
+/// to where that was may still have some way to go.
+const WITHIN_REACH: f64 = 30.0;
+
 /// One effect in the race.
 struct Contender {
     effect: &'static dyn Effect,
@@ -58,17 +65,29 @@ impl Race {
     ) -> Self {
         let target = instead.map(|(whole, _)| whole.cost);
         let probe = session.probe(fit);
-        // What takes the place of another effect must first come back to where that was.
-        let ground = instead.is_none().then(|| Ground {
-            scouted: session.scouted(fit),
-            settled: is_plain_noise(&score(&session.data, fit)),
-        });
+        let ground = match instead {
+            None => Ground {
+                limit: PROMISING * session.scouted(fit),
+                settled: is_plain_noise(&score(&session.data, fit)),
+            },
+            Some((whole, _)) => Ground {
+                limit: WITHIN_REACH * session.scouted(whole),
+                settled: false,
+            },
+        };
         Self {
             contenders: effects
                 .into_iter()
                 .map(|effect| Contender {
                     effect,
-                    search: Search::adding(&session.data, fit, effect, &probe, instead, ground),
+                    search: Search::adding(
+                        &session.data,
+                        fit,
+                        effect,
+                        &probe,
+                        instead,
+                        Some(ground),
+                    ),
                     close: match instead {
                         Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
                         _ => CLOSE,

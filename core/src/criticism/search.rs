@@ -16,9 +16,6 @@ const SCAN_ITERATIONS: usize = 2;
 /// A starting point that still costs this many times the present model is not followed.
 const HOPELESS: f64 = 10.0;
 
-/// Share of the cost on the scout below which a starting point must come to be followed.
-const PROMISING: f64 = 0.995;
-
 /// A regressed baseline that differs by less than this share from the present one is no new start.
 const WORTH_A_START: f64 = 0.2;
 
@@ -40,9 +37,9 @@ const HOPE: f64 = 3.0;
 /// The fitted model that effects are added to.
 #[derive(Clone, Copy)]
 pub(super) struct Ground {
-    /// Its cost on the scout, which an effect must lower to be followed.
-    pub scouted: f64,
-    /// It leaves nothing but noise: its body and its effects are not led astray by a missing one, so that
+    /// Cost on the scout below which a starting point must come to be followed.
+    pub limit: f64,
+    /// The model leaves nothing but noise: its body and its effects are not led astray by a missing one, so that
     /// no other values of theirs are tried with a new effect.
     pub settled: bool,
 }
@@ -55,8 +52,10 @@ pub(super) struct Search {
     finalists: Vec<Fit>,
     /// Cost of the model that this one would replace.
     present: f64,
-    /// The model to which an effect is added; none where every fit is followed.
-    ground: Option<Ground>,
+    /// Cost on the scout below which a starting point must come to be followed.
+    limit: f64,
+    /// Whether a point that does not is tried again with another body.
+    retries: bool,
     total: usize,
     optimism: f64,
 }
@@ -132,7 +131,8 @@ impl Search {
             ));
         }
         Self {
-            ground,
+            limit: ground.map_or(f64::INFINITY, |g| g.limit),
+            retries: ground.is_some() && instead.is_none() && !settled,
             ..Self::from_points(structure, points, fit.cost)
         }
     }
@@ -214,7 +214,8 @@ impl Search {
             scanned: Vec::new(),
             finalists: Vec::new(),
             present,
-            ground: None,
+            limit: f64::INFINITY,
+            retries: false,
             optimism: f64::INFINITY,
         }
     }
@@ -236,11 +237,11 @@ impl Search {
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
         fit.take_measured_starts(scout);
-        let retry = self.ground.filter(|g| !g.settled).map(|_| fit.clone());
+        let retry = self.retries.then(|| fit.clone());
         for _ in 0..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
-        if let Some(mut other) = retry.filter(|_| fit.cost > self.promising()) {
+        if let Some(mut other) = retry.filter(|_| fit.cost > self.limit) {
             // Perhaps a wrong body led the new effect astray.
             other.fit_body(scout, scales);
             for _ in 0..SCAN_ITERATIONS {
@@ -257,11 +258,6 @@ impl Search {
         true
     }
 
-    /// Cost on the scout below which a starting point must come to be followed.
-    fn promising(&self) -> f64 {
-        self.ground.map_or(f64::INFINITY, |g| PROMISING * g.scouted)
-    }
-
     /// Goes on with the best of the scanned points on the whole record.
     fn choose_finalists(&mut self, data: &Data, scout: &Data, scales: &Scales) {
         self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
@@ -271,10 +267,9 @@ impl Search {
             return;
         };
         let hopeless = HOPELESS * self.present * share;
-        let promising = self.promising();
-        let near = (NEAR * best.cost).min(promising);
+        let near = (NEAR * best.cost).min(self.limit);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        first.done |= best.cost > hopeless.min(promising);
+        first.done |= best.cost > hopeless.min(self.limit);
         settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {
