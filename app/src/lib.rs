@@ -7,6 +7,7 @@ mod colors;
 mod hook;
 mod jobs;
 mod pages;
+mod pieces;
 mod save;
 mod start;
 mod tasks;

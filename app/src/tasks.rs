@@ -12,6 +12,8 @@ use hysteron_core::user_model::UserModel;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::pieces;
+
 /// What a task says while it runs.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(tag = "type", content = "value", rename_all = "lowercase")]
@@ -67,7 +69,7 @@ impl Task for StepTask {
             }
         };
         loop {
-            match job.advance() {
+            match job.advance_with(pieces::width(), &mut pieces::run) {
                 Progress::Running { fraction, text } => {
                     if !say(News::Progress(fraction, text)) {
                         return;

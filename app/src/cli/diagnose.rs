@@ -13,6 +13,8 @@ use hysteron_core::measurement::{
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
+use crate::pieces;
+
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
     /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file; many files: one
@@ -252,7 +254,7 @@ pub(super) fn one(
     let mut job =
         DiagnosisJob::with_model(&measurement, &given).map_err(|e| format!("{name}: {e}"))?;
     loop {
-        match job.advance() {
+        match job.advance_with(pieces::width(), &mut pieces::run) {
             Progress::Running { fraction, text } => show(fraction, &text),
             Progress::Done(mut diagnosis) => {
                 diagnosis.seconds = started.elapsed().as_secs_f64();

@@ -25,6 +25,7 @@ pub use job::{CriticismError, DiagnosisJob, Progress};
 pub use knowledge::baseline_symbols;
 pub use missing::MissingPart;
 pub use noise::noise_level;
+pub use race::Piece;
 pub use report::{
     Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
     StepReport, Verdict,

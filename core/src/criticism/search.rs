@@ -50,6 +50,8 @@ pub(super) struct Search {
     pending: VecDeque<(Vec<f64>, Vec<Start>)>,
     scanned: Vec<(Fit, Vec<Start>)>,
     finalists: Vec<Fit>,
+    /// No starting point came to be followed.
+    given_up: bool,
     /// Cost of the model that this one would replace.
     present: f64,
     /// Cost on the scout below which a starting point must come to be followed.
@@ -213,6 +215,7 @@ impl Search {
             pending: points.into(),
             scanned: Vec::new(),
             finalists: Vec::new(),
+            given_up: false,
             present,
             limit: f64::INFINITY,
             retries: false,
@@ -269,7 +272,8 @@ impl Search {
         let hopeless = HOPELESS * self.present * share;
         let near = (NEAR * best.cost).min(self.limit);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        first.done |= best.cost > hopeless.min(self.limit);
+        self.given_up = best.cost > hopeless.min(self.limit);
+        first.done |= self.given_up;
         settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {
@@ -320,7 +324,7 @@ impl Search {
         let mut finalists = self.finalists;
         finalists.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let mut best = finalists.into_iter().next()?;
-        if best.done && best.cost.is_finite() {
+        if best.done && !self.given_up && best.cost.is_finite() {
             best.polish_starts(data, scales);
         }
         Some(best)

@@ -2,7 +2,7 @@
 
 use super::knowledge::contradictions;
 use super::missing::missing_parts;
-use super::race::Race;
+use super::race::{Piece, Race, one_by_one};
 use super::search::Search;
 use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same};
 use super::session::{Scored, Session};
@@ -135,6 +135,16 @@ impl StepJob {
 
     /// Does a small piece of work.
     pub fn advance(&mut self) -> Progress<StepReport> {
+        self.advance_with(1, &mut one_by_one)
+    }
+
+    /// Does some work, of which `run` gets up to `width` independent pieces at a time where there are any.
+    /// It must run each of them, in any order, on one thread or on many; the result is the same.
+    pub fn advance_with(
+        &mut self,
+        width: usize,
+        run: &mut dyn FnMut(&mut [Piece<'_>]),
+    ) -> Progress<StepReport> {
         if matches!(self.stage, Stage::Report)
             && let Some(report) = self.report()
         {
@@ -146,7 +156,7 @@ impl StepJob {
                 let (data, scales) = (&session.data, &session.scales);
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
-            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session),
+            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session, width, run),
             Stage::Report => true,
         };
         if over {

@@ -26,6 +26,10 @@ const PIECE: f64 = 0.12;
 const LONGEST_PIECE: f64 = 1.0;
 const PIECE_RADIANS: f64 = 0.35;
 
+/// A displacement below this share of the motion that is left is crossed at once: far less would be lost in
+/// the digits of the position.
+const UNSEEN: f64 = 1e-9;
+
 /// The contact of one body.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
@@ -111,7 +115,8 @@ impl Contact {
                 motion.v.signum()
             };
             let share = 1.0 - direction * *deflection / limit;
-            left -= if share > SLIP_SHARE {
+            let seen = limit > UNSEEN * (motion.v * left).abs();
+            left -= if seen && share > SLIP_SHARE {
                 self.bend(&acting, motion, deflection, direction, left)
             } else {
                 *deflection = direction * limit;
