@@ -47,6 +47,8 @@ pub struct Backlash {
     speed: f64,
     /// The simulation that is under way, and for what.
     simulation: Option<(DriveInput, DriveJob)>,
+    /// How long it has worked, s.
+    worked: f64,
     /// The last one that was finished, or the measurement that is open.
     scene: Option<Scene>,
     /// The estimate that is under way, and for which simulation.
@@ -65,6 +67,7 @@ impl Default for Backlash {
             clock: 0.0,
             speed: 0.1,
             simulation: None,
+            worked: 0.0,
             scene: None,
             estimation: None,
             files: Files::default(),
@@ -88,7 +91,10 @@ impl Backlash {
             .is_some_and(|s| s.input() == Some(&self.input));
         if self.simulation.is_none() && !known && !self.measured() && self.message.is_none() {
             match DriveJob::new(&self.input) {
-                Ok(job) => self.simulation = Some((self.input, job)),
+                Ok(job) => {
+                    self.simulation = Some((self.input, job));
+                    self.worked = 0.0;
+                }
                 Err(error) => self.message = Some(error.to_string()),
             }
         }
@@ -100,6 +106,7 @@ impl Backlash {
         while !done && begin.elapsed().as_secs_f64() < BUDGET {
             done = job.advance(BATCH);
         }
+        self.worked += begin.elapsed().as_secs_f64();
         if done && let Some((input, job)) = self.simulation.take() {
             self.scene = Some(Scene::simulated(input, job.finish(), self.figure));
         }
@@ -337,6 +344,7 @@ impl View for Backlash {
             "gap_estimated": estimate.and_then(|e| e.gap),
             "direction": simulated.zip(self.relay()).and_then(|(s, r)| s.summary.direction(&r)),
             "clock": self.clock,
+            "times_real_time": simulated.map(|_| self.input.duration / self.worked),
             "playing": self.playing,
         })
     }

@@ -6,6 +6,8 @@ mod plant_editor;
 mod plots;
 mod table;
 
+use std::collections::VecDeque;
+
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks};
 
@@ -20,6 +22,9 @@ const PERIODS_PER_SECOND: f64 = 0.6;
 /// Width below which everything stands in one column, points.
 const NARROW: f32 = 700.0;
 
+/// Computations whose time is remembered.
+const REMEMBERED: usize = 31;
+
 /// The page: what is set, and what follows from it.
 pub struct Explore {
     input: ExploreInput,
@@ -33,6 +38,8 @@ pub struct Explore {
     /// Where the line can be taken hold of, for tests.
     line_at: Option<egui::Pos2>,
     finished: Option<Finished>,
+    /// How long the last computations took, s.
+    took: VecDeque<f64>,
 }
 
 /// What was computed, and for what.
@@ -53,6 +60,7 @@ impl Default for Explore {
             clock: 0.0,
             line_at: None,
             finished: None,
+            took: VecDeque::new(),
         }
     }
 }
@@ -89,6 +97,7 @@ impl View for Explore {
         let cycle = |c: hysteron_core::limit_cycle::Cycle| serde_json::json!({"period": c.period, "amplitude": c.amplitude});
         serde_json::json!({
             "busy": false,
+            "compute_ms": self.usual_time().map(|t| 1e3 * t),
             "loop": self.input,
             "answer": data.map(|(d, _)| d.text.clone()),
             "stability": data.map(|(d, _)| d.stability.clone()),
@@ -113,6 +122,7 @@ impl Explore {
         if known {
             return;
         }
+        let begin = web_time::Instant::now();
         let data = compute(&self.input).and_then(|data| {
             let claims = match self.figure {
                 Some(number) => checks(number, &self.input, &data)?,
@@ -120,11 +130,20 @@ impl Explore {
             };
             Ok((data, claims))
         });
+        self.took.truncate(REMEMBERED - 1);
+        self.took.push_front(begin.elapsed().as_secs_f64());
         self.finished = Some(Finished {
             input: self.input.clone(),
             figure: self.figure,
             data: data.map_err(|e| e.to_string()),
         });
+    }
+
+    /// Median time of the last computations, s.
+    fn usual_time(&self) -> Option<f64> {
+        let mut took: Vec<f64> = self.took.iter().copied().collect();
+        took.sort_by(f64::total_cmp);
+        took.get(took.len() / 2).copied()
     }
 
     fn data(&self) -> Option<&(ExploreData, Vec<Check>)> {
