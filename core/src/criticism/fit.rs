@@ -31,6 +31,9 @@ const BODY_ITERATIONS: usize = 2;
 /// Damping above which no step is tried any more.
 const MAX_DAMPING: f64 = 1e9;
 
+/// Growth of the damping after a step that did not lower the cost; it doubles with every further one.
+const DAMPING_GROWTH: f64 = 6.0;
+
 /// A fit ends when it stalls for the second time; damping with which it goes on after the first.
 const MAX_STALLS: usize = 2;
 const RESTART_DAMPING: f64 = 1e-3;
@@ -52,6 +55,15 @@ impl Motion {
             position: vec![0.0; n],
             velocity: vec![0.0; n],
         }
+    }
+
+    /// The derivative of the motion with respect to where it starts, if that is all that changes.
+    fn shifted(data: &Data) -> Self {
+        let mut motion = Self::still(data.len());
+        for (from, to) in data.spans() {
+            motion.position[from..to].fill(1.0);
+        }
+        motion
     }
 
     /// The part that an output shows.
@@ -133,23 +145,26 @@ impl Fit {
         let present = self.objective(data, &self.motion, &self.values, scale);
         let priors = self.structure.priors();
         // The equations of the data stand for their cost divided by this.
-        let share = if priors.is_empty() {
-            1.0
-        } else {
-            robust_share(data, &self.motion, scale)
-        };
+        let share = robust_share(data, &self.motion, scale);
         for (j, value, tolerance) in &priors {
             let weight = 1.0 / (share * tolerance * tolerance);
             matrix[(*j, *j)] += weight;
             gradient[*j] += weight * (value - self.values[*j]);
         }
-        let mut lowered = false;
+        let (mut lowered, mut growth) = (false, DAMPING_GROWTH);
         while self.damping < MAX_DAMPING {
             let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
             else {
                 self.damping *= 10.0;
                 continue;
             };
+            let shortened = growth > DAMPING_GROWTH;
+            if shortened
+                && share * self.hoped_fall(data, &gradient, &windows, &values, &starts)
+                    < COST_TOLERANCE * present
+            {
+                break;
+            }
             let (starts, motion) = self.motion_from(data, &values, starts, scale, present);
             let cost = self.objective(data, &motion, &values, scale);
             if cost <= present {
@@ -160,7 +175,8 @@ impl Fit {
                 lowered = fall > COST_TOLERANCE;
                 break;
             }
-            self.damping *= 6.0;
+            self.damping *= growth;
+            growth *= 2.0;
         }
         self.information = reduced(&matrix, &gradient, &windows, data, p).0;
         for (j, _, tolerance) in &priors {
@@ -237,12 +253,35 @@ impl Fit {
         steps
     }
 
+    /// The most by which a step may lower the squared residuals, as far as they are linear: twice the
+    /// gradient along it.
+    fn hoped_fall(
+        &self,
+        data: &Data,
+        gradient: &DVector<f64>,
+        windows: &[WindowSums],
+        values: &[f64],
+        starts: &[Start],
+    ) -> f64 {
+        let moved = values.iter().zip(&self.values).map(|(to, from)| to - from);
+        let shared: f64 = gradient.iter().zip(moved).map(|(g, d)| g * d).sum();
+        let own: f64 = windows
+            .iter()
+            .zip(informed_windows(data))
+            .zip(starts.iter().zip(&self.starts))
+            .filter(|((_, informed), _)| *informed)
+            .map(|((sums, _), (to, from))| {
+                sums.gradient[0] * (to.position - from.position)
+                    + sums.gradient[1] * (to.velocity - from.velocity)
+            })
+            .sum();
+        2.0 * (shared + own)
+    }
+
     /// Derivatives of the motion: one column per value, then position and velocity of the starts.
     fn columns(&self, data: &Data, steps: &[f64], scales: &Scales) -> Vec<Motion> {
-        let difference = |moved: Motion, step: f64| Motion {
-            position: slope(&moved.position, &self.motion.position, step),
-            velocity: slope(&moved.velocity, &self.motion.velocity, step),
-        };
+        let spans = data.spans();
+        let difference = |moved: Motion, step: f64| difference(moved, &self.motion, step, &spans);
         let fixed = self.structure.fixed();
         let mut columns: Vec<Motion> = steps
             .iter()
@@ -273,11 +312,13 @@ impl Fit {
         };
         let dx = 1e-6 * scales.travel.max(f64::MIN_POSITIVE);
         let dv = 1e-6 * scales.speed.max(f64::MIN_POSITIVE);
-        if data.has_position {
-            columns.push(difference(moved(dx, 0.0), dx));
+        columns.push(if !data.has_position {
+            Motion::still(data.len())
+        } else if self.structure.model(&self.values).is_same_everywhere() {
+            Motion::shifted(data)
         } else {
-            columns.push(Motion::still(data.len()));
-        }
+            difference(moved(dx, 0.0), dx)
+        });
         columns.push(difference(moved(0.0, dv), dv));
         columns
     }
@@ -527,12 +568,20 @@ pub(super) fn residuals(data: &Data, motion: &Motion) -> Vec<Vec<f64>> {
         .collect()
 }
 
-fn slope(moved: &[f64], base: &[f64], step: f64) -> Vec<f64> {
+/// Difference quotient in place of `moved`, where there are data.
+fn difference(mut moved: Motion, base: &Motion, step: f64, spans: &[(usize, usize)]) -> Motion {
+    let pairs = [
+        (&mut moved.position, &base.position),
+        (&mut moved.velocity, &base.velocity),
+    ];
+    for (moved, base) in pairs {
+        for (from, to) in spans {
+            for (value, base) in moved[*from..*to].iter_mut().zip(&base[*from..*to]) {
+                *value = (*value - base) / step;
+            }
+        }
+    }
     moved
-        .iter()
-        .zip(base)
-        .map(|(a, b)| (a - b) / step)
-        .collect()
 }
 
 /// Inverse of a window's matrix, with a little damping where the state leaves no trace.

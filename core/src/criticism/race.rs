@@ -1,7 +1,9 @@
 //! Many effects tried side by side on top of one model: only those that may win are fitted to the end.
 
 use super::fit::Fit;
-use super::search::Search;
+use super::score::score;
+use super::search::{Ground, Search};
+use super::select::is_plain_noise;
 use super::session::Session;
 use crate::effect::Effect;
 
@@ -17,6 +19,13 @@ const PART_CLOSE: f64 = 1.4;
 /// Share of the present cost below which an effect must hope to come, or it is not fitted to the end:
 /// a fall of the error by less than 3 % does not count.
 const WORTHWHILE: f64 = 0.94;
+
+/// Share of the present cost on the scout below which a starting point must come to be followed.
+const PROMISING: f64 = 0.995;
+
+/// The same in the place of another effect, in times of the cost with that one: what first has to come back
+/// to where that was may still have some way to go.
+const WITHIN_REACH: f64 = 30.0;
 
 /// One effect in the race.
 struct Contender {
@@ -56,14 +65,29 @@ impl Race {
     ) -> Self {
         let target = instead.map(|(whole, _)| whole.cost);
         let probe = session.probe(fit);
-        // What takes the place of another effect must first come back to where that was.
-        let scouted = instead.is_none().then(|| session.scouted(fit));
+        let ground = match instead {
+            None => Ground {
+                limit: PROMISING * session.scouted(fit),
+                settled: is_plain_noise(&score(&session.data, fit)),
+            },
+            Some((whole, _)) => Ground {
+                limit: WITHIN_REACH * session.scouted(whole),
+                settled: false,
+            },
+        };
         Self {
             contenders: effects
                 .into_iter()
                 .map(|effect| Contender {
                     effect,
-                    search: Search::adding(&session.data, fit, effect, &probe, instead, scouted),
+                    search: Search::adding(
+                        &session.data,
+                        fit,
+                        effect,
+                        &probe,
+                        instead,
+                        Some(ground),
+                    ),
                     close: match instead {
                         Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
                         _ => CLOSE,

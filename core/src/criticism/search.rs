@@ -16,9 +16,6 @@ const SCAN_ITERATIONS: usize = 2;
 /// A starting point that still costs this many times the present model is not followed.
 const HOPELESS: f64 = 10.0;
 
-/// Share of the cost on the scout below which a starting point must come to be followed.
-const PROMISING: f64 = 0.995;
-
 /// A regressed baseline that differs by less than this share from the present one is no new start.
 const WORTH_A_START: f64 = 0.2;
 
@@ -37,6 +34,16 @@ const UNSETTLED: f64 = 1.5;
 /// A fit that goes on is hoped to fall by this many times its last fall.
 const HOPE: f64 = 3.0;
 
+/// The fitted model that effects are added to.
+#[derive(Clone, Copy)]
+pub(super) struct Ground {
+    /// Cost on the scout below which a starting point must come to be followed.
+    pub limit: f64,
+    /// The model leaves nothing but noise: its body and its effects are not led astray by a missing one, so that
+    /// no other values of theirs are tried with a new effect.
+    pub settled: bool,
+}
+
 /// A search that goes on piece by piece.
 pub(super) struct Search {
     structure: Structure,
@@ -45,8 +52,10 @@ pub(super) struct Search {
     finalists: Vec<Fit>,
     /// Cost of the model that this one would replace.
     present: f64,
-    /// The same on the scout; infinite where every fit is followed.
-    scouted: f64,
+    /// Cost on the scout below which a starting point must come to be followed.
+    limit: f64,
+    /// Whether a point that does not is tried again with another body.
+    retries: bool,
     total: usize,
     optimism: f64,
 }
@@ -68,16 +77,16 @@ impl Search {
 
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
     /// the baseline, since a missing effect may have bent the baseline far off. What it contains, or
-    /// what it stands in for (a fit and the place in it), lends it the values that both have. `scouted`
-    /// is the cost of the fitted model on the scout, which the effect must lower to be followed.
+    /// what it stands in for (a fit and the place in it), lends it the values that both have.
     pub fn adding(
         data: &Data,
         fit: &Fit,
         effect: &'static dyn Effect,
         probe: &Probe,
         instead: Option<(&Fit, usize)>,
-        scouted: Option<f64>,
+        ground: Option<Ground>,
     ) -> Self {
+        let settled = ground.is_some_and(|g| g.settled);
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
         let own = effect.starts(probe);
@@ -112,13 +121,18 @@ impl Search {
             values.extend(start);
             structure.begin(&mut values, kept.len());
             points.push((values.clone(), fit.starts.clone()));
-            points.extend(Self::regressed(data, fit, &structure, values));
+            if !settled {
+                points.extend(Self::regressed(data, fit, &structure, values));
+            }
         }
-        points.extend(Self::other_valleys(
-            data, fit, &rest, &kept, &structure, &own, probe,
-        ));
+        if !settled {
+            points.extend(Self::other_valleys(
+                data, fit, &rest, &kept, &structure, &own, probe,
+            ));
+        }
         Self {
-            scouted: scouted.unwrap_or(f64::INFINITY),
+            limit: ground.map_or(f64::INFINITY, |g| g.limit),
+            retries: ground.is_some() && instead.is_none() && !settled,
             ..Self::from_points(structure, points, fit.cost)
         }
     }
@@ -200,7 +214,8 @@ impl Search {
             scanned: Vec::new(),
             finalists: Vec::new(),
             present,
-            scouted: f64::INFINITY,
+            limit: f64::INFINITY,
+            retries: false,
             optimism: f64::INFINITY,
         }
     }
@@ -222,11 +237,11 @@ impl Search {
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
         fit.take_measured_starts(scout);
-        let mut other = fit.clone();
+        let retry = self.retries.then(|| fit.clone());
         for _ in 0..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
-        if fit.cost > PROMISING * self.scouted {
+        if let Some(mut other) = retry.filter(|_| fit.cost > self.limit) {
             // Perhaps a wrong body led the new effect astray.
             other.fit_body(scout, scales);
             for _ in 0..SCAN_ITERATIONS {
@@ -252,9 +267,9 @@ impl Search {
             return;
         };
         let hopeless = HOPELESS * self.present * share;
-        let near = NEAR * best.cost;
+        let near = (NEAR * best.cost).min(self.limit);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        first.done |= best.cost > hopeless.min(PROMISING * self.scouted);
+        first.done |= best.cost > hopeless.min(self.limit);
         settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {

@@ -352,10 +352,13 @@ impl StepJob {
                 0.7 + 0.05 * *index as f64 / wanted,
                 "Checking that every effect is needed".to_owned(),
             ),
-            Stage::Swap { place, race } => (
-                0.75 + 0.25 * (*place as f64 + race.progress().0) / wanted,
-                "Checking what else could explain it".to_owned(),
-            ),
+            Stage::Swap { place, race } => {
+                let (share, name) = race.progress();
+                (
+                    0.75 + 0.25 * (*place as f64 + share) / wanted,
+                    format!("Checking what else could explain it: {name}"),
+                )
+            }
             Stage::Report => (1.0, "Done".to_owned()),
         }
     }

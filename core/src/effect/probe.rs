@@ -66,8 +66,28 @@ pub struct Probe {
     target: Vec<Vec<f64>>,
     /// Answers to the base forces, likewise.
     base: Vec<[Vec<f64>; BASE]>,
+    /// What these come to in the equations, likewise.
+    known: Vec<Known>,
     base_left: f64,
     inverse_inertia: f64,
+}
+
+/// Products of the base answers of a window with each other and with its error, and of that with itself.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    normal: [[f64; BASE]; BASE],
+    right: [f64; BASE],
+    power: f64,
+}
+
+impl Known {
+    fn new(target: &[f64], base: &[Vec<f64>; BASE]) -> Self {
+        Self {
+            normal: base.each_ref().map(|a| base.each_ref().map(|b| dot(a, b))),
+            right: base.each_ref().map(|a| dot(a, target)),
+            power: dot(target, target),
+        }
+    }
 }
 
 /// One step of the linear body.
@@ -151,6 +171,7 @@ impl Probe {
             states: Vec::new(),
             target: Vec::new(),
             base: Vec::new(),
+            known: Vec::new(),
             base_left: f64::NAN,
             inverse_inertia: 1.0 / inertia,
         };
@@ -175,6 +196,8 @@ impl Probe {
                 (target, base)
             })
             .unzip();
+        let windows = probe.target.iter().zip(&probe.base);
+        probe.known = windows.map(|(t, b)| Known::new(t, b)).collect();
         probe.base_left = probe.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
         probe
     }
@@ -311,22 +334,28 @@ impl Probe {
         let mut normal = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         let (mut power, mut count) = (0.0, 0);
-        for ((span, target), base) in self
-            .spans
-            .iter()
-            .zip(&self.target)
-            .zip(&self.base)
-            .step_by(stride)
-        {
-            let own: Vec<Vec<f64>> = forces.iter().map(|f| self.answer(*span, f)).collect();
+        for index in (0..self.spans.len()).step_by(stride) {
+            let (target, base, known) = (&self.target[index], &self.base[index], self.known[index]);
+            let own: Vec<Vec<f64>> = forces
+                .iter()
+                .map(|f| self.answer(self.spans[index], f))
+                .collect();
             let columns: Vec<&[f64]> = base.iter().chain(&own).map(Vec::as_slice).collect();
             for a in 0..p {
                 for b in 0..=a {
-                    normal[(a, b)] += dot(columns[a], columns[b]);
+                    normal[(a, b)] += if a < BASE {
+                        known.normal[a][b]
+                    } else {
+                        dot(columns[a], columns[b])
+                    };
                 }
-                right[a] += dot(columns[a], target);
+                right[a] += if a < BASE {
+                    known.right[a]
+                } else {
+                    dot(columns[a], target)
+                };
             }
-            power += dot(target, target);
+            power += known.power;
             count += target.len();
         }
         let sizes: Vec<f64> = (0..p).map(|j| f64::sqrt(normal[(j, j)])).collect();
@@ -423,8 +452,14 @@ impl Probe {
     fn spatial(&self, n: f64) -> Option<(f64, f64, f64, f64)> {
         let middle = |k: usize| n * 0.5 * (self.position[k] + self.position[k + 1]);
         let stride = spans_stride(&self.spans, SCANNED);
+        let mut waves = vec![(0.0, 0.0); self.position.len()];
+        for (from, to) in self.spans.iter().step_by(stride) {
+            for (k, wave) in waves.iter_mut().enumerate().take(to - 1).skip(*from) {
+                *wave = middle(k).sin_cos();
+            }
+        }
         let fit = self.regress_forces(
-            &[Box::new(|k| middle(k).sin()), Box::new(|k| middle(k).cos())],
+            &[Box::new(|k| waves[k].0), Box::new(|k| waves[k].1)],
             stride,
         )?;
         Some((n, fit.coefficients[0], fit.coefficients[1], fit.left))
@@ -442,8 +477,21 @@ fn extent(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), both)
 }
 
+/// Sums of a product of vectors that go on side by side.
+const LANES: usize = 8;
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    // Several sums side by side, since each addition waits for the one before.
+    let (a_parts, a_rest) = a.as_chunks::<LANES>();
+    let (b_parts, b_rest) = b.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a_parts.iter().zip(b_parts) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 fn normalise(values: &mut [f64]) {

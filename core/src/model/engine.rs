@@ -81,6 +81,12 @@ impl State {
         self.time += h;
     }
 
+    /// The same, this many seconds after the first sample.
+    #[must_use]
+    pub(super) fn at_time(&self, time: f64) -> Self {
+        Self { time, ..*self }
+    }
+
     /// The same with the contact of dry friction at this deflection.
     #[must_use]
     pub(super) fn with_deflection(&self, deflection: f64) -> Self {

@@ -294,17 +294,20 @@ impl Spring {
     pub fn after(&self, m: Motion, w: f64, q: f64, h: f64) -> Motion {
         let rest = self.b * (w + q) / self.kappa;
         // Particular solution of the fading part of the lagged input.
-        let (fading, mu, z) = match self.mu {
-            None => (0.0, 0.0, w),
+        let (fading, mu, late, z) = match self.mu {
+            None => (0.0, 0.0, 0.0, w),
             Some(mu) => {
                 let gain = self.b / (mu * mu - self.lambda * mu + self.kappa);
-                ((m.z - w) * gain, mu, w + (m.z - w) * (-mu * h).exp())
+                let (offset, decay) = (m.z - w, (-mu * h).exp());
+                (offset * gain, mu, offset * gain * decay, w + offset * decay)
             }
         };
         let (y0, v0) = (m.x - rest - fading, m.v + mu * fading);
         let alpha = 0.5 * self.lambda;
         let square = self.kappa - alpha * alpha;
-        let (cosine, sine) = if square > 0.0 {
+        let (cosine, sine) = if (square * h * h).abs() < SHORT_SWING {
+            short_swing(square, h)
+        } else if square > 0.0 {
             let omega = square.sqrt();
             ((omega * h).cos(), (omega * h).sin() / omega)
         } else if square < 0.0 {
@@ -314,13 +317,38 @@ impl Spring {
             (1.0, h)
         };
         let envelope = (-alpha * h).exp();
-        let late = fading * (-mu * h).exp();
         Motion {
             x: rest + late + envelope * (y0 * (cosine + alpha * sine) + v0 * sine),
             v: -mu * late + envelope * (v0 * (cosine - alpha * sine) - self.kappa * y0 * sine),
             z,
         }
     }
+}
+
+/// Squared radians of a swing below which the first terms of the series are exact to round-off.
+const SHORT_SWING: f64 = 0.25;
+
+/// Inverses of 1 * 2, 3 * 4, ... and of 2 * 3, 4 * 5, ...
+const SWING_INVERSES: [(f64, f64); 8] = [
+    (1.0 / 2.0, 1.0 / 6.0),
+    (1.0 / 12.0, 1.0 / 20.0),
+    (1.0 / 30.0, 1.0 / 42.0),
+    (1.0 / 56.0, 1.0 / 72.0),
+    (1.0 / 90.0, 1.0 / 110.0),
+    (1.0 / 132.0, 1.0 / 156.0),
+    (1.0 / 182.0, 1.0 / 210.0),
+    (1.0 / 240.0, 1.0 / 272.0),
+];
+
+/// `cos(omega h)` and `sin(omega h) / omega` by their series in `square = omega^2`, which may be negative.
+fn short_swing(square: f64, h: f64) -> (f64, f64) {
+    let q = square * h * h;
+    let (mut cosine, mut sine) = (1.0, 1.0);
+    for (even, odd) in SWING_INVERSES.iter().rev() {
+        cosine = 1.0 - q * even * cosine;
+        sine = 1.0 - q * odd * sine;
+    }
+    (cosine, h * sine)
 }
 
 /// Root of `f` between 0 and `h`, where `f(0)` and `f(h)` have different signs.

@@ -128,6 +128,11 @@ impl Model {
         }
     }
 
+    /// Whether a motion that begins elsewhere is the same one there: no force depends on the place.
+    pub fn is_same_everywhere(&self) -> bool {
+        self.forces.is_empty() && self.own_forces.is_empty()
+    }
+
     /// Input after the static maps.
     pub fn map_input(&self, u: f64) -> f64 {
         self.input_maps.iter().fold(u, |u, map| map(u))

@@ -30,8 +30,8 @@ pub struct Excitation {
     slow_sensor: Sensor,
     /// Measured position, or an estimate, which hidden states follow; empty for a process.
     position: Vec<f64>,
-    /// Standard deviation of its noise, where it is measured.
-    position_noise: Option<f64>,
+    /// The same without its trembling, where it is measured.
+    steady: Option<Steady>,
     /// Sample ranges that are simulated, ascending; between them only hidden states go on.
     runs: Vec<(usize, usize)>,
 }
@@ -68,8 +68,8 @@ impl Excitation {
             before,
             step: uniform.then_some(mean),
             slow_sensor,
+            steady: position_noise.map(|noise| Steady::new(&position, noise)),
             position,
-            position_noise,
             runs: vec![(0, time.len())],
         }
     }
@@ -90,6 +90,7 @@ impl Excitation {
             time: self.time[..n].to_vec(),
             input: self.input[..n].to_vec(),
             position: self.position.iter().take(n).copied().collect(),
+            steady: self.steady.as_ref().map(|s| s.head(n)),
             runs: vec![(0, n)],
             ..*self
         }
@@ -123,13 +124,10 @@ impl Excitation {
         velocity: &mut [f64],
     ) {
         let mut engine = Engine::new(model);
-        let mapped: Vec<f64> = self.input.iter().map(|u| model.map_input(*u)).collect();
-        let before = model.map_input(self.before);
-        let mut path = DelayedInput::new(self, &mapped, before, model.delay);
+        let mut path = DelayedInput::new(self, model);
         path.prepare(&mut engine);
-        let mut state = State::at_rest(before);
+        let mut state = State::at_rest(path.before);
         let mut next = starts.iter().peekable();
-        let mut runs = self.runs.iter().peekable();
         let mut follower = model
             .load
             .as_ref()
@@ -137,57 +135,47 @@ impl Excitation {
             .map(|load| Follower::new(load, self.position[0], self.mean_step()));
         let mut bristle = engine
             .contact()
-            .zip(self.position_noise)
-            .map(|(contact, noise)| Bristle {
-                contact,
-                noise,
-                position: self.position[0],
-                deflection: 0.0,
-            });
-        for i in 0..self.len() {
-            if i > 0
-                && let Some(bristle) = &mut bristle
-            {
-                let h = self.time[i] - self.time[i - 1];
-                bristle.follow(self.position[i], h, &model.friction);
-            }
-            if i > 0
-                && let Some(follower) = &mut follower
-            {
-                let h = self.time[i] - self.time[i - 1];
-                follower.advance(&self.position, i - 1, h);
-            }
-            if let Some(start) = next.next_if(|s| s.sample == i) {
-                state = state.restarted(start.position, start.velocity);
-                if let Some(follower) = &follower {
-                    state = state.with_load(follower, self.position[i]);
-                }
-                if let Some(bristle) = &bristle {
-                    state = state.with_deflection(bristle.deflection);
+            .zip(self.steady.as_ref())
+            .map(|(contact, steady)| Bristle::new(contact, steady, &model.friction));
+        let mut followed = 0;
+        let mut now = 0;
+        for (from, end) in &self.runs {
+            if now < *from {
+                now = now.max(self.remembered(*from, model));
+                state = state.at_time(self.time[now] - self.time[0]);
+                for i in now..*from {
+                    let load = self.early_load(model, i);
+                    path.pieces(i, |w, h| state.wait(model, w + load, h));
                 }
             }
-            while runs.peek().is_some_and(|(_, end)| *end <= i) {
-                runs.next();
+            for i in *from..*end {
+                if let Some(start) = next.next_if(|s| s.sample == i) {
+                    state = state.restarted(start.position, start.velocity);
+                    if let Some(follower) = &mut follower {
+                        for k in followed..i {
+                            follower.advance(&self.position, k, self.time[k + 1] - self.time[k]);
+                        }
+                        followed = i;
+                        state = state.with_load(follower, self.position[i]);
+                    }
+                    if let Some(bristle) = &mut bristle {
+                        state = state.with_deflection(bristle.at(i, &self.time));
+                    }
+                }
+                position[i] = state.position();
+                velocity[i] = state.velocity();
+                if i + 1 < self.len() {
+                    let load = self.early_load(model, i);
+                    path.pieces(i, |w, h| engine.advance(&mut state, w + load, h));
+                }
             }
-            let Some((from, end)) = runs.peek() else {
-                break;
-            };
-            // Held at its value in the middle of the interval.
-            let end_of_step = self.time[(i + 1).min(self.len() - 1)];
-            let load = model.early_load(f64::midpoint(self.time[i], end_of_step) - self.time[0]);
-            if *from > i {
-                path.pieces(i, |w, h| state.wait(model, w + load, h));
-                continue;
-            }
-            position[i] = state.position();
-            velocity[i] = state.velocity();
-            if i + 1 < *end || (i + 1 == *end && i + 1 < self.len()) {
-                path.pieces(i, |w, h| engine.advance(&mut state, w + load, h));
-            }
+            now = *end;
         }
         if !model.output_maps.is_empty() {
-            for v in velocity.iter_mut() {
-                *v = model.map_output(*v);
+            for (from, end) in &self.runs {
+                for v in &mut velocity[*from..*end] {
+                    *v = model.map_output(*v);
+                }
             }
         }
         if let Some(lag) = model.sensor_lag {
@@ -197,6 +185,21 @@ impl Excitation {
             };
             self.slow_down(slowed, lag);
         }
+    }
+
+    /// Load before the lag from sample `i` on, held at its value in the middle of the interval.
+    fn early_load(&self, model: &Model, i: usize) -> f64 {
+        let end = self.time[(i + 1).min(self.len() - 1)];
+        model.early_load(f64::midpoint(self.time[i], end) - self.time[0])
+    }
+
+    /// First sample that the lagged input at sample `i` still remembers.
+    fn remembered(&self, i: usize, model: &Model) -> usize {
+        let memory = FORGOTTEN * model.lag.unwrap_or(0.0);
+        let since = self.time[i] - memory;
+        self.time[..i]
+            .partition_point(|t| *t < since)
+            .min(i.saturating_sub(1))
     }
 
     /// Passes a signal through a first-order lag, straight between its samples. A run that begins within
@@ -230,10 +233,8 @@ impl Excitation {
 
     /// The input that reaches the body: mapped, delayed and lagged, as its mean over each interval.
     pub fn effective_input(&self, model: &Model) -> Vec<f64> {
-        let mapped: Vec<f64> = self.input.iter().map(|u| model.map_input(*u)).collect();
-        let before = model.map_input(self.before);
-        let mut path = DelayedInput::new(self, &mapped, before, model.delay);
-        let mut z = before;
+        let mut path = DelayedInput::new(self, model);
+        let mut z = path.before;
         (0..self.len().saturating_sub(1))
             .map(|i| {
                 let (mut sum, mut duration) = (0.0, 0.0);
@@ -258,31 +259,95 @@ impl Excitation {
 /// a step of an encoder.
 const TREMBLING: f64 = 2.0;
 
+/// Time constants, or displacements of a friction contact, after which the state before is forgotten to
+/// the last digit.
+const FORGOTTEN: f64 = 37.0;
+
+/// The measured position without its trembling.
+#[derive(Clone, Debug, PartialEq)]
+struct Steady {
+    position: Vec<f64>,
+    /// Way travelled up to each sample.
+    travelled: Vec<f64>,
+}
+
+impl Steady {
+    fn new(measured: &[f64], noise: f64) -> Self {
+        let width = TREMBLING * noise;
+        let mut now = measured.first().copied().unwrap_or(0.0);
+        let mut way = 0.0;
+        let (position, travelled) = measured
+            .iter()
+            .map(|x| {
+                let before = now;
+                now = now.max(x - width).min(x + width);
+                way += (now - before).abs();
+                (now, way)
+            })
+            .unzip();
+        Self {
+            position,
+            travelled,
+        }
+    }
+
+    /// The first `n` samples.
+    fn head(&self, n: usize) -> Self {
+        Self {
+            position: self.position.iter().take(n).copied().collect(),
+            travelled: self.travelled.iter().take(n).copied().collect(),
+        }
+    }
+}
+
 /// A friction contact that follows a body which moves as measured.
 struct Bristle<'e> {
     contact: &'e Contact,
-    noise: f64,
-    position: f64,
+    steady: &'e Steady,
+    friction: &'e DryFriction,
     deflection: f64,
+    /// Sample up to which it has followed.
+    sample: usize,
 }
 
-impl Bristle<'_> {
-    fn follow(&mut self, measured: f64, h: f64, friction: &DryFriction) {
-        let width = TREMBLING * self.noise;
-        let position = self.position.max(measured - width).min(measured + width);
-        let moved = position - self.position;
-        self.position = position;
-        if moved != 0.0 {
-            let level = friction.level_at(moved / h);
-            self.deflection = self.contact.followed(self.deflection, moved, level);
+impl<'e> Bristle<'e> {
+    fn new(contact: &'e Contact, steady: &'e Steady, friction: &'e DryFriction) -> Self {
+        Self {
+            contact,
+            steady,
+            friction,
+            deflection: 0.0,
+            sample: 0,
         }
+    }
+
+    /// Deflection at a sample, not before the last one asked for.
+    fn at(&mut self, sample: usize, time: &[f64]) -> f64 {
+        let Steady {
+            position,
+            travelled,
+        } = self.steady;
+        // The contact forgets over its displacement, which is longest at the highest level.
+        let since = travelled[sample] - FORGOTTEN * self.friction.presliding;
+        let from = self
+            .sample
+            .max(travelled[..sample].partition_point(|way| *way < since));
+        for i in from + 1..=sample {
+            let moved = position[i] - position[i - 1];
+            if moved != 0.0 {
+                let level = self.friction.level_at(moved / (time[i] - time[i - 1]));
+                self.deflection = self.contact.followed(self.deflection, moved, level);
+            }
+        }
+        self.sample = sample;
+        self.deflection
     }
 }
 
 /// The held input shifted by a dead time, as pieces of constant value in each sampling interval.
 struct DelayedInput<'a> {
     excitation: &'a Excitation,
-    mapped: &'a [f64],
+    model: &'a Model,
     before: f64,
     delay: f64,
     /// For equal steps: whole samples and the rest of the dead time.
@@ -293,8 +358,8 @@ struct DelayedInput<'a> {
 }
 
 impl<'a> DelayedInput<'a> {
-    fn new(excitation: &'a Excitation, mapped: &'a [f64], before: f64, delay: f64) -> Self {
-        let delay = delay.max(0.0);
+    fn new(excitation: &'a Excitation, model: &'a Model) -> Self {
+        let delay = model.delay.max(0.0);
         let (mut whole, mut rest) = (0, 0.0);
         if let Some(step) = excitation.step {
             let samples = (delay / step).min(excitation.len() as f64);
@@ -310,8 +375,8 @@ impl<'a> DelayedInput<'a> {
         }
         Self {
             excitation,
-            mapped,
-            before,
+            model,
+            before: model.map_input(excitation.before),
             delay,
             whole,
             rest,
@@ -330,7 +395,9 @@ impl<'a> DelayedInput<'a> {
     }
 
     fn value(&self, sample: Option<usize>) -> f64 {
-        sample.map_or(self.before, |i| self.mapped[i])
+        sample.map_or(self.before, |i| {
+            self.model.map_input(self.excitation.input[i])
+        })
     }
 
     /// Calls `go(value, duration)` for each piece between samples `i` and `i + 1`.
