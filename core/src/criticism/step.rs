@@ -4,9 +4,9 @@ use super::knowledge::contradictions;
 use super::missing::missing_parts;
 use super::race::Race;
 use super::search::Search;
-use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same};
+use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same, suffices};
 use super::session::{Scored, Session};
-use super::verdict::{Class, add_idle, verdict};
+use super::verdict::{Class, add_idle, add_rest, verdict};
 use super::{Candidate, Contradiction, CriticismError, Progress, Step, StepReport};
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::{Kind, Measurement};
@@ -369,6 +369,7 @@ impl StepJob {
         let needless = self.needless(model);
         let whole = self.session.completed(model);
         let parameters = self.session.parameters(&whole);
+        let findings = self.session.findings(&whole);
         let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
             let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
             let (added, classes): (Vec<_>, Vec<_>) = places
@@ -387,6 +388,8 @@ impl StepJob {
                 is_noise(&whole.score, self.session.first(&whole)),
                 self.contradicted.clone(),
             );
+            let first = self.session.first(&whole).error;
+            add_rest(&mut verdict, whole.score.error, first, &findings);
             add_idle(&mut verdict, &self.idle(model).0);
             verdict
         });
@@ -402,7 +405,7 @@ impl StepJob {
                 error: whole.score.error,
                 error_fit: whole.score.error_fit,
                 parameters,
-                findings: self.session.findings(&whole),
+                findings,
                 candidates: self.candidates(model, suggestion),
             },
             noise_floor: NOISE_FLOOR,
@@ -530,7 +533,7 @@ impl StepJob {
 
 /// Whether a part of an effect does in place of the whole: as well, or so that noise alone is left.
 fn enough(whole: &Scored, part: &Scored) -> bool {
-    alike(whole, part) || is_plain_noise(&part.score)
+    alike(whole, part) || is_plain_noise(&part.score) || suffices(&part.score, &whole.score)
 }
 
 /// Whether two models leave the same error within noise.

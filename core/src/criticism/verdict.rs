@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::session::Scored;
-use super::{Contradiction, Parameter, Step, Verdict};
+use super::{Contradiction, Finding, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId};
 
 /// Effects that could stand in the place of one in the model.
@@ -49,13 +49,6 @@ pub(super) fn verdict(
             "What is left is more than noise, but no further effect in the library explains it."
         }
     });
-    if !complete {
-        let _ = write!(
-            text,
-            " The error is {:.2} times the noise.",
-            model.score.error
-        );
-    }
     Verdict {
         missing,
         complete,
@@ -96,6 +89,25 @@ fn contradiction(
         next_experiment: None,
         contradicted,
         text,
+    }
+}
+
+/// Says of a verdict that is not complete how much is left of what was there `first`, and where it lies.
+pub(super) fn add_rest(verdict: &mut Verdict, error: f64, first: f64, findings: &[Finding]) {
+    if verdict.complete || !verdict.contradicted.is_empty() {
+        return;
+    }
+    let _ = write!(verdict.text, " The error is {error:.2} times the noise");
+    if !verdict.missing.is_empty() {
+        let _ = write!(
+            verdict.text,
+            ", {:.0} % of what it was at first",
+            100.0 * error / first
+        );
+    }
+    verdict.text.push('.');
+    if let Some(strongest) = findings.first() {
+        let _ = write!(verdict.text, " {}", strongest.text);
     }
 }
 
