@@ -4,6 +4,7 @@ mod app;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 mod colors;
+mod files;
 mod hook;
 mod jobs;
 mod pages;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::session::Scored;
-use super::{Contradiction, Finding, Parameter, Step, Verdict};
+use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId};
 
 /// Effects that could stand in the place of one in the model.
@@ -54,6 +54,7 @@ pub(super) fn verdict(
         complete,
         unknown: !complete,
         next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
+        experiments: Vec::new(),
         contradicted,
         text,
     }
@@ -87,6 +88,7 @@ fn contradiction(
         complete: false,
         unknown: false,
         next_experiment: None,
+        experiments: Vec::new(),
         contradicted,
         text,
     }
@@ -127,6 +129,16 @@ pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId]) {
     );
 }
 
+/// Puts the experiments that were found in the place of the general advice.
+pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperiment]) {
+    if experiments.is_empty() || verdict.next_experiment.is_none() {
+        return;
+    }
+    let texts: Vec<&str> = experiments.iter().map(|e| e.text.as_str()).collect();
+    verdict.next_experiment = Some(texts.join(" "));
+    verdict.experiments = experiments.to_vec();
+}
+
 /// For effects that act alike in one experiment.
 const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than two levels, such as a \
     staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
@@ -146,6 +158,7 @@ pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
         complete: false,
         unknown: true,
         next_experiment: None,
+        experiments: Vec::new(),
         contradicted: Vec::new(),
         text: "Many effects help a little and none explains the rest: the model structure itself may be wrong.".to_owned(),
     }

@@ -1,8 +1,8 @@
 //! How wide is the hidden gap? A drive under a relay that makes it drift, simulated or measured.
 
+mod built_in;
 mod controls;
 mod design;
-mod files;
 mod picture;
 mod plots;
 mod scene;
@@ -12,12 +12,12 @@ mod words;
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test};
 
 use super::{Desk, View};
+use crate::files::Files;
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
 use design::Design;
-use files::Files;
 use scene::{Scene, Shown};
 
 /// Time that a frame gives to the simulation, s.
