@@ -4,6 +4,7 @@
 mod backlash;
 mod chart;
 mod compare;
+mod controls;
 mod explore;
 mod maps;
 mod tune;

@@ -9,11 +9,12 @@ mod scene;
 mod side;
 mod words;
 
-use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test};
+use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 
 use super::{Desk, View};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::pages::controls::claim_ui;
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
 use design::Design;
@@ -236,7 +237,9 @@ impl Backlash {
         }
         match (self.figure, &scene.shown) {
             (Some(number), Shown::Simulated(simulated)) => {
-                controls::claim_ui(ui, number, &simulated.checks);
+                if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
+                    claim_ui(ui, number, figure.title, figure.claim, &simulated.checks);
+                }
             }
             _ => {
                 ui.label(&scene.lesson);

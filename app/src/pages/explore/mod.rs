@@ -7,9 +7,10 @@ mod plots;
 mod table;
 
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
-use hysteron_core::figures::{Check, checks};
+use hysteron_core::figures::{Check, checks, figures};
 
 use super::{Desk, View};
+use crate::pages::controls::claim_ui;
 use crate::theme;
 use nyquist::Nyquist;
 use plant_editor::PlantEditor;
@@ -191,7 +192,9 @@ impl Explore {
                 theme::answer_ui(ui, &data.text);
                 ui.label(&data.stability);
                 if let Some(number) = self.figure {
-                    controls::claim_ui(ui, number, claims);
+                    if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
+                        claim_ui(ui, number, figure.title, figure.claim, claims);
+                    }
                 } else {
                     ui.label(&data.trust.text);
                 }
