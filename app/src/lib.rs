@@ -11,6 +11,8 @@ mod save;
 mod start;
 mod tasks;
 mod theme;
+#[cfg(not(target_arch = "wasm32"))]
+mod work;
 
 pub use app::HysteronApp;
 #[cfg(not(target_arch = "wasm32"))]
