@@ -1,13 +1,20 @@
 //! The Hysteron app: state, jobs and views, apart from each other.
 
+mod address;
 mod app;
+mod bar;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 mod colors;
+mod document;
 mod hook;
 mod jobs;
+pub mod lessons;
+pub mod link;
+mod notice;
 mod pages;
 mod save;
+mod shortcuts;
 mod start;
 mod tasks;
 mod theme;

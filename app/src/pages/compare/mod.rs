@@ -4,6 +4,7 @@ mod export;
 mod missing;
 mod own;
 mod plots;
+mod settings;
 mod side;
 
 use std::collections::HashMap;
@@ -16,6 +17,9 @@ use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::user_model::UserModel;
 
 use super::{Desk, View};
+pub use settings::is_built_in;
+
+use crate::document::parsed;
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::save::save;
@@ -465,7 +469,7 @@ impl View for Compare {
     }
 
     fn title(&self) -> &'static str {
-        "Compare a measurement"
+        "Compare"
     }
 
     fn update(&mut self, ctx: &egui::Context) {
@@ -474,6 +478,19 @@ impl View for Compare {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         Self::ui(self, ui, &mut desk.targets);
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(ctx, &parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {
