@@ -6,15 +6,20 @@ mod design;
 mod picture;
 mod plots;
 mod scene;
+mod settings;
 mod side;
 mod words;
 
-use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test};
+use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 
 use super::{Desk, View};
+pub use settings::is_built_in;
+
+use crate::document::parsed;
 use crate::files::Files;
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::pages::controls::claim_ui;
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
 use design::Design;
@@ -54,6 +59,8 @@ pub struct Backlash {
     /// The estimate that is under way, and for which simulation.
     estimation: Option<(Option<DriveInput>, Job<GapTask>)>,
     files: Files,
+    /// Name of the measurement that is open, or about to be.
+    file: Option<String>,
     message: Option<String>,
 }
 
@@ -71,6 +78,7 @@ impl Default for Backlash {
             scene: None,
             estimation: None,
             files: Files::default(),
+            file: None,
             message: None,
         }
     }
@@ -134,6 +142,8 @@ impl Backlash {
         self.simulation = None;
         let task = GapTask::File(name.to_owned(), text);
         self.estimation = Some((None, Job::run(ctx, task)));
+        self.file = Some(name.to_owned());
+        self.clock = 0.0;
         self.message = None;
     }
 
@@ -161,7 +171,7 @@ impl Backlash {
                     match (of, &mut self.scene) {
                         // Asked again, it would only fail again.
                         (Some(_), Some(scene)) => scene.estimate = Some(Err(error)),
-                        _ => self.message = Some(error),
+                        _ => self.keep(error),
                     }
                     return;
                 }
@@ -175,10 +185,10 @@ impl Backlash {
             (Some(measurement), _) => match Scene::measured(&measurement, report.estimate) {
                 Ok(scene) => {
                     self.scene = Some(scene);
-                    self.clock = 0.0;
+                    self.file = self.open_file();
                     self.figure = None;
                 }
-                Err(error) => self.message = Some(error),
+                Err(error) => self.keep(error),
             },
             (None, Some(scene)) if scene.input() == of => scene.estimate = Some(report.estimate),
             // It was about a simulation that is gone.
@@ -190,7 +200,18 @@ impl Backlash {
     fn close(&mut self) {
         self.scene = None;
         self.estimation = None;
+        self.file = None;
         self.message = None;
+    }
+
+    /// Nothing came of a file: what was open before is.
+    fn keep(&mut self, message: String) {
+        self.file = self.open_file();
+        self.message = Some(message);
+    }
+
+    fn open_file(&self) -> Option<String> {
+        self.scene.as_ref()?.file().map(str::to_owned)
     }
 
     /// Moves the playback on; at its end it begins again.
@@ -243,7 +264,9 @@ impl Backlash {
         }
         match (self.figure, &scene.shown) {
             (Some(number), Shown::Simulated(simulated)) => {
-                controls::claim_ui(ui, number, &simulated.checks);
+                if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
+                    claim_ui(ui, number, figure.title, figure.claim, &simulated.checks);
+                }
             }
             _ => {
                 ui.label(&scene.lesson);
@@ -327,6 +350,23 @@ impl View for Backlash {
         self.files.open_dropped(ctx, file);
     }
 
+    fn toggle_play(&mut self) {
+        self.playing = !self.playing;
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(ctx, parsed(settings)?)
+    }
+
     fn hook_state(&self) -> serde_json::Value {
         let scene = self.scene.as_ref();
         let estimate = scene.and_then(|s| s.estimate.as_ref()?.as_ref().ok());
@@ -343,6 +383,7 @@ impl View for Backlash {
             "gap_by_positions": simulated.and_then(|s| s.summary.gap()),
             "gap_estimated": estimate.and_then(|e| e.gap),
             "direction": simulated.zip(self.relay()).and_then(|(s, r)| s.summary.direction(&r)),
+            "motor_coulomb": self.input.drive.motor.coulomb,
             "clock": self.clock,
             "times_real_time": simulated.map(|_| self.input.duration / self.worked),
             "playing": self.playing,

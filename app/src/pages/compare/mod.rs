@@ -6,6 +6,7 @@ mod missing;
 mod open;
 mod own;
 mod plots;
+mod settings;
 mod side;
 mod welcome;
 
@@ -19,6 +20,9 @@ use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
 
 use super::{Desk, View};
+pub use settings::is_built_in;
+
+use crate::document::parsed;
 use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
@@ -246,7 +250,7 @@ impl View for Compare {
     }
 
     fn title(&self) -> &'static str {
-        "Compare a measurement"
+        "Compare"
     }
 
     fn update(&mut self, ctx: &egui::Context) {
@@ -255,6 +259,19 @@ impl View for Compare {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         Self::ui(self, ui, &mut desk.targets);
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(ctx, &parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {

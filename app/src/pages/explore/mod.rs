@@ -3,15 +3,18 @@
 mod controls;
 mod nyquist;
 mod plant_editor;
-mod plots;
+pub mod plots;
+mod settings;
 mod table;
 
 use std::collections::VecDeque;
 
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
-use hysteron_core::figures::{Check, checks};
+use hysteron_core::figures::{Check, checks, figures};
 
 use super::{Desk, View};
+use crate::document::parsed;
+use crate::pages::controls::claim_ui;
 use crate::theme;
 use nyquist::Nyquist;
 use plant_editor::PlantEditor;
@@ -71,7 +74,7 @@ impl View for Explore {
     }
 
     fn title(&self) -> &'static str {
-        "Explore a relay loop"
+        "Explore"
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -90,6 +93,23 @@ impl View for Explore {
             desk.relay_loop.clone_from(&self.input);
             ui.ctx().request_repaint();
         }
+    }
+
+    fn toggle_play(&mut self) {
+        self.playing = !self.playing;
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(&parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {
@@ -210,7 +230,9 @@ impl Explore {
                 theme::answer_ui(ui, &data.text);
                 ui.label(&data.stability);
                 if let Some(number) = self.figure {
-                    controls::claim_ui(ui, number, claims);
+                    if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
+                        claim_ui(ui, number, figure.title, figure.claim, claims);
+                    }
                 } else {
                     ui.label(&data.trust.text);
                 }
