@@ -1,71 +1,21 @@
 //! The page on the hidden gap, as a user works it.
 
-use std::time::Duration;
+#[path = "support/ui.rs"]
+mod ui;
 
 use egui_kittest::kittest::Queryable as _;
-use egui_kittest::{Harness, SnapshotOptions};
-use hysteron::HysteronApp;
+use ui::{App, NARROW, WIDE, answer, app, click, finish, picture, state};
 
-/// Rounds of waiting before a job counts as hung; each is [`WAIT`] long.
-const ROUNDS: usize = 6000;
-const WAIT: Duration = Duration::from_millis(10);
-
-fn page(width: f32, height: f32) -> Harness<'static, HysteronApp> {
-    let mut harness = Harness::builder()
-        .with_size(egui::vec2(width, height))
-        .with_max_steps(16)
-        .build_ui_state(
-            |ui, app: &mut HysteronApp| app.frame_ui(ui),
-            HysteronApp::at("backlash"),
-        );
-    harness.step();
-    harness.get_by_label("Pause").click();
-    finish(&mut harness);
+/// The page, standing still.
+fn page(size: [f32; 2]) -> App {
+    let mut harness = app("backlash", size);
+    click(&mut harness, "Pause");
     harness
-}
-
-/// Waits until the simulation is on the screen.
-fn finish(harness: &mut Harness<'static, HysteronApp>) {
-    harness.step();
-    for _ in 0..ROUNDS {
-        harness.step();
-        if state(harness)["busy"] == false {
-            harness.step();
-            return;
-        }
-        std::thread::sleep(WAIT);
-    }
-    panic!("the simulation did not end: {}", state(harness));
-}
-
-fn state(harness: &Harness<'static, HysteronApp>) -> serde_json::Value {
-    harness.state().hook_state()["backlash"].clone()
-}
-
-fn click(harness: &mut Harness<'static, HysteronApp>, label: &str) {
-    harness.get_by_label(label).click();
-    finish(harness);
-}
-
-/// Software and hardware renderers differ in the smoothing of edges: a few pixels in a thousand.
-fn picture(harness: &mut Harness<'static, HysteronApp>, name: &str) {
-    let options = SnapshotOptions::new()
-        .output_path("../tests/snapshots")
-        .threshold(1.0)
-        .max_failed_pixels(2000);
-    harness.snapshot_options(name, &options);
-}
-
-fn answer(harness: &Harness<'static, HysteronApp>) -> String {
-    state(harness)["answer"]
-        .as_str()
-        .expect("an answer")
-        .to_owned()
 }
 
 #[test]
 fn the_page_opens_on_a_drive_whose_gap_the_motor_finds() {
-    let mut harness = page(1280.0, 800.0);
+    let mut harness = page(WIDE);
     let found = state(&harness);
     assert_eq!(found["direction"], "against");
     let gap = found["gap_estimated"].as_f64().expect("a gap");
@@ -89,7 +39,7 @@ fn the_page_opens_on_a_drive_whose_gap_the_motor_finds() {
 
 #[test]
 fn figs_7_10_11_and_12_check_their_claims_on_screen() {
-    let mut harness = page(1280.0, 800.0);
+    let mut harness = page(WIDE);
     for number in [7, 10, 11, 12] {
         click(&mut harness, &format!("Fig. {number}"));
         let state = state(&harness);
@@ -104,7 +54,7 @@ fn figs_7_10_11_and_12_check_their_claims_on_screen() {
 
 #[test]
 fn the_direction_of_drift_tells_friction_from_delay() {
-    let mut harness = page(1280.0, 800.0);
+    let mut harness = page(WIDE);
     for (button, direction, words) in [
         ("friction alone", "against", "friction outweighs delay"),
         ("delay alone", "with", "delay outweighs friction"),
@@ -122,7 +72,7 @@ fn the_direction_of_drift_tells_friction_from_delay() {
 
 #[test]
 fn a_measured_drifting_test_shows_the_same_with_its_data() {
-    let mut harness = page(1280.0, 800.0);
+    let mut harness = page(WIDE);
     click(&mut harness, "Open drive-10");
     let found = state(&harness);
     assert_eq!(found["file"], "drive-10");
@@ -145,7 +95,7 @@ fn a_measured_drifting_test_shows_the_same_with_its_data() {
 
 #[test]
 fn a_proposed_test_is_taken_over() {
-    let mut harness = page(1280.0, 800.0);
+    let mut harness = page(WIDE);
     click(&mut harness, "Design a drifting test");
     harness
         .get_by_label("Propose a drifting test")
@@ -160,7 +110,7 @@ fn a_proposed_test_is_taken_over() {
 
 #[test]
 fn a_narrow_window_shows_the_same_drive() {
-    let mut harness = page(420.0, 800.0);
+    let mut harness = page(NARROW);
     assert_eq!(state(&harness)["direction"], "against");
     click(&mut harness, "From the start");
     picture(&mut harness, "backlash_narrow");

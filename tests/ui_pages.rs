@@ -7,48 +7,20 @@ mod drive_rig;
 #[allow(dead_code)]
 mod random;
 
-use std::time::Duration;
+#[path = "support/ui.rs"]
+mod ui;
 
 use egui_kittest::kittest::Queryable as _;
-use egui_kittest::{Harness, SnapshotOptions};
 use hysteron::HysteronApp;
+use ui::{App, WIDE, finish, picture, state, type_over};
 
-/// Rounds of waiting before a job counts as hung; each is [`WAIT`] long.
-const ROUNDS: usize = 6000;
-const WAIT: Duration = Duration::from_millis(20);
-
-/// The app in a window of 1280 x 800 points, on this page.
-fn app(page: &str) -> Harness<'static, HysteronApp> {
-    let app = HysteronApp::at(page);
-    Harness::builder()
-        .with_size(egui::vec2(1280.0, 800.0))
-        .with_max_steps(16)
-        .build_ui_state(|ui, app: &mut HysteronApp| app.frame_ui(ui), app)
+/// The app in the window of the pictures, on this page.
+fn app(page: &str) -> App {
+    ui::app(page, WIDE)
 }
 
-/// Software and hardware renderers differ in the smoothing of edges: a few pixels in a thousand.
-fn picture(harness: &mut Harness<'static, HysteronApp>, name: &str) {
-    let options = SnapshotOptions::new()
-        .output_path("../tests/snapshots")
-        .threshold(1.0)
-        .max_failed_pixels(2000);
-    harness.snapshot_options(name, &options);
-}
-
-fn wait_until_idle(harness: &mut Harness<'static, HysteronApp>) {
-    for _ in 0..ROUNDS {
-        harness.step();
-        if harness.state().hook_state()["busy"] == false {
-            harness.step();
-            return;
-        }
-        std::thread::sleep(WAIT);
-    }
-    panic!("the job did not end: {}", harness.state().hook_state());
-}
-
-fn error(harness: &Harness<'static, HysteronApp>) -> f64 {
-    harness.state().hook_state()["error"]
+fn error(harness: &App) -> f64 {
+    state(harness)["error"]
         .as_f64()
         .expect("an error on screen")
 }
@@ -56,7 +28,6 @@ fn error(harness: &Harness<'static, HysteronApp>) -> f64 {
 #[test]
 fn the_welcome_of_compare_offers_three_measurements() {
     let mut harness = app("compare");
-    harness.step();
     for id in ["drive-02", "drive-12", "process-02"] {
         harness.get_by_label(&format!("Open {id}"));
     }
@@ -66,19 +37,18 @@ fn the_welcome_of_compare_offers_three_measurements() {
 #[test]
 fn a_diagnosis_that_is_cancelled_leaves_what_was_there() {
     let mut harness = app("compare");
-    harness.step();
     harness.get_by_label("Open drive-02").click();
     harness.step();
-    wait_until_idle(&mut harness);
+    finish(&mut harness);
     let before = error(&harness);
     harness.get_by_label("Add Coulomb friction").click();
     harness.step();
-    assert_eq!(harness.state().hook_state()["busy"], true);
+    assert_eq!(state(&harness)["busy"], true);
     harness.step();
     harness.get_by_label("Cancel").click();
     harness.step();
     harness.step();
-    let state = harness.state().hook_state();
+    let state = state(&harness);
     assert_eq!((&state["busy"], error(&harness)), (&false.into(), before));
     harness.get_by_label("Add Coulomb friction");
 }
@@ -86,15 +56,14 @@ fn a_diagnosis_that_is_cancelled_leaves_what_was_there() {
 #[test]
 fn adding_coulomb_friction_to_drive_02_lowers_the_error_to_the_noise() {
     let mut harness = app("compare");
-    harness.step();
     harness.get_by_label("Open drive-02").click();
     harness.step();
     assert_eq!(
-        harness.state().hook_state()["busy"],
+        state(&harness)["busy"],
         true,
         "the job runs beside the window"
     );
-    wait_until_idle(&mut harness);
+    finish(&mut harness);
     let before = error(&harness);
     harness.get_by_label("Add Coulomb friction").click();
     harness.step();
@@ -103,7 +72,7 @@ fn adding_coulomb_friction_to_drive_02_lowers_the_error_to_the_noise() {
         before,
         "the last result stays while the next is computed"
     );
-    wait_until_idle(&mut harness);
+    finish(&mut harness);
     let after = error(&harness);
     assert!(
         before > 2.0,
@@ -123,13 +92,12 @@ fn adding_coulomb_friction_to_drive_02_lowers_the_error_to_the_noise() {
         before,
         "undo shows the stored step at once"
     );
-    assert_eq!(harness.state().hook_state()["busy"], false);
+    assert_eq!(state(&harness)["busy"], false);
 }
 
 #[test]
 fn a_bad_file_gives_one_sentence_and_loses_nothing() {
     let mut harness = app("compare");
-    harness.step();
     harness.get_by_label("Open drive-02").click();
     harness.step();
     let ctx = harness.ctx.clone();
@@ -137,7 +105,7 @@ fn a_bad_file_gives_one_sentence_and_loses_nothing() {
         .state_mut()
         .open(&ctx, "notes.csv", b"this is no measurement\n");
     harness.step();
-    let state = harness.state().hook_state();
+    let state = state(&harness);
     assert_eq!(state["file"], "drive-02", "the open measurement stays");
     let message = state["message"].as_str().expect("a sentence");
     assert_eq!(message.lines().count(), 1, "{message}");
@@ -146,15 +114,13 @@ fn a_bad_file_gives_one_sentence_and_loses_nothing() {
 #[test]
 fn a_model_from_a_file_is_where_compare_begins() {
     let mut harness = app("compare");
-    harness.step();
     harness.get_by_label("Open drive-02").click();
     harness.step();
     let ctx = harness.ctx.clone();
     let mut open = |text: &str| {
-        let state = harness.state_mut();
-        state.open(&ctx, "rig.toml", text.as_bytes());
-        wait_until_idle(&mut harness);
-        harness.state().hook_state()["compare"].clone()
+        harness.state_mut().open(&ctx, "rig.toml", text.as_bytes());
+        finish(&mut harness);
+        state(&harness)["compare"].clone()
     };
     let bad = open("kind = \"drive\"\n[parameters]\nJ9 = 1\n");
     let message = bad["message"].as_str().expect("a sentence");
@@ -168,17 +134,16 @@ fn a_model_from_a_file_is_where_compare_begins() {
     harness.get_by_label("Begins with rig.toml");
     harness.get_by_label("Forget it").click();
     harness.step();
-    wait_until_idle(&mut harness);
+    finish(&mut harness);
     assert!(error(&harness) > 2.0, "the baseline again");
 }
 
 #[test]
 fn an_effect_of_ones_own_is_typed_and_added() {
     let mut harness = app("compare");
-    harness.step();
     harness.get_by_label("Open process-02").click();
     harness.step();
-    wait_until_idle(&mut harness);
+    finish(&mut harness);
     // It stands below the fold.
     harness
         .get_by_label("An effect of your own")
@@ -195,8 +160,8 @@ fn an_effect_of_ones_own_is_typed_and_added() {
     harness.get_by_label("To be fitted: a");
     harness.get_by_label("Add your effect").click_accesskit();
     harness.step();
-    wait_until_idle(&mut harness);
-    let state = harness.state().hook_state()["compare"].clone();
+    finish(&mut harness);
+    let state = state(&harness)["compare"].clone();
     assert_eq!(state["effects"], serde_json::json!(["bump"]), "{state}");
     assert_eq!(state["message"], serde_json::Value::Null);
 }
@@ -213,11 +178,10 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
         ..drive_rig::DriveRig::default()
     };
     let mut harness = app("compare");
-    harness.step();
     let ctx = harness.ctx.clone();
     let csv = rig.measure().to_csv();
     harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
-    wait_until_idle(&mut harness);
+    finish(&mut harness);
     harness.get_by_label("What is missing, estimated without a model");
     harness.get_by_label_contains("A force that depends on the velocity alone");
     picture(&mut harness, "compare_missing_force");
@@ -227,7 +191,6 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
 fn explore_opens_on_an_oscillating_loop() {
     let mut harness = app("explore");
     harness.step();
-    harness.step();
     harness.get_by_label_contains("It oscillates: period 4.788 s");
     harness.get_by_label("phase-margin point S").click();
     harness.step();
@@ -236,25 +199,13 @@ fn explore_opens_on_an_oscillating_loop() {
 }
 
 /// What Explore computed for its loop.
-fn explored(harness: &Harness<'static, HysteronApp>) -> serde_json::Value {
-    harness.state().hook_state()["explore"].clone()
-}
-
-fn type_plant(harness: &mut Harness<'static, HysteronApp>, text: &str) {
-    let field = harness.get_by_label("P(s) =");
-    field.focus();
-    harness.step();
-    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    harness.step();
-    harness.get_by_label("P(s) =").type_text(text);
-    harness.step();
-    harness.step();
+fn explored(harness: &App) -> serde_json::Value {
+    state(harness)["explore"].clone()
 }
 
 #[test]
 fn figs_3_4_and_5_check_their_claims_on_screen() {
     let mut harness = app("explore");
-    harness.step();
     for number in 3..=5 {
         harness.get_by_label(&format!("Fig. {number}")).click();
         harness.step();
@@ -272,8 +223,7 @@ fn figs_3_4_and_5_check_their_claims_on_screen() {
 #[test]
 fn a_typed_plant_is_taken_and_a_wrong_one_loses_nothing() {
     let mut harness = app("explore");
-    harness.step();
-    type_plant(&mut harness, "2 e^{-0.5s}/(3s+1)");
+    type_over(&mut harness, "P(s) =", "2 e^{-0.5s}/(3s+1)");
     let good = explored(&harness);
     assert_eq!(good["plant_error"], serde_json::Value::Null, "{good}");
     assert_eq!(good["loop"]["plant"]["dead_time"], 0.5);
@@ -285,7 +235,7 @@ fn a_typed_plant_is_taken_and_a_wrong_one_loses_nothing() {
     let decay = (-0.5_f64 / 3.0).exp();
     let amplitude = good["exact"]["amplitude"].as_f64().expect("a cycle");
     assert!((amplitude / (2.0 * (1.0 - decay) + 0.1 * decay) - 1.0).abs() < 1e-9);
-    type_plant(&mut harness, "2/(3s+");
+    type_over(&mut harness, "P(s) =", "2/(3s+");
     let bad = explored(&harness);
     assert!(
         bad["plant_error"].as_str().is_some_and(|e| !e.is_empty()),
@@ -303,9 +253,8 @@ fn a_typed_plant_is_taken_and_a_wrong_one_loses_nothing() {
 fn dragging_the_line_of_the_nyquist_plot_sets_the_hysteresis() {
     let mut harness = app("explore");
     harness.step();
-    harness.step();
     let before = explored(&harness);
-    let at = harness.state().hook_state()["targets"]["nyquist:line"].clone();
+    let at = state(&harness)["targets"]["nyquist:line"].clone();
     let coordinate = |i: usize| at[i].as_f64().expect("the line can be seen") as f32;
     let from = egui::pos2(coordinate(0), coordinate(1));
     harness.hover_at(from);
@@ -332,8 +281,7 @@ fn every_page_draws_itself_and_says_what_it_shows() {
     for id in HysteronApp::default().page_ids() {
         let mut harness = app(id);
         harness.step();
-        harness.step();
-        let state = harness.state().hook_state();
+        let state = state(&harness);
         assert_eq!(state["page"], id);
         assert!(state[id]["busy"].is_boolean(), "{id}: {state}");
     }
@@ -342,15 +290,14 @@ fn every_page_draws_itself_and_says_what_it_shows() {
 #[test]
 fn the_parameter_map_fills_and_a_click_sets_the_loop() {
     let mut harness = app("maps");
-    harness.step();
-    wait_until_idle(&mut harness);
-    let state = harness.state().hook_state();
-    assert_eq!(state["share"], 1.0);
-    assert_eq!(state["message"], serde_json::Value::Null);
+    finish(&mut harness);
+    let filled = state(&harness);
+    assert_eq!(filled["share"], 1.0);
+    assert_eq!(filled["message"], serde_json::Value::Null);
     picture(&mut harness, "maps");
     harness.get_by_label("Show this loop in Explore").click();
     harness.step();
     harness.step();
-    assert_eq!(harness.state().hook_state()["page"], "explore");
+    assert_eq!(state(&harness)["page"], "explore");
     harness.get_by_label_contains("It oscillates: period 4.788 s");
 }

@@ -1,22 +1,48 @@
 //! The shell around the pages.
 
+use egui::util::undoer::Undoer;
+
+use crate::address;
+use crate::bar::Bar;
+use crate::document::Document;
+use crate::notice::{self, Notice};
 use crate::pages::{Command, Desk, View, registry};
-use crate::theme;
+use crate::shortcuts;
+use crate::theme::{self, Look};
+use crate::{lessons, link};
 
 /// The app: the pages and what they share.
 pub struct HysteronApp {
     pages: Vec<Box<dyn View>>,
     front: usize,
     desk: Desk,
+    /// What is set when nothing was touched.
+    untouched: Document,
+    /// What was set before; never what was computed.
+    history: Undoer<Document>,
+    look: Look,
+    /// Whether the sheet with the keys is open.
+    sheet: bool,
+    notice: Option<Notice>,
+    #[cfg(target_arch = "wasm32")]
+    address: address::Address,
     frame: u64,
 }
 
 impl Default for HysteronApp {
     fn default() -> Self {
+        let (pages, desk) = (registry(), Desk::default());
         Self {
-            pages: registry(),
+            untouched: Document::of(&pages, 0, &desk),
+            pages,
             front: 0,
-            desk: Desk::default(),
+            desk,
+            history: Undoer::default(),
+            look: Look::default(),
+            sheet: false,
+            notice: None,
+            #[cfg(target_arch = "wasm32")]
+            address: address::Address::default(),
             frame: 0,
         }
     }
@@ -42,34 +68,145 @@ impl HysteronApp {
         }
     }
 
+    /// Everything that is set.
+    fn document(&self) -> Document {
+        Document::of(&self.pages, self.front, &self.desk)
+    }
+
+    /// What is on the screen, as a text for a link: what stands behind `#`.
+    pub fn link(&self) -> String {
+        self.document().link(&self.untouched)
+    }
+
+    /// Shows what a link, or the text of one, says. What cannot be is refused, changes nothing, and is said
+    /// on the screen too.
+    ///
+    /// # Errors
+    /// One sentence.
+    pub fn open_link(&mut self, ctx: &egui::Context, text: &str) -> Result<(), String> {
+        let present = self.document();
+        let opened = Document::read(text, &self.untouched)
+            .and_then(|document| self.apply(ctx, &document.within(&present)));
+        if let Err(sentence) = &opened {
+            self.notice = Some(Notice::refused(sentence));
+        }
+        opened
+    }
+
+    /// Sets everything as in `document`, or nothing.
+    fn apply(&mut self, ctx: &egui::Context, document: &Document) -> Result<(), String> {
+        let present = self.document();
+        let (pages, front, desk) = (&mut self.pages, &mut self.front, &mut self.desk);
+        document.apply(ctx, pages, front, desk).inspect_err(|_| {
+            // What was set before can be set again, but for a file that is gone.
+            let _ = present.apply(ctx, pages, front, desk);
+        })
+    }
+
     /// One frame: takes what came in, draws the page, publishes the state.
     pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
         if self.frame == 0 {
             theme::apply(ui.ctx());
+            if ui.ctx().system_theme() == Some(egui::Theme::Light) && self.look == Look::default() {
+                self.look = Look::Light;
+            }
+            self.look.apply(ui.ctx());
         }
         self.frame += 1;
         self.desk.targets.clear();
         self.take_dropped_files(ui.ctx());
+        self.take_pasted_link(ui.ctx());
         for page in &mut self.pages {
             page.update(ui.ctx());
         }
-        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui));
+        let present = self.document();
+        let now = ui.input(|i| i.time);
+        self.history.feed_state(now, &present);
+        shortcuts::pressed(ui.ctx(), &self.page_ids(), &mut self.desk.commands);
+        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present));
+        let desk = &mut self.desk;
+        desk.study.ui(ui, &mut desk.targets, &mut desk.commands);
         if let Some(page) = self.pages.get_mut(self.front) {
-            page.ui(ui, &mut self.desk);
+            page.ui(ui, desk);
         }
         for command in std::mem::take(&mut self.desk.commands) {
-            self.carry_out(command);
+            self.carry_out(ui.ctx(), command);
         }
-        drop_hint_ui(ui.ctx());
+        self.overlays_ui(ui.ctx());
         #[cfg(target_arch = "wasm32")]
         crate::hook::publish(&self.hook_state());
     }
 
-    fn carry_out(&mut self, command: Command) {
+    fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
         match command {
+            Command::Undo | Command::Redo => self.travel(ctx, command == Command::Undo),
+            Command::Reset => {
+                // The link of an untouched page is its name.
+                let untouched = format!("{};{}", link::VERSION, self.document().page);
+                let _ = self.open_link(ctx, &untouched);
+            }
+            Command::Lesson(Some(id)) => {
+                // It begins with what its first button shows.
+                let lesson = lessons::find(&id);
+                if let Some(link) = lesson.and_then(|l| l.links().next()) {
+                    let _ = self.open_link(ctx, &format!("{link};lesson={id}"));
+                }
+            }
+            Command::Lesson(None) => self.desk.study.lesson = None,
+            Command::Check => {
+                let state = self.hook_state();
+                self.desk.study.check(&state);
+            }
+            Command::Play => {
+                if let Some(page) = self.pages.get_mut(self.front) {
+                    page.toggle_play();
+                }
+            }
+            Command::NextLook => self.set_look(ctx, self.look.next()),
+            Command::SetLook(look) => self.set_look(ctx, look),
+            Command::Sheet => self.sheet = !self.sheet,
+            Command::Close => {
+                self.sheet = false;
+                self.notice = None;
+            }
+            Command::CopyLink => {
+                let link = self.link();
+                ctx.copy_text(address::of(&link));
+                let saying = match self.document().file() {
+                    Some(name) => format!(
+                        "The link is copied. The file {name} is not part of it: send it along."
+                    ),
+                    None => "The link to this page, as it is now, is copied.".to_owned(),
+                };
+                self.notice = Some(Notice::done(ctx, saying));
+            }
+            Command::OpenLink(text) => {
+                // A refusal is on the screen.
+                let _ = self.open_link(ctx, &text);
+            }
             Command::Go(id) => self.go(id),
             Command::SetLoop(input) => self.desk.relay_loop = *input,
         }
+    }
+
+    /// Goes back to what was set before the last change, or forth again.
+    fn travel(&mut self, ctx: &egui::Context, back: bool) {
+        let present = self.document();
+        let there = if back {
+            self.history.undo(&present)
+        } else {
+            self.history.redo(&present)
+        };
+        if let Some(document) = there.cloned()
+            && let Err(sentence) = self.apply(ctx, &document)
+        {
+            self.notice = Some(Notice::refused(sentence));
+        }
+    }
+
+    fn set_look(&mut self, ctx: &egui::Context, look: Look) {
+        self.look = look;
+        look.apply(ctx);
     }
 
     fn go(&mut self, id: &str) {
@@ -93,31 +230,37 @@ impl HysteronApp {
         state["busy"] = busy.into();
         state["page"] = front.map(|p| p.id()).into();
         state["frame"] = self.frame.into();
+        state["lesson"] = self.desk.study.lesson.clone().into();
+        state["solved"] = serde_json::json!(self.desk.study.solved);
+        state["look"] = self.look.name().into();
+        state["link"] = self.link().into();
+        state["notice"] = self.notice.as_ref().map(Notice::text).into();
         state["targets"] = self.desk.targets.to_json();
         state
     }
 
-    fn bar_ui(&mut self, ui: &mut egui::Ui) {
-        ui.horizontal_wrapped(|ui| {
-            ui.heading("Hysteron");
-            for (index, page) in self.pages.iter().enumerate() {
-                let tab = ui.selectable_label(self.front == index, page.title());
-                let name = format!("page:{}", page.id());
-                self.desk.targets.note(name, ui, &tab);
-                if tab.clicked() {
-                    self.front = index;
-                }
-            }
-            let dark = ui.visuals().dark_mode;
-            let (label, other) = if dark {
-                ("Light", egui::Theme::Light)
-            } else {
-                ("Dark", egui::Theme::Dark)
-            };
-            if ui.button(label).clicked() {
-                ui.ctx().set_theme(other);
-            }
-        });
+    fn bar_ui(&mut self, ui: &mut egui::Ui, present: &Document) {
+        let pages: Vec<_> = self.pages.iter().map(|p| (p.id(), p.title())).collect();
+        let bar = Bar {
+            pages: &pages,
+            front: self.front,
+            undo: [
+                self.history.has_undo(present),
+                self.history.has_redo(present),
+            ],
+            look: self.look,
+        };
+        bar.ui(ui, &mut self.desk);
+    }
+
+    /// What lies over the page.
+    fn overlays_ui(&mut self, ctx: &egui::Context) {
+        drop_hint_ui(ctx);
+        if self.sheet {
+            let titles: Vec<_> = self.pages.iter().map(|p| p.title()).collect();
+            self.sheet = shortcuts::sheet_ui(ctx, &titles);
+        }
+        notice::ui(ctx, &mut self.notice);
     }
 
     fn take_dropped_files(&mut self, ctx: &egui::Context) {
@@ -125,6 +268,22 @@ impl HysteronApp {
             && let Some(page) = self.go_to_files()
         {
             page.open_dropped(ctx, &file);
+        }
+    }
+
+    /// A link that is pasted while no text field has the keyboard is opened.
+    fn take_pasted_link(&mut self, ctx: &egui::Context) {
+        if ctx.egui_wants_keyboard_input() {
+            return;
+        }
+        let pasted = ctx.input(|i| {
+            i.events.iter().find_map(|event| match event {
+                egui::Event::Paste(text) => Some(text.clone()),
+                _ => None,
+            })
+        });
+        if let Some(text) = pasted {
+            let _ = self.open_link(ctx, &text);
         }
     }
 
@@ -149,8 +308,56 @@ fn drop_hint_ui(ctx: &egui::Context) {
     }
 }
 
+/// Keys under which the last session is kept.
+const KEPT: &str = "hysteron";
+const KEPT_LOOK: &str = "hysteron look";
+const KEPT_SOLVED: &str = "hysteron lessons";
+
+impl HysteronApp {
+    /// The app as it was left.
+    pub fn restored(context: &eframe::CreationContext<'_>) -> Self {
+        let mut app = Self::default();
+        let kept = |key| context.storage.and_then(|s| s.get_string(key));
+        if let Some(look) = kept(KEPT_LOOK).as_deref().and_then(Look::named) {
+            app.look = look;
+        }
+        if let Some(solved) = kept(KEPT_SOLVED) {
+            app.desk.study.solved = solved.split_whitespace().map(str::to_owned).collect();
+        }
+        if let Some(text) = kept(KEPT) {
+            app.restore(&context.egui_ctx, &text);
+        }
+        app
+    }
+
+    /// The whole state as a text, for [`Self::restore`].
+    pub fn kept(&self) -> String {
+        self.document().text(&self.untouched)
+    }
+
+    /// Takes up what [`Self::kept`] has left, page by page: what cannot be, such as a file that is not there
+    /// any more, is left out.
+    pub fn restore(&mut self, ctx: &egui::Context, text: &str) {
+        if let Ok(document) = Document::read(text, &self.untouched) {
+            let (pages, front, desk) = (&mut self.pages, &mut self.front, &mut self.desk);
+            document.restore(ctx, pages, front, desk);
+        }
+    }
+}
+
 impl eframe::App for HysteronApp {
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        storage.set_string(KEPT, self.kept());
+        let solved: Vec<&str> = self.desk.study.solved.iter().map(String::as_str).collect();
+        storage.set_string(KEPT_SOLVED, solved.join(" "));
+        storage.set_string(KEPT_LOOK, self.look.name().to_owned());
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        #[cfg(target_arch = "wasm32")]
+        if let Some(text) = self.address.changed() {
+            let _ = self.open_link(ui.ctx(), &text);
+        }
         self.frame_ui(ui);
     }
 }

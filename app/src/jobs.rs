@@ -12,7 +12,7 @@ use crate::tasks::{StepTask, Task};
 /// A running task; dropping it cancels it.
 pub struct Job<T: Task = StepTask>(platform::Job<T::Report>);
 
-impl<T: Task> Job<T> {
+impl<T: platform::Runs> Job<T> {
     /// Runs a task; the window is redrawn whenever it says something.
     pub fn run(ctx: &egui::Context, task: T) -> Self {
         Self(platform::start(ctx.clone(), task))
@@ -49,14 +49,15 @@ mod platform {
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::mpsc::{Receiver, channel};
 
-    use crate::tasks::{News, Task};
+    use crate::tasks::News;
+    pub use crate::work::Work as Runs;
 
     pub struct Job<R> {
         news: Receiver<News<R>>,
         cancelled: Arc<AtomicBool>,
     }
 
-    pub fn start<T: Task>(ctx: egui::Context, task: T) -> Job<T::Report> {
+    pub fn start<T: Runs>(ctx: egui::Context, task: T) -> Job<T::Report> {
         let (sender, news) = channel();
         let cancelled = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&cancelled);
@@ -91,7 +92,8 @@ mod platform {
     use wasm_bindgen::prelude::*;
     use web_sys::{ErrorEvent, MessageEvent, Worker, WorkerOptions, WorkerType};
 
-    use crate::tasks::{News, Task};
+    use crate::tasks::News;
+    pub use crate::tasks::Task as Runs;
 
     pub struct Job<R> {
         worker: Option<Worker>,
@@ -102,7 +104,7 @@ mod platform {
         )>,
     }
 
-    pub fn start<T: Task>(ctx: egui::Context, task: T) -> Job<T::Report> {
+    pub fn start<T: Runs>(ctx: egui::Context, task: T) -> Job<T::Report> {
         let news = Rc::new(RefCell::new(Vec::new()));
         let options = WorkerOptions::new();
         options.set_type(WorkerType::Module);

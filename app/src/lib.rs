@@ -1,17 +1,28 @@
 //! The Hysteron app: state, jobs and views, apart from each other.
 
+mod address;
 mod app;
+mod bar;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 mod colors;
+mod document;
+mod files;
 mod hook;
 mod jobs;
+pub mod lessons;
+pub mod link;
+mod notice;
 mod pages;
+#[cfg(not(target_arch = "wasm32"))]
 mod pieces;
 mod save;
+mod shortcuts;
 mod start;
 mod tasks;
 mod theme;
+#[cfg(not(target_arch = "wasm32"))]
+mod work;
 
 pub use app::HysteronApp;
 #[cfg(not(target_arch = "wasm32"))]

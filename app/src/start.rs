@@ -28,7 +28,7 @@ pub fn run_native() -> Result<(), String> {
     eframe::run_native(
         "hysteron",
         options,
-        Box::new(|_| Ok(Box::new(HysteronApp::default()))),
+        Box::new(|context| Ok(Box::new(HysteronApp::restored(context)))),
     )
     .map_err(|e| format!("hysteron: {NO_DISPLAY} ({})", one_line(&e.to_string())))
 }
@@ -68,7 +68,7 @@ pub fn run_web() {
             .start(
                 canvas,
                 eframe::WebOptions::default(),
-                Box::new(|_| Ok(Box::new(HysteronApp::default()))),
+                Box::new(|context| Ok(Box::new(HysteronApp::restored(context)))),
             )
             .await;
         if started.is_ok()
@@ -80,7 +80,7 @@ pub fn run_web() {
             log::error!("the app did not start: {error:?}");
             if let Some(place) = document.get_element_by_id("hysteron-error") {
                 place.set_text_content(Some(
-                    "Hysteron needs a browser with WebGPU or WebGL 2. Neither could be started here.",
+                    "Hysteron needs a browser with WebGL 2, which could not be started here. Try a current Firefox, Chrome, Edge or Safari, and switch hardware acceleration on in its settings.",
                 ));
             }
         }

@@ -21,29 +21,85 @@ pub const SIMULATED: Color32 = Color32::from_rgb(0x56, 0xB4, 0xE9);
 /// Where the model fails.
 pub const SHADE: Color32 = Color32::from_rgb(0xF0, 0xE4, 0x42);
 
-/// Type sizes and spacing, large enough for the back row of a lecture hall.
+/// How the app looks as a whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Look {
+    /// Light on dark.
+    #[default]
+    Dark,
+    /// Dark on light.
+    Light,
+    /// Dark on white and everything larger, for the back row of a lecture hall.
+    Projector,
+}
+
+impl Look {
+    /// All of them, in the order of the menu.
+    pub const ALL: [Self; 3] = [Self::Dark, Self::Light, Self::Projector];
+
+    /// Its name in the menu and where it is kept.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dark => "Dark",
+            Self::Light => "Light",
+            Self::Projector => "Projector",
+        }
+    }
+
+    /// The look of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|l| l.name() == name)
+    }
+
+    /// The next one.
+    pub fn next(self) -> Self {
+        match self {
+            Self::Dark => Self::Light,
+            Self::Light => Self::Projector,
+            Self::Projector => Self::Dark,
+        }
+    }
+
+    /// How much larger everything is than usual.
+    fn zoom(self) -> f32 {
+        if self == Self::Projector { 1.35 } else { 1.0 }
+    }
+
+    /// Makes the app look so.
+    pub fn apply(self, ctx: &egui::Context) {
+        ctx.set_theme(match self {
+            Self::Dark => egui::Theme::Dark,
+            Self::Light | Self::Projector => egui::Theme::Light,
+        });
+        ctx.style_mut_of(egui::Theme::Light, |style| {
+            let [text, ground, field] = match self {
+                Self::Projector => [Color32::BLACK, Color32::WHITE, Color32::from_gray(236)],
+                _ => [20, 248, 255].map(Color32::from_gray),
+            };
+            style.visuals.override_text_color = Some(text);
+            style.visuals.panel_fill = ground;
+            style.visuals.text_edit_bg_color = Some(field);
+        });
+        ctx.set_zoom_factor(self.zoom());
+    }
+}
+
+/// Type sizes and spacing.
 pub fn apply(ctx: &egui::Context) {
-    // The default greys are too faint for a projector.
+    // The default greys are too faint to read from afar.
     ctx.style_mut_of(egui::Theme::Dark, |style| {
         style.visuals.override_text_color = Some(Color32::from_gray(225));
     });
-    ctx.style_mut_of(egui::Theme::Light, |style| {
-        style.visuals.override_text_color = Some(Color32::from_gray(20));
-    });
     ctx.all_styles_mut(|style| {
         use egui::{FontId, TextStyle};
-        style
-            .text_styles
-            .insert(TextStyle::Body, FontId::proportional(14.5));
-        style
-            .text_styles
-            .insert(TextStyle::Button, FontId::proportional(14.5));
-        style
-            .text_styles
-            .insert(TextStyle::Small, FontId::proportional(12.0));
-        style
-            .text_styles
-            .insert(TextStyle::Heading, FontId::proportional(20.0));
+        for (text, size) in [
+            (TextStyle::Body, 14.5),
+            (TextStyle::Button, 14.5),
+            (TextStyle::Small, 12.0),
+            (TextStyle::Heading, 20.0),
+        ] {
+            style.text_styles.insert(text, FontId::proportional(size));
+        }
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(10.0, 4.0);
         style.spacing.slider_width = 150.0;

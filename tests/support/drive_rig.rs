@@ -41,6 +41,14 @@ pub enum Excitation {
     Multisine { amplitude: f64 },
     /// Levels of growing size and both signs up to this torque (N m), with pauses between.
     Staircase { top: f64 },
+    /// Relay without asymmetry whose gain changes to and fro, each holding so many seconds.
+    TwoGains {
+        gains: [f64; 2],
+        hold: f64,
+        hysteresis: f64,
+    },
+    /// These levels in turn, over and over, each for so many seconds.
+    Levels { levels: [f64; 16], hold: f64 },
 }
 
 /// Relay with the paper's default levels.
@@ -468,6 +476,20 @@ impl Controller {
                 } else {
                     gain * (1.0 + asymmetry)
                 }
+            }
+            Excitation::TwoGains {
+                gains,
+                hold,
+                hysteresis,
+            } => {
+                if velocity.abs() > hysteresis {
+                    self.high = velocity > 0.0;
+                }
+                let gain = gains[usize::from((t + 1e-9) % (2.0 * hold) >= hold)];
+                if self.high { -gain } else { gain }
+            }
+            Excitation::Levels { levels, hold } => {
+                levels[((t + 1e-9) / hold) as usize % levels.len()]
             }
             Excitation::Multisine { amplitude } => self
                 .sines

@@ -22,6 +22,14 @@ pub enum Excitation {
     Staircase { top: f64 },
     /// Two levels, held for random multiples of 3 s.
     Binary { level: f64 },
+    /// Relay whose gain changes to and fro, each holding so many seconds.
+    TwoGains {
+        gains: [f64; 2],
+        hold: f64,
+        hysteresis: f64,
+    },
+    /// These levels in turn, over and over, each for so many seconds.
+    Levels { levels: [f64; 16], hold: f64 },
 }
 
 /// Physics that no library of the project knows.
@@ -234,6 +242,20 @@ impl Controller {
                     self.high = false;
                 }
                 if self.high { -gain } else { gain }
+            }
+            Excitation::TwoGains {
+                gains,
+                hold,
+                hysteresis,
+            } => {
+                if y.abs() > hysteresis {
+                    self.high = y > 0.0;
+                }
+                let gain = gains[usize::from((t + 1e-9) % (2.0 * hold) >= hold)];
+                if self.high { -gain } else { gain }
+            }
+            Excitation::Levels { levels, hold } => {
+                levels[((t + 1e-9) / hold) as usize % levels.len()]
             }
             Excitation::Staircase { top } => {
                 const SHARES: [f64; 8] = [0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0];

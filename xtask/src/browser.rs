@@ -1,6 +1,7 @@
 //! The page in a real headless Chromium: loads, opens a measurement, adds the effect, reads the error.
 
 mod driver;
+mod speed;
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -47,6 +48,7 @@ pub fn test() -> Result<(), String> {
         return Err(format!("the error fell from {error} to {fallen} only"));
     }
     look(&session, &folder.join("added.png"))?;
+    speed::report(&session)?;
     session.quiet()
 }
 

@@ -5,6 +5,10 @@
 #[path = "../tasks.rs"]
 mod tasks;
 
+#[cfg(target_arch = "wasm32")]
+#[path = "../work.rs"]
+mod work;
+
 #[cfg(not(target_arch = "wasm32"))]
 fn main() {
     println!("This is the worker of the web page; the app is `hysteron`.");
@@ -20,7 +24,8 @@ mod web {
     use wasm_bindgen::prelude::*;
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
-    use crate::tasks::{GapTask, MapTask, News, READY, StepTask, Task, TuneTask};
+    use crate::tasks::{GapTask, MapTask, News, READY, StepTask, Task as _, TuneTask};
+    use crate::work::Work;
 
     /// Share of progress below which nothing new is said.
     const PROGRESS_STEP: f64 = 0.01;
@@ -62,7 +67,7 @@ mod web {
         }
     }
 
-    fn run<T: Task>(
+    fn run<T: Work>(
         scope: &DedicatedWorkerGlobalScope,
         task: serde_json::Value,
     ) -> Result<(), serde_json::Error> {

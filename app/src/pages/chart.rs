@@ -16,6 +16,30 @@ pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
 }
 
+/// A curve of at most `most` points: a longer one keeps the least and the largest value of each stretch.
+pub fn envelope(time: &[f64], values: &[f64], most: usize) -> Vec<[f64; 2]> {
+    if time.len() <= most {
+        return time.iter().zip(values).map(|(t, v)| [*t, *v]).collect();
+    }
+    let stretch = time.len().div_ceil((most / 2).max(1));
+    time.chunks(stretch)
+        .zip(values.chunks(stretch))
+        .flat_map(|(t, v)| {
+            let (mut low, mut high) = (0, 0);
+            for (i, value) in v.iter().enumerate() {
+                if *value < v[low] {
+                    low = i;
+                }
+                if *value > v[high] {
+                    high = i;
+                }
+            }
+            let (first, second) = (low.min(high), low.max(high));
+            [[t[first], v[first]], [t[second], v[second]]]
+        })
+        .collect()
+}
+
 /// Axes whose labels have as many decimals as they need; that of y at least this wide, so that plots above
 /// each other line up.
 pub fn axes(

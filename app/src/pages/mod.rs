@@ -4,13 +4,18 @@
 mod backlash;
 mod chart;
 mod compare;
+mod controls;
 mod explore;
+mod lessons;
 mod maps;
+mod start;
 mod tune;
 
 use hysteron_core::explore::ExploreInput;
 
 use crate::hook::Targets;
+use crate::lessons::Study;
+use crate::theme::Look;
 
 /// A page.
 pub trait View {
@@ -22,8 +27,19 @@ pub trait View {
     fn update(&mut self, _ctx: &egui::Context) {}
     /// Draws it.
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk);
+    /// What is set on it, as a plain value: what links, undo and the autosave keep.
+    fn settings(&self) -> serde_json::Value;
+    /// Sets it; what cannot be is refused in one sentence.
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        desk: &Desk,
+    ) -> Result<(), String>;
     /// What it shows, for tests: an object, with `busy` while a job runs.
     fn hook_state(&self) -> serde_json::Value;
+    /// Plays or pauses, if something moves on it.
+    fn toggle_play(&mut self) {}
     /// Whether files can be opened on it.
     fn takes_files(&self) -> bool {
         false
@@ -37,6 +53,8 @@ pub trait View {
 /// All pages, in the order of their tabs; the first is in front when the app starts.
 pub fn registry() -> Vec<Box<dyn View>> {
     vec![
+        Box::<start::Start>::default(),
+        Box::<lessons::Lessons>::default(),
         Box::<explore::Explore>::default(),
         Box::<maps::Maps>::default(),
         Box::<tune::Tune>::default(),
@@ -45,11 +63,18 @@ pub fn registry() -> Vec<Box<dyn View>> {
     ]
 }
 
+/// Whether a measurement of this name comes with the app.
+pub fn is_built_in(name: &str) -> bool {
+    compare::is_built_in(name) || backlash::is_built_in(name)
+}
+
 /// What the pages share.
 #[derive(Default)]
 pub struct Desk {
     /// The relay loop that they are about.
     pub relay_loop: ExploreInput,
+    /// The lesson that stands beside them.
+    pub study: Study,
     /// Where the buttons are.
     pub targets: Targets,
     /// What is to be done after this frame.
@@ -63,4 +88,26 @@ pub enum Command {
     Go(&'static str),
     /// Sets the loop that the pages are about.
     SetLoop(Box<ExploreInput>),
+    /// Puts the link to what is on the screen on the clipboard.
+    CopyLink,
+    /// Takes the last change back, or does it again.
+    Undo,
+    Redo,
+    /// Puts this page back to what it is when nothing was touched.
+    Reset,
+    /// Plays or pauses.
+    Play,
+    /// Opens the lesson with this id, or closes the one that is open.
+    Lesson(Option<String>),
+    /// Checks the question of the lesson.
+    Check,
+    /// Changes how the app looks.
+    NextLook,
+    SetLook(Look),
+    /// Shows or hides the sheet with the keys.
+    Sheet,
+    /// Closes what lies over the page.
+    Close,
+    /// Shows what a link says.
+    OpenLink(String),
 }

@@ -8,7 +8,7 @@ use crate::model::{Excitation, Sensor, Start};
 
 /// Samples per window of a drive: its position integrates, so that long windows would drown the
 /// effect in drift; a few relay periods fit in.
-const DRIVE_WINDOW: usize = 250;
+pub(super) const DRIVE_WINDOW: usize = 250;
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
@@ -65,6 +65,16 @@ pub(super) struct Data {
 
 impl Data {
     pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
+        let input = &measurement.input.values;
+        let levels = measurement
+            .outputs
+            .iter()
+            .map(|c| noise_level(&c.values, input));
+        Self::with_noise(measurement, &levels.collect::<Vec<_>>())
+    }
+
+    /// The same where the noise of each output is known.
+    pub fn with_noise(measurement: &Measurement, noise: &[f64]) -> Result<Self, CriticismError> {
         let n = measurement.len();
         let input = &measurement.input.values;
         if input.iter().all(|u| *u == input[0]) {
@@ -73,9 +83,10 @@ impl Data {
         let outputs: Vec<Output> = measurement
             .outputs
             .iter()
-            .map(|c| Output {
+            .zip(noise)
+            .map(|(c, noise)| Output {
                 is_velocity: c.quantity != Quantity::Position,
-                noise: noise_level(&c.values, input),
+                noise: *noise,
                 values: c.values.clone(),
             })
             .collect();

@@ -3,7 +3,7 @@
 use super::race::{Piece, one_by_one};
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
-use super::{Diagnosis, Step, StepReport};
+use super::{Diagnosis, Limits, Step, StepReport};
 use crate::effect::{EffectId, FormulaError};
 use crate::measurement::Measurement;
 use crate::user_model::UserModel;
@@ -82,6 +82,12 @@ pub enum CriticismError {
         /// What is wrong with its formula.
         error: FormulaError,
     },
+    /// A fitted model without the value of a parameter.
+    #[error("the fitted model has no value for {symbol}")]
+    NoValue {
+        /// Symbol of the parameter.
+        symbol: String,
+    },
     /// An effect that makes no sense for this kind of system.
     #[error("{effect} cannot be added to this kind of system")]
     WrongEffect {
@@ -102,6 +108,8 @@ struct Detour {
 /// From the baseline to the verdict: adds what helps, removes what is not needed, until nothing does.
 pub struct DiagnosisJob {
     job: Option<StepJob>,
+    /// How far the next experiment may go.
+    limits: Limits,
     diagnosis: Diagnosis,
     /// Ways not taken yet.
     detours: Vec<Detour>,
@@ -129,6 +137,7 @@ impl DiagnosisJob {
     ) -> Result<Self, CriticismError> {
         Ok(Self {
             job: Some(StepJob::with_model(measurement, &[], model)?),
+            limits: Limits::of(measurement),
             diagnosis: Diagnosis {
                 schema: 1,
                 kind: measurement.kind,
@@ -140,6 +149,7 @@ impl DiagnosisJob {
                     complete: false,
                     unknown: false,
                     next_experiment: None,
+                    experiments: Vec::new(),
                     contradicted: Vec::new(),
                     text: String::new(),
                 },
@@ -152,6 +162,16 @@ impl DiagnosisJob {
             first: None,
             last: None,
         })
+    }
+
+    /// The same with other limits of the next experiment than [`Limits::of`] the measurement.
+    #[must_use]
+    pub fn within(self, limits: Limits) -> Self {
+        Self {
+            job: self.job.map(|job| job.within(limits)),
+            limits,
+            ..self
+        }
     }
 
     /// Does a small piece of work.
@@ -216,7 +236,7 @@ impl DiagnosisJob {
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended => {
-                self.job = Some(StepJob::from_fit(session, model));
+                self.job = Some(StepJob::from_fit(session, model, self.limits));
             }
             (verdict, _) => {
                 self.diagnosis.verdict = verdict.unwrap_or_else(|| {
@@ -254,7 +274,7 @@ impl DiagnosisJob {
         let detour = self.detours.remove(0);
         self.diagnosis.steps = detour.steps;
         self.bold = detour.bold;
-        self.job = Some(StepJob::from_fit(session, detour.model));
+        self.job = Some(StepJob::from_fit(session, detour.model, self.limits));
         None
     }
 

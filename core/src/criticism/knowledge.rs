@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::baseline;
 use super::fit::Fit;
 use super::score::score;
 use super::select::helps;
@@ -97,16 +96,10 @@ pub(super) fn check(model: &UserModel, measurement: &Measurement) -> Result<(), 
 impl Structure {
     /// What is known of each value, in order; `None` where nothing is.
     pub fn known(&self) -> Vec<Option<&Known>> {
-        let mut known: Vec<Option<&Known>> = baseline::parameters(self.kind)
-            .iter()
-            .map(|p| self.knowledge.find(None, p.symbol))
-            .collect();
-        for effect in &self.effects {
-            for spec in effect.parameters() {
-                known.push(self.knowledge.find(Some(effect.id()), spec.symbol));
-            }
-        }
-        known
+        let symbols = self.symbols().into_iter();
+        symbols
+            .map(|(owner, symbol)| self.knowledge.find(owner, symbol))
+            .collect()
     }
 
     /// Whether each value is never changed.

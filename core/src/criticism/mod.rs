@@ -9,6 +9,7 @@ mod job;
 mod knowledge;
 mod locate;
 mod missing;
+mod next_experiment;
 mod noise;
 mod race;
 mod report;
@@ -24,6 +25,10 @@ pub use atlas::{Profile, ProfileBin};
 pub use job::{CriticismError, DiagnosisJob, Progress};
 pub use knowledge::baseline_symbols;
 pub use missing::MissingPart;
+pub use next_experiment::{
+    Controller, ExperimentJob, FittedModel, LimitError, Limits, NextExperiment, Program, Sine,
+    Trial,
+};
 pub use noise::noise_level;
 pub use race::Piece;
 pub use report::{

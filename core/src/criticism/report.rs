@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{MissingPart, Profile};
+use super::{MissingPart, NextExperiment, Profile};
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Quantity};
 use crate::user_model::Status;
@@ -112,6 +112,9 @@ pub struct Verdict {
     pub unknown: bool,
     /// The experiment that would separate the classes, in words.
     pub next_experiment: Option<String>,
+    /// The same with numbers: one for each class of more than one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub experiments: Vec<NextExperiment>,
     /// Known values that the data contradict; nothing is added before they are right.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contradicted: Vec<Contradiction>,

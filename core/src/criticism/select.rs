@@ -72,6 +72,12 @@ pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
     (statistic(b, a) + penalty).abs() < SAME_STATISTIC && fall(b, a).abs() < SAME_SHARE
 }
 
+/// Whether a `part` of an effect does as well as the `whole` for all that the data can tell: what is left may be
+/// correlated so far that the whole gains by chance.
+pub(super) fn suffices(part: &Score, whole: &Score) -> bool {
+    statistic(part, whole) < SAME_STATISTIC && fall(part, whole) < LEAST_FALL
+}
+
 /// Whether what is left looks like noise in itself.
 pub(super) fn is_plain_noise(score: &Score) -> bool {
     score.error < SURE_NOISE_ERROR

@@ -44,7 +44,8 @@ pub(super) struct Session {
     pub scales: Scales,
     motion: Motion,
     input_unit: String,
-    outputs: Vec<(Quantity, String, String)>,
+    /// Quantity, name and unit of each output.
+    pub outputs: Vec<(Quantity, String, String)>,
 }
 
 impl Session {
@@ -288,6 +289,11 @@ impl Session {
     /// The residual over every axis.
     pub fn atlas(&self, fit: &Fit) -> Vec<super::Profile> {
         atlas(self.whole(), &fit.motion, self.output_unit())
+    }
+
+    /// Unit of the input.
+    pub fn input_unit(&self) -> &str {
+        &self.input_unit
     }
 
     /// Unit of the velocity, or of the output of a process.

@@ -2,12 +2,15 @@
 
 use super::knowledge::contradictions;
 use super::missing::missing_parts;
+use super::next_experiment::{Design, Hypothesis, TRYING};
 use super::race::{Piece, Race, one_by_one};
 use super::search::Search;
-use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same};
+use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same, suffices};
 use super::session::{Scored, Session};
-use super::verdict::{Class, add_idle, verdict};
-use super::{Candidate, Contradiction, CriticismError, Progress, Step, StepReport};
+use super::verdict::{Class, add_experiments, add_idle, add_rest, verdict};
+use super::{
+    Candidate, Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport,
+};
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::{Kind, Measurement};
 use crate::user_model::UserModel;
@@ -28,6 +31,8 @@ enum Stage {
     Remove { index: usize, search: Search },
     /// Trying every other effect in the place of each one.
     Swap { place: usize, race: Race },
+    /// Looking for the experiment that tells apart what this one cannot: the first of these is under way.
+    Design(Vec<Design>),
     /// Everything is known.
     Report,
 }
@@ -41,6 +46,11 @@ pub struct StepJob {
     tried: Vec<(&'static dyn Effect, Scored)>,
     without: Vec<Scored>,
     classes: Vec<Class>,
+    /// What could stand in the place of an effect, fitted: the place, the effect, the model.
+    rivals: Vec<(usize, EffectId, Scored)>,
+    /// How far the next experiment may go.
+    limits: Limits,
+    experiments: Vec<NextExperiment>,
     /// Known values that the data contradict.
     contradicted: Vec<Contradiction>,
     /// The model with an effect replaced by a part of it that does as well.
@@ -79,11 +89,31 @@ impl StepJob {
             .collect::<Result<Vec<_>, _>>()?;
         session.check_units(&wanted)?;
         let search = Search::baseline(&session.data, &session.knowledge);
-        Ok(Self::of(session, wanted, Stage::Build { search, next: 0 }))
+        let limits = Limits::of(measurement);
+        Ok(Self::of(
+            session,
+            wanted,
+            Stage::Build { search, next: 0 },
+            limits,
+        ))
     }
 
-    fn of(session: Session, wanted: Vec<&'static dyn Effect>, stage: Stage) -> Self {
+    /// The same with other limits of the next experiment than [`Limits::of`] the measurement.
+    #[must_use]
+    pub fn within(self, limits: Limits) -> Self {
+        Self { limits, ..self }
+    }
+
+    fn of(
+        session: Session,
+        wanted: Vec<&'static dyn Effect>,
+        stage: Stage,
+        limits: Limits,
+    ) -> Self {
         Self {
+            rivals: Vec::new(),
+            limits,
+            experiments: Vec::new(),
             session,
             wanted,
             stage,
@@ -97,8 +127,9 @@ impl StepJob {
     }
 
     /// The next step of a diagnosis, which knows the fit already.
-    pub(super) fn from_fit(session: Session, model: Scored) -> Self {
-        let mut job = Self::of(session, model.fit.structure.effects.clone(), Stage::Report);
+    pub(super) fn from_fit(session: Session, model: Scored, limits: Limits) -> Self {
+        let effects = model.fit.structure.effects.clone();
+        let mut job = Self::of(session, effects, Stage::Report, limits);
         job.model = Some(model);
         job.stage = job.try_stage();
         job
@@ -157,6 +188,7 @@ impl StepJob {
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
             Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session, width, run),
+            Stage::Design(designs) => !designs.first_mut().is_some_and(Design::advance),
             Stage::Report => true,
         };
         if over {
@@ -217,6 +249,16 @@ impl StepJob {
                 self.judge_swaps(place, fits);
                 self.swap_stage(place + 1)
             }
+            Stage::Design(mut designs) => {
+                if !designs.is_empty() {
+                    self.experiments.extend(designs.remove(0).finish());
+                }
+                if designs.is_empty() {
+                    Stage::Report
+                } else {
+                    Stage::Design(designs)
+                }
+            }
             Stage::Report => Stage::Report,
         }
     }
@@ -261,7 +303,36 @@ impl StepJob {
                     Some((&model.fit, place)),
                 ),
             },
-            None => Stage::Report,
+            None => self.design_stage(model),
+        }
+    }
+
+    /// One search for each effect in whose place others could stand; none where the model does not explain the
+    /// record, or is not the last.
+    fn design_stage(&self, model: &Scored) -> Stage {
+        let explains = is_noise(&model.score, self.session.first(model));
+        if !explains || self.simpler.is_some() {
+            return Stage::Report;
+        }
+        let designs: Vec<Design> = self
+            .wanted
+            .iter()
+            .enumerate()
+            .filter_map(|(place, own)| {
+                let mut models = vec![Hypothesis::new(&self.session, own.id(), model)];
+                let mut today = 0.0_f64;
+                for (_, effect, rival) in self.rivals.iter().filter(|(k, ..)| *k == place) {
+                    models.push(Hypothesis::new(&self.session, *effect, rival));
+                    let beyond = rival.score.error.powi(2) - model.score.error.powi(2);
+                    today = today.max(beyond.max(0.0).sqrt());
+                }
+                Design::new(&self.session, models, self.limits, today)
+            })
+            .collect();
+        if designs.is_empty() {
+            Stage::Report
+        } else {
+            Stage::Design(designs)
         }
     }
 
@@ -286,6 +357,7 @@ impl StepJob {
                 }
             } else if alike(model, &swapped) && same_body(model, &swapped) {
                 class.push(effect);
+                self.rivals.push((place, effect.id(), swapped));
             }
         }
         self.classes.resize_with(place, Class::default);
@@ -369,6 +441,10 @@ impl StepJob {
                     format!("Checking what else could explain it: {name}"),
                 )
             }
+            Stage::Design(designs) => (
+                designs.first().map_or(1.0, Design::progress),
+                TRYING.to_owned(),
+            ),
             Stage::Report => (1.0, "Done".to_owned()),
         }
     }
@@ -379,6 +455,7 @@ impl StepJob {
         let needless = self.needless(model);
         let whole = self.session.completed(model);
         let parameters = self.session.parameters(&whole);
+        let findings = self.session.findings(&whole);
         let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
             let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
             let (added, classes): (Vec<_>, Vec<_>) = places
@@ -397,7 +474,10 @@ impl StepJob {
                 is_noise(&whole.score, self.session.first(&whole)),
                 self.contradicted.clone(),
             );
+            let first = self.session.first(&whole).error;
+            add_rest(&mut verdict, whole.score.error, first, &findings);
             add_idle(&mut verdict, &self.idle(model).0);
+            add_experiments(&mut verdict, &self.experiments);
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
@@ -412,7 +492,7 @@ impl StepJob {
                 error: whole.score.error,
                 error_fit: whole.score.error_fit,
                 parameters,
-                findings: self.session.findings(&whole),
+                findings,
                 candidates: self.candidates(model, suggestion),
             },
             noise_floor: NOISE_FLOOR,
@@ -540,7 +620,7 @@ impl StepJob {
 
 /// Whether a part of an effect does in place of the whole: as well, or so that noise alone is left.
 fn enough(whole: &Scored, part: &Scored) -> bool {
-    alike(whole, part) || is_plain_noise(&part.score)
+    alike(whole, part) || is_plain_noise(&part.score) || suffices(&part.score, &whole.score)
 }
 
 /// Whether two models leave the same error within noise.

@@ -2,7 +2,7 @@
 
 use super::baseline;
 use super::knowledge::Knowledge;
-use crate::effect::{Effect, Scales};
+use crate::effect::{Effect, EffectId, Scales};
 use crate::measurement::Kind;
 use crate::model::Model;
 use crate::user_model::Status;
@@ -73,6 +73,17 @@ impl Structure {
             .sum();
         let from = self.baseline_len() + before;
         from..from + self.effects[index].parameters().len()
+    }
+
+    /// Owner (`None` for the baseline) and symbol of each value.
+    pub fn symbols(&self) -> Vec<(Option<EffectId>, &'static str)> {
+        let baseline = baseline::parameters(self.kind).iter();
+        let mut symbols: Vec<_> = baseline.map(|p| (None, p.symbol)).collect();
+        for effect in &self.effects {
+            let own = effect.parameters().iter();
+            symbols.extend(own.map(|p| (Some(effect.id()), p.symbol)));
+        }
+        symbols
     }
 
     /// The model with these values.

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::session::Scored;
-use super::{Contradiction, Parameter, Step, Verdict};
+use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId};
 
 /// Effects that could stand in the place of one in the model.
@@ -49,18 +49,12 @@ pub(super) fn verdict(
             "What is left is more than noise, but no further effect in the library explains it."
         }
     });
-    if !complete {
-        let _ = write!(
-            text,
-            " The error is {:.2} times the noise.",
-            model.score.error
-        );
-    }
     Verdict {
         missing,
         complete,
         unknown: !complete,
         next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
+        experiments: Vec::new(),
         contradicted,
         text,
     }
@@ -94,8 +88,28 @@ fn contradiction(
         complete: false,
         unknown: false,
         next_experiment: None,
+        experiments: Vec::new(),
         contradicted,
         text,
+    }
+}
+
+/// Says of a verdict that is not complete how much is left of what was there `first`, and where it lies.
+pub(super) fn add_rest(verdict: &mut Verdict, error: f64, first: f64, findings: &[Finding]) {
+    if verdict.complete || !verdict.contradicted.is_empty() {
+        return;
+    }
+    let _ = write!(verdict.text, " The error is {error:.2} times the noise");
+    if !verdict.missing.is_empty() {
+        let _ = write!(
+            verdict.text,
+            ", {:.0} % of what it was at first",
+            100.0 * error / first
+        );
+    }
+    verdict.text.push('.');
+    if let Some(strongest) = findings.first() {
+        let _ = write!(verdict.text, " {}", strongest.text);
     }
 }
 
@@ -113,6 +127,16 @@ pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId]) {
         " In the model, but without a trace in these data: {}.",
         names.join(", ")
     );
+}
+
+/// Puts the experiments that were found in the place of the general advice.
+pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperiment]) {
+    if experiments.is_empty() || verdict.next_experiment.is_none() {
+        return;
+    }
+    let texts: Vec<&str> = experiments.iter().map(|e| e.text.as_str()).collect();
+    verdict.next_experiment = Some(texts.join(" "));
+    verdict.experiments = experiments.to_vec();
 }
 
 /// For effects that act alike in one experiment.
@@ -134,6 +158,7 @@ pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
         complete: false,
         unknown: true,
         next_experiment: None,
+        experiments: Vec::new(),
         contradicted: Vec::new(),
         text: "Many effects help a little and none explains the rest: the model structure itself may be wrong.".to_owned(),
     }

@@ -46,7 +46,7 @@ impl Effect for Cogging {
                 symbol: "n",
                 label: "spatial frequency",
                 dimension: Dimension::PerPosition,
-                range: Range::Positive,
+                range: Range::Repeating,
             },
             ParameterSpec {
                 symbol: "phi",

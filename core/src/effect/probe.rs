@@ -12,6 +12,7 @@ mod steps;
 use nalgebra::{DMatrix, DVector};
 
 use super::Scales;
+use super::spec::WHOLE_TURN;
 use crate::measurement::Kind;
 use crate::model::{Instant, Load, free_body, load_torque};
 pub use steps::{Place, StepPart, Steps};
@@ -423,6 +424,7 @@ impl Probe {
         let scan: Vec<(f64, f64, f64, f64)> = fine
             .chain(coarse)
             .take_while(|n| *n <= fastest)
+            .skip_while(|n| *n * travel < WHOLE_TURN)
             .filter_map(|n| self.spatial(n))
             .collect();
         let mut peaks: Vec<(f64, f64, f64, f64)> = (0..scan.len())

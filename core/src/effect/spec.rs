@@ -109,6 +109,9 @@ pub enum Range {
     Short,
     /// At least [`RIGID_CROSSINGS`] times [`Scales::crossed`].
     Long,
+    /// At least [`WHOLE_TURN`] times its [`Scales::of`]: what repeats over the position does so within
+    /// the travel.
+    Repeating,
 }
 
 impl Range {
@@ -151,6 +154,10 @@ pub const STIFFEST: f64 = 0.3;
 /// A load lighter than this share of the motor is part of it.
 pub const LIGHTEST: f64 = 0.03;
 
+/// Radians in the travel from which a periodic force is seen to repeat; a part of a wave may look like
+/// any other force.
+pub const WHOLE_TURN: f64 = std::f64::consts::TAU;
+
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
 
@@ -159,7 +166,12 @@ impl ParameterSpec {
     pub fn is_size(&self) -> bool {
         matches!(
             self.range,
-            Range::Positive | Range::Stiff | Range::Sizeable | Range::Short | Range::Long
+            Range::Positive
+                | Range::Stiff
+                | Range::Sizeable
+                | Range::Short
+                | Range::Long
+                | Range::Repeating
         )
     }
 
@@ -179,6 +191,7 @@ impl ParameterSpec {
                 value.clamp(RIGID_CROSSINGS * crossed, SHORT_CROSSINGS * crossed)
             }
             Range::Long => value.max(RIGID_CROSSINGS * scales.crossed()),
+            Range::Repeating => value.max(WHOLE_TURN * scale),
         }
     }
 }

@@ -6,6 +6,7 @@
 //! modes with guards. Smooth forces and the torque between body and load are held at their value at
 //! the middle of steps short against their change (exponential midpoint rule, second order).
 
+mod closed_loop;
 mod contact;
 mod engine;
 mod flow;
@@ -13,6 +14,7 @@ mod friction;
 mod load;
 mod replay;
 
+pub use closed_loop::{Run, run_controlled};
 pub use engine::{Engine, State};
 pub(crate) use flow::free_body;
 pub use load::{Coupling, Load, load_torque};

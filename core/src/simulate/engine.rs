@@ -7,9 +7,7 @@ use std::collections::VecDeque;
 
 use super::flow::{Flow, State};
 use super::noise::{Piece, Source};
-use super::series::{
-    Roots, Series, derivative, first_rise, is_resolved, power_derivative, spread, to_powers, value,
-};
+use super::series::{Curve, TERMS, first_rise, is_resolved, power_derivative, value};
 use super::sliding::Sliding;
 use super::trajectory::Trajectory;
 use crate::relay::Relay;
@@ -42,6 +40,8 @@ pub(crate) struct Engine<'a> {
     flow: &'a Flow,
     sliding: Option<Sliding>,
     channels: Vec<Channel>,
+    /// The outputs over the present step.
+    curves: Vec<Curve>,
     /// State.
     pub x: State,
     u: Vec<f64>,
@@ -84,6 +84,7 @@ impl<'a> Engine<'a> {
         let mut engine = Self {
             flow,
             sliding: None,
+            curves: vec![Curve::new([0.0; TERMS]); channels.len()],
             channels,
             x,
             u,
@@ -225,14 +226,13 @@ impl<'a> Engine<'a> {
         while self.level > 0 && self.flow.step(self.level - 1) >= span {
             self.level -= 1;
         }
-        let mut series = [[0.0; super::series::TERMS]; crate::plant::MAX_ORDER];
-        let count = self.channels.len();
+        let mut curves = std::mem::take(&mut self.curves);
         loop {
             let mut resolved = true;
-            for (i, s) in series.iter_mut().enumerate().take(count) {
+            for (i, curve) in curves.iter_mut().enumerate() {
                 let (c, noise) = self.flow.series(self.level, i, &self.x, &self.u);
                 resolved &= self.level == 0 || is_resolved(&c, noise);
-                *s = c;
+                *curve = Curve::new(c);
             }
             if resolved {
                 break;
@@ -246,15 +246,16 @@ impl<'a> Engine<'a> {
             end: if whole { 1.0 } else { 2.0 * span / h - 1.0 },
             crossing: None,
         };
-        for (i, c) in series.iter().enumerate().take(count) {
-            self.analyse(i, c, h, &mut step);
+        for (i, curve) in curves.iter_mut().enumerate() {
+            self.analyse(i, curve, h, &mut step);
         }
         let z = step.crossing.map_or(step.end, |(z, _)| z);
         let t = 0.5 * h * (z + 1.0);
-        for (i, c) in series.iter().enumerate().take(count) {
-            self.watch_extrema(i, c, z);
+        for (i, curve) in curves.iter_mut().enumerate() {
+            self.watch_extrema(i, curve, step.end, z);
         }
-        self.sample_until(self.now + t, &series[..count], h);
+        self.sample_until(self.now + t, &mut curves, h);
+        self.curves = curves;
         if step.crossing.is_none() && whole {
             self.x = self.flow.after_step(step.level, &self.x, &self.u);
             self.now += h;
@@ -279,55 +280,50 @@ impl<'a> Engine<'a> {
     }
 
     /// Finds the first crossing of channel `i` in the step, if before the one found already.
-    fn analyse(&self, i: usize, c: &Series, h: f64, step: &mut Step) {
+    fn analyse(&self, i: usize, curve: &mut Curve, h: f64, step: &mut Step) {
         let channel = &self.channels[i];
-        let sign = if channel.high { -1.0 } else { 1.0 };
-        // The distance beyond the threshold: y - eps on the way up, -eps - y on the way down.
-        let mut g = c.map(|v| sign * v);
-        g[0] -= channel.relay.hysteresis;
-        if let Some((_, piece, _)) = &channel.noise {
+        let mut noisy;
+        let seen = if let Some((_, piece, _)) = &channel.noise {
             let half = 0.5 * h * piece.slope;
-            g[0] += sign * (piece.value + piece.slope * (self.now - piece.start) + half);
-            g[1] += sign * half;
-        }
-        if g[0] + spread(&g) <= 0.0 {
+            let mut c = *curve.coefficients();
+            c[0] += piece.value + piece.slope * (self.now - piece.start) + half;
+            c[1] += half;
+            noisy = Curve::new(c);
+            &mut noisy
+        } else {
+            curve
+        };
+        // The distance beyond the threshold: y - eps on the way up, -eps - y on the way down.
+        let [low, high] = seen.bounds();
+        let (sign, reach) = if channel.high {
+            (-1.0, -low)
+        } else {
+            (1.0, high)
+        };
+        if reach <= channel.relay.hysteresis {
             return;
         }
-        let d = derivative(&g);
+        let mut beyond = seen.powers().map(|v| sign * v);
+        beyond[0] -= channel.relay.hysteresis;
+        let turns = seen.turns(step.end);
         let end = step.crossing.map_or(step.end, |(z, _)| z);
-        let found = if d[0].abs() > spread(&d) {
-            if d[0] < 0.0 {
-                return;
-            }
-            first_rise(&to_powers(&g), &[], -1.0, end)
-        } else {
-            let turns = Roots::of(&to_powers(&d), -1.0, end);
-            first_rise(&to_powers(&g), turns.as_slice(), -1.0, end)
-        };
-        if let Some(z) = found {
+        if let Some(z) = first_rise(&beyond, turns.before(end), -1.0, end) {
             step.crossing = Some((z, i));
         }
     }
 
-    /// Notes the extrema of output `i` up to `end`.
-    fn watch_extrema(&mut self, i: usize, c: &Series, end: f64) {
+    /// Notes the extrema of output `i` up to `z` in a step that ends at `end`.
+    fn watch_extrema(&mut self, i: usize, curve: &mut Curve, end: f64, z: f64) {
         let Some([low, high]) = self.channels[i].swing else {
             return;
         };
-        let reach = spread(c);
-        if c[0] + reach <= high && c[0] - reach >= low {
+        let [lowest, highest] = curve.bounds();
+        if lowest >= low && highest <= high {
             return;
         }
-        let d = derivative(c);
-        if d[0].abs() > spread(&d) {
-            return;
-        }
-        let turns = Roots::of(&to_powers(&d), -1.0, end);
-        if !turns.as_slice().is_empty() {
-            let m = to_powers(c);
-            for z in turns.as_slice() {
-                self.note(i, value(&m, *z));
-            }
+        let turns = *curve.turns(end);
+        for turn in turns.before(z) {
+            self.note(i, value(curve.powers(), *turn));
         }
     }
 
@@ -439,23 +435,23 @@ impl<'a> Engine<'a> {
     }
 
     /// Records samples from now to before `end` from the series of the step.
-    fn sample_until(&mut self, end: f64, series: &[Series], h: f64) {
+    fn sample_until(&mut self, end: f64, curves: &mut [Curve], h: f64) {
         let Some((step, first)) = self.sampling else {
             return;
         };
-        if first as f64 * step >= end || series.is_empty() {
+        if first as f64 * step >= end || curves.is_empty() {
             return;
         }
         let mut count = first;
-        for (c, channel) in series.iter().zip(&mut self.channels) {
-            let m = to_powers(c);
-            let d = power_derivative(&m);
+        for (curve, channel) in curves.iter_mut().zip(&mut self.channels) {
+            let m = curve.powers();
+            let d = power_derivative(m);
             count = first;
             while (count as f64) * step < end {
                 let t = count as f64 * step;
                 let z = 2.0 * (t - self.now) / h - 1.0;
                 channel.out.time.push(t);
-                channel.out.output.push(value(&m, z));
+                channel.out.output.push(value(m, z));
                 channel.out.slope.push(2.0 / h * value(&d, z));
                 count += 1;
             }

@@ -17,6 +17,9 @@ pub(crate) type State = [f64; MAX_ORDER];
 /// Norm of `A h_0`: `1/18!` is round-off.
 const SHORTEST: f64 = 1.0;
 
+/// A Taylor series ends at terms below this.
+const SMALLEST_TERM: f64 = 1e-18;
+
 /// Doublings of the shortest step.
 const MAX_LEVELS: usize = 40;
 
@@ -40,6 +43,8 @@ pub(crate) struct Flow {
     quads: usize,
     /// Columns of `A`.
     a: Vec<State>,
+    /// A norm of `A`, 1/s.
+    norm: f64,
     /// Columns of `B`.
     b: Vec<State>,
     /// Rows of `C`.
@@ -89,12 +94,14 @@ impl Flow {
             outputs: c.nrows(),
             quads: n.div_ceil(4),
             a: (0..n).map(|j| state(|i| a[(i, j)], n)).collect(),
+            norm: 0.0,
             b: (0..b.ncols()).map(|j| state(|i| b[(i, j)], n)).collect(),
             c: (0..c.nrows()).map(|i| state(|j| c[(i, j)], n)).collect(),
             scale: [1.0; MAX_ORDER],
             levels: Vec::new(),
         };
         flow.balance();
+        flow.norm = flow.balanced_norm();
         flow.build(longest);
         flow
     }
@@ -155,14 +162,14 @@ impl Flow {
         }
     }
 
-    fn norm(&self) -> f64 {
+    fn balanced_norm(&self) -> f64 {
         let columns = self.a.iter().map(|c| c.iter().map(|v| v.abs()).sum());
         let rows = (0..self.n).map(|i| self.a.iter().map(|c| c[i].abs()).sum());
         columns.fold(0.0, f64::max).min(rows.fold(0.0, f64::max))
     }
 
     fn build(&mut self, longest: f64) {
-        let norm = self.norm();
+        let norm = self.norm;
         let longest = if longest.is_finite() && longest > 0.0 {
             longest
         } else {
@@ -275,13 +282,16 @@ impl Flow {
         if let Some(force) = force {
             add_scaled(&mut term, force, 1.0, self.quads);
         }
-        let size = |s: &State| s.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        // Bounds what a term can be of the first one, or of the state.
+        let mut bound = 1.0;
         for k in 1..=TERMS {
+            let factor = t / k as f64;
             for value in &mut term[..4 * self.quads] {
-                *value *= t / k as f64;
+                *value *= factor;
             }
             add_scaled(&mut sum, &term, 1.0, self.quads);
-            if size(&term) <= 1e-18 * size(&sum) {
+            bound *= self.norm * factor;
+            if bound <= SMALLEST_TERM {
                 break;
             }
             term = self.multiply(&term);

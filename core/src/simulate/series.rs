@@ -42,10 +42,11 @@ pub(crate) fn chebyshev(z: f64) -> Series {
     t
 }
 
-/// Column `k` holds the powers of `T_k`.
-static POWERS: [Series; TERMS] = powers();
+/// Pairs of columns: entries `2j` hold the even powers of `T_2k`, entries `2j + 1` the odd powers of
+/// `T_(2k+1)`, each of which has no other ones.
+static POWERS: [Series; TERMS / 2] = powers();
 
-const fn powers() -> [Series; TERMS] {
+const fn powers() -> [Series; TERMS / 2] {
     let mut t = [[0.0; TERMS]; TERMS];
     t[0][0] = 1.0;
     t[1][1] = 1.0;
@@ -59,7 +60,17 @@ const fn powers() -> [Series; TERMS] {
         }
         k += 1;
     }
-    t
+    let mut pairs = [[0.0; TERMS]; TERMS / 2];
+    let mut k = 0;
+    while k < TERMS {
+        let mut j = k % 2;
+        while j < TERMS {
+            pairs[k / 2][j] = t[k][j];
+            j += 2;
+        }
+        k += 1;
+    }
+    pairs
 }
 
 /// Share of the whole that the last two coefficients may have on a resolved step: round-off.
@@ -79,9 +90,10 @@ pub(crate) fn spread(c: &Series) -> f64 {
 /// Powers of a Chebyshev series whose coefficients fall fast.
 pub(crate) fn to_powers(c: &Series) -> Series {
     let mut m = [0.0; TERMS];
-    for (weight, column) in c.iter().zip(&POWERS) {
-        for (value, power) in m.iter_mut().zip(column) {
-            *value += weight * power;
+    for (weights, columns) in c.chunks_exact(2).zip(&POWERS) {
+        for (value, power) in m.chunks_exact_mut(2).zip(columns.chunks_exact(2)) {
+            value[0] += weights[0] * power[0];
+            value[1] += weights[1] * power[1];
         }
     }
     m
@@ -127,15 +139,19 @@ fn value_and_slope(m: &Series, d: &Series, z: f64) -> (f64, f64) {
 /// Coefficients of `s -> m(middle + radius s)`.
 fn local(m: &Series, middle: f64, radius: f64) -> Series {
     let mut c = *m;
-    for i in 0..TERMS - 1 {
-        for k in (i..TERMS - 1).rev() {
-            c[k] += middle * c[k + 1];
+    if middle != 0.0 {
+        for i in 0..TERMS - 1 {
+            for k in (i..TERMS - 1).rev() {
+                c[k] += middle * c[k + 1];
+            }
         }
     }
-    let mut scale = 1.0;
-    for value in &mut c {
-        *value *= scale;
-        scale *= radius;
+    if radius != 1.0 {
+        let mut scale = 1.0;
+        for value in &mut c {
+            *value *= scale;
+            scale *= radius;
+        }
     }
     c
 }
@@ -151,12 +167,14 @@ pub(crate) struct Roots {
 }
 
 impl Roots {
+    const NONE: Self = Self {
+        at: [0.0; TERMS],
+        count: 0,
+    };
+
     /// All changes of sign of `m` (in powers) between `low` and `high`.
     pub fn of(m: &Series, low: f64, high: f64) -> Self {
-        let mut roots = Self {
-            at: [0.0; TERMS],
-            count: 0,
-        };
+        let mut roots = Self::NONE;
         roots.search(m, &power_derivative(m), low, high, 0);
         roots
     }
@@ -164,6 +182,12 @@ impl Roots {
     /// The roots.
     pub fn as_slice(&self) -> &[f64] {
         &self.at[..self.count]
+    }
+
+    /// The roots before `end`.
+    pub fn before(&self, end: f64) -> &[f64] {
+        let roots = self.as_slice();
+        &roots[..roots.partition_point(|z| *z < end)]
     }
 
     fn search(&mut self, m: &Series, d: &Series, low: f64, high: f64, depth: u32) {
@@ -232,7 +256,6 @@ pub(crate) fn root(
 /// First instant in `[low, high]` at which `m - level` (powers) comes from 0 or below to above 0;
 /// `turns` are its extrema in between, in ascending order.
 pub(crate) fn first_rise(m: &Series, turns: &[f64], low: f64, high: f64) -> Option<f64> {
-    let d = power_derivative(m);
     let mut a = low;
     let mut fa = value(m, a);
     for b in turns.iter().copied().chain(std::iter::once(high)) {
@@ -242,7 +265,7 @@ pub(crate) fn first_rise(m: &Series, turns: &[f64], low: f64, high: f64) -> Opti
                 return Some(if fa == 0.0 {
                     a
                 } else {
-                    root(m, &d, a, b, fa, fb)
+                    root(m, &power_derivative(m), a, b, fa, fb)
                 });
             }
             // Already beyond and going on: it switches at once.
@@ -253,6 +276,55 @@ pub(crate) fn first_rise(m: &Series, turns: &[f64], low: f64, high: f64) -> Opti
         (a, fa) = (b, fb);
     }
     None
+}
+
+/// An output over one step: its Chebyshev coefficients, and what follows from them if somebody asks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Curve {
+    c: Series,
+    powers: Option<Series>,
+    turns: Option<Roots>,
+}
+
+impl Curve {
+    /// A curve from its Chebyshev coefficients.
+    pub fn new(c: Series) -> Self {
+        Self {
+            c,
+            powers: None,
+            turns: None,
+        }
+    }
+
+    /// Chebyshev coefficients.
+    pub fn coefficients(&self) -> &Series {
+        &self.c
+    }
+
+    /// Smallest and largest value that the curve could have on the whole step.
+    pub fn bounds(&self) -> [f64; 2] {
+        let reach = spread(&self.c);
+        [self.c[0] - reach, self.c[0] + reach]
+    }
+
+    /// Coefficients of its powers.
+    pub fn powers(&mut self) -> &Series {
+        self.powers.get_or_insert_with(|| to_powers(&self.c))
+    }
+
+    /// Extrema between -1 and `end`, which is the same at each call.
+    pub fn turns(&mut self, end: f64) -> &Roots {
+        let c = &self.c;
+        let powers = self.powers.get_or_insert_with(|| to_powers(c));
+        self.turns.get_or_insert_with(|| {
+            let d = derivative(c);
+            if d[0].abs() > spread(&d) {
+                Roots::NONE
+            } else {
+                Roots::of(&power_derivative(powers), -1.0, end)
+            }
+        })
+    }
 }
 
 #[cfg(test)]

@@ -106,6 +106,19 @@ impl Session {
         self.command("POST", "actions", &actions).map(|_| ())
     }
 
+    /// A drag from one place through others.
+    pub fn drag(&self, places: &[(f64, f64)]) -> Result<(), String> {
+        let go = |(x, y): &(f64, f64)| json!({"type": "pointerMove", "duration": 100, "x": x.round() as i64, "y": y.round() as i64});
+        let mut actions: Vec<Value> = places.iter().map(go).collect();
+        actions.insert(
+            1.min(actions.len()),
+            json!({"type": "pointerDown", "button": 0}),
+        );
+        actions.push(json!({"type": "pointerUp", "button": 0}));
+        let actions = json!({"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}]});
+        self.command("POST", "actions", &actions).map(|_| ())
+    }
+
     /// A screenshot as PNG.
     pub fn screenshot(&self) -> Result<Vec<u8>, String> {
         let value = self.command("GET", "screenshot", &Value::Null)?;

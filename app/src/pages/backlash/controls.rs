@@ -1,15 +1,11 @@
 //! What can be set: figure, relay, gap, masses, contact, playback.
 
-use std::ops::RangeInclusive;
-
 use hysteron_core::drive::{Command, Contact, drifting_test, figures};
-
-use hysteron_core::figures::Check;
 
 use super::Backlash;
 use super::scene::MILLI;
 use crate::hook::Targets;
-use crate::theme;
+use crate::pages::controls::slider;
 
 /// Width below which the playback stands in two rows, points.
 const NARROW_PLAYBACK: f32 = 520.0;
@@ -280,48 +276,4 @@ impl Backlash {
             self.clock = time;
         }
     }
-}
-
-/// A slider over `value * scale`, reset by a double click.
-fn slider(
-    ui: &mut egui::Ui,
-    value: &mut f64,
-    normal: f64,
-    scale: f64,
-    range: RangeInclusive<f64>,
-    label: &str,
-) -> egui::Response {
-    let mut shown = *value * scale;
-    let response = ui.add(
-        egui::Slider::new(&mut shown, range)
-            .text(label)
-            .max_decimals(3)
-            .clamping(egui::SliderClamping::Edits),
-    );
-    if response.double_clicked() {
-        *value = normal;
-    } else if response.changed() {
-        *value = shown / scale;
-    }
-    response
-}
-
-/// What a figure claims, and whether it is so on the drive as it is set now.
-pub(super) fn claim_ui(ui: &mut egui::Ui, number: u32, claims: &[Check]) {
-    let Some(figure) = figures().into_iter().find(|f| f.number == number) else {
-        return;
-    };
-    ui.strong(format!("Fig. {number}, {}. {}", figure.title, figure.claim));
-    ui.horizontal_wrapped(|ui| {
-        for (i, check) in claims.iter().enumerate() {
-            let (mark, color) = if check.holds {
-                ("yes:", theme::NOISE)
-            } else {
-                ("no:", theme::MODEL)
-            };
-            ui.colored_label(color, mark);
-            let end = if i + 1 == claims.len() { "." } else { ";" };
-            ui.label(format!("{}{end}", check.text));
-        }
-    });
 }

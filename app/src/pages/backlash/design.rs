@@ -7,8 +7,8 @@ use super::scene::MILLI;
 /// What is asked for, and the last proposal.
 pub struct Design {
     /// Expected gap, rad, and the largest torque, N m.
-    gap: f64,
-    torque: f64,
+    pub gap: f64,
+    pub torque: f64,
     proposal: Option<Result<DriftingTest, String>>,
 }
 

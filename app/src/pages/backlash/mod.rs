@@ -1,23 +1,28 @@
 //! How wide is the hidden gap? A drive under a relay that makes it drift, simulated or measured.
 
+mod built_in;
 mod controls;
 mod design;
-mod files;
 mod picture;
 mod plots;
 mod scene;
+mod settings;
 mod side;
 mod words;
 
-use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test};
+use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 
 use super::{Desk, View};
+pub use settings::is_built_in;
+
+use crate::document::parsed;
+use crate::files::Files;
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::pages::controls::claim_ui;
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
 use design::Design;
-use files::Files;
 use scene::{Scene, Shown};
 
 /// Time that a frame gives to the simulation, s.
@@ -47,11 +52,15 @@ pub struct Backlash {
     speed: f64,
     /// The simulation that is under way, and for what.
     simulation: Option<(DriveInput, DriveJob)>,
+    /// How long it has worked, s.
+    worked: f64,
     /// The last one that was finished, or the measurement that is open.
     scene: Option<Scene>,
     /// The estimate that is under way, and for which simulation.
     estimation: Option<(Option<DriveInput>, Job<GapTask>)>,
     files: Files,
+    /// Name of the measurement that is open, or about to be.
+    file: Option<String>,
     message: Option<String>,
 }
 
@@ -65,9 +74,11 @@ impl Default for Backlash {
             clock: 0.0,
             speed: 0.1,
             simulation: None,
+            worked: 0.0,
             scene: None,
             estimation: None,
             files: Files::default(),
+            file: None,
             message: None,
         }
     }
@@ -88,7 +99,10 @@ impl Backlash {
             .is_some_and(|s| s.input() == Some(&self.input));
         if self.simulation.is_none() && !known && !self.measured() && self.message.is_none() {
             match DriveJob::new(&self.input) {
-                Ok(job) => self.simulation = Some((self.input, job)),
+                Ok(job) => {
+                    self.simulation = Some((self.input, job));
+                    self.worked = 0.0;
+                }
                 Err(error) => self.message = Some(error.to_string()),
             }
         }
@@ -100,6 +114,7 @@ impl Backlash {
         while !done && begin.elapsed().as_secs_f64() < BUDGET {
             done = job.advance(BATCH);
         }
+        self.worked += begin.elapsed().as_secs_f64();
         if done && let Some((input, job)) = self.simulation.take() {
             self.scene = Some(Scene::simulated(input, job.finish(), self.figure));
         }
@@ -127,6 +142,8 @@ impl Backlash {
         self.simulation = None;
         let task = GapTask::File(name.to_owned(), text);
         self.estimation = Some((None, Job::run(ctx, task)));
+        self.file = Some(name.to_owned());
+        self.clock = 0.0;
         self.message = None;
     }
 
@@ -154,7 +171,7 @@ impl Backlash {
                     match (of, &mut self.scene) {
                         // Asked again, it would only fail again.
                         (Some(_), Some(scene)) => scene.estimate = Some(Err(error)),
-                        _ => self.message = Some(error),
+                        _ => self.keep(error),
                     }
                     return;
                 }
@@ -168,10 +185,10 @@ impl Backlash {
             (Some(measurement), _) => match Scene::measured(&measurement, report.estimate) {
                 Ok(scene) => {
                     self.scene = Some(scene);
-                    self.clock = 0.0;
+                    self.file = self.open_file();
                     self.figure = None;
                 }
-                Err(error) => self.message = Some(error),
+                Err(error) => self.keep(error),
             },
             (None, Some(scene)) if scene.input() == of => scene.estimate = Some(report.estimate),
             // It was about a simulation that is gone.
@@ -183,7 +200,18 @@ impl Backlash {
     fn close(&mut self) {
         self.scene = None;
         self.estimation = None;
+        self.file = None;
         self.message = None;
+    }
+
+    /// Nothing came of a file: what was open before is.
+    fn keep(&mut self, message: String) {
+        self.file = self.open_file();
+        self.message = Some(message);
+    }
+
+    fn open_file(&self) -> Option<String> {
+        self.scene.as_ref()?.file().map(str::to_owned)
     }
 
     /// Moves the playback on; at its end it begins again.
@@ -236,7 +264,9 @@ impl Backlash {
         }
         match (self.figure, &scene.shown) {
             (Some(number), Shown::Simulated(simulated)) => {
-                controls::claim_ui(ui, number, &simulated.checks);
+                if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
+                    claim_ui(ui, number, figure.title, figure.claim, &simulated.checks);
+                }
             }
             _ => {
                 ui.label(&scene.lesson);
@@ -320,6 +350,23 @@ impl View for Backlash {
         self.files.open_dropped(ctx, file);
     }
 
+    fn toggle_play(&mut self) {
+        self.playing = !self.playing;
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(ctx, parsed(settings)?)
+    }
+
     fn hook_state(&self) -> serde_json::Value {
         let scene = self.scene.as_ref();
         let estimate = scene.and_then(|s| s.estimate.as_ref()?.as_ref().ok());
@@ -336,7 +383,9 @@ impl View for Backlash {
             "gap_by_positions": simulated.and_then(|s| s.summary.gap()),
             "gap_estimated": estimate.and_then(|e| e.gap),
             "direction": simulated.zip(self.relay()).and_then(|(s, r)| s.summary.direction(&r)),
+            "motor_coulomb": self.input.drive.motor.coulomb,
             "clock": self.clock,
+            "times_real_time": simulated.map(|_| self.input.duration / self.worked),
             "playing": self.playing,
         })
     }

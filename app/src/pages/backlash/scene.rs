@@ -8,9 +8,10 @@ use hysteron_core::figures::Check;
 use hysteron_core::measurement::{Measurement, Quantity};
 
 use super::words::lesson;
+use crate::pages::chart::envelope;
 
-/// Buckets of a curve over the whole run; each keeps its least and largest value.
-const BUCKETS: usize = 900;
+/// Most points of a curve over the whole run.
+const CURVE_POINTS: usize = 1800;
 
 /// Points of the map that are drawn at most.
 const MAP_POINTS: usize = 4000;
@@ -111,7 +112,10 @@ impl Scene {
     }
 
     fn new(shown: Shown, run: DriveRun, lesson: String) -> Self {
-        let thin = |values: &[f64]| envelope(&run.time, values);
+        let thin = |values: &[f64]| -> Vec<[f64; 2]> {
+            let curve = envelope(&run.time, values, CURVE_POINTS).into_iter();
+            curve.map(|[t, x]| [t, MILLI * x]).collect()
+        };
         let skip = run.time.len().div_ceil(MAP_POINTS).max(1);
         let map = run.x1.iter().zip(&run.x2).step_by(skip);
         let (motor_range, load_range) = (range(&run.x1), range(&run.x2));
@@ -341,24 +345,4 @@ fn range(values: &[f64]) -> [f64; 2] {
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
             [low.min(MILLI * x), high.max(MILLI * x)]
         })
-}
-
-fn envelope(time: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
-    let size = time.len().div_ceil(BUCKETS).max(1);
-    let mut curve = Vec::with_capacity(2 * BUCKETS);
-    for (t, v) in time.chunks(size).zip(values.chunks(size)) {
-        let (mut low, mut high) = (0, 0);
-        for (i, value) in v.iter().enumerate() {
-            if *value < v[low] {
-                low = i;
-            }
-            if *value > v[high] {
-                high = i;
-            }
-        }
-        let mut pair = [low, high];
-        pair.sort_unstable();
-        curve.extend(pair.map(|i| [t[i], MILLI * v[i]]));
-    }
-    curve
 }

@@ -4,8 +4,9 @@ use hysteron_core::backlash::GapEstimate;
 use hysteron_core::drive::{Command, drifting_test};
 
 use super::Backlash;
-use super::files::BUILT_IN;
+use super::built_in::BUILT_IN;
 use super::scene::MILLI;
+use crate::files::MEASUREMENT;
 use crate::hook::Targets;
 
 /// Crossings that are listed.
@@ -70,7 +71,7 @@ impl Backlash {
                 .on_hover_text("Or drop it on this window: t [s],u [N m],x1 [rad],v1 [rad/s]")
                 .clicked()
             {
-                self.files.open_dialog(ui.ctx());
+                self.files.open_dialog(ui.ctx(), MEASUREMENT);
             }
         });
         if let Some(built_in) = chosen {

@@ -5,7 +5,7 @@ use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement};
 
 use super::Compare;
-use crate::pages::chart::axes;
+use crate::pages::chart::{axes, envelope};
 use crate::theme;
 
 /// Most points of a curve that are drawn; above, each stretch shows its extremes.
@@ -146,26 +146,7 @@ fn shade(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
     }
 }
 
-/// Points of a curve; a long one keeps the extremes of each stretch.
+/// Points of a curve.
 fn points(time: &[f64], values: &[f64]) -> PlotPoints<'static> {
-    if time.len() <= MAX_POINTS {
-        return time.iter().zip(values).map(|(t, v)| [*t, *v]).collect();
-    }
-    let stretch = time.len().div_ceil(MAX_POINTS / 2);
-    time.chunks(stretch)
-        .zip(values.chunks(stretch))
-        .flat_map(|(t, v)| {
-            let (mut low, mut high) = (0, 0);
-            for (i, value) in v.iter().enumerate() {
-                if *value < v[low] {
-                    low = i;
-                }
-                if *value > v[high] {
-                    high = i;
-                }
-            }
-            let (first, second) = (low.min(high), low.max(high));
-            [[t[first], v[first]], [t[second], v[second]]]
-        })
-        .collect()
+    envelope(time, values, MAX_POINTS).into()
 }

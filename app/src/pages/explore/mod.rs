@@ -3,13 +3,18 @@
 mod controls;
 mod nyquist;
 mod plant_editor;
-mod plots;
+pub mod plots;
+mod settings;
 mod table;
 
+use std::collections::VecDeque;
+
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
-use hysteron_core::figures::{Check, checks};
+use hysteron_core::figures::{Check, checks, figures};
 
 use super::{Desk, View};
+use crate::document::parsed;
+use crate::pages::controls::claim_ui;
 use crate::theme;
 use nyquist::Nyquist;
 use plant_editor::PlantEditor;
@@ -19,6 +24,9 @@ const PERIODS_PER_SECOND: f64 = 0.6;
 
 /// Width below which everything stands in one column, points.
 const NARROW: f32 = 700.0;
+
+/// Computations whose time is remembered.
+const REMEMBERED: usize = 31;
 
 /// The page: what is set, and what follows from it.
 pub struct Explore {
@@ -33,6 +41,8 @@ pub struct Explore {
     /// Where the line can be taken hold of, for tests.
     line_at: Option<egui::Pos2>,
     finished: Option<Finished>,
+    /// How long the last computations took, s.
+    took: VecDeque<f64>,
 }
 
 /// What was computed, and for what.
@@ -53,6 +63,7 @@ impl Default for Explore {
             clock: 0.0,
             line_at: None,
             finished: None,
+            took: VecDeque::new(),
         }
     }
 }
@@ -63,7 +74,7 @@ impl View for Explore {
     }
 
     fn title(&self) -> &'static str {
-        "Explore a relay loop"
+        "Explore"
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -84,11 +95,29 @@ impl View for Explore {
         }
     }
 
+    fn toggle_play(&mut self) {
+        self.playing = !self.playing;
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(&parsed(settings)?)
+    }
+
     fn hook_state(&self) -> serde_json::Value {
         let data = self.data();
         let cycle = |c: hysteron_core::limit_cycle::Cycle| serde_json::json!({"period": c.period, "amplitude": c.amplitude});
         serde_json::json!({
             "busy": false,
+            "compute_ms": self.usual_time().map(|t| 1e3 * t),
             "loop": self.input,
             "answer": data.map(|(d, _)| d.text.clone()),
             "stability": data.map(|(d, _)| d.stability.clone()),
@@ -113,6 +142,7 @@ impl Explore {
         if known {
             return;
         }
+        let begin = web_time::Instant::now();
         let data = compute(&self.input).and_then(|data| {
             let claims = match self.figure {
                 Some(number) => checks(number, &self.input, &data)?,
@@ -120,11 +150,20 @@ impl Explore {
             };
             Ok((data, claims))
         });
+        self.took.truncate(REMEMBERED - 1);
+        self.took.push_front(begin.elapsed().as_secs_f64());
         self.finished = Some(Finished {
             input: self.input.clone(),
             figure: self.figure,
             data: data.map_err(|e| e.to_string()),
         });
+    }
+
+    /// Median time of the last computations, s.
+    fn usual_time(&self) -> Option<f64> {
+        let mut took: Vec<f64> = self.took.iter().copied().collect();
+        took.sort_by(f64::total_cmp);
+        took.get(took.len() / 2).copied()
     }
 
     fn data(&self) -> Option<&(ExploreData, Vec<Check>)> {
@@ -191,7 +230,9 @@ impl Explore {
                 theme::answer_ui(ui, &data.text);
                 ui.label(&data.stability);
                 if let Some(number) = self.figure {
-                    controls::claim_ui(ui, number, claims);
+                    if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
+                        claim_ui(ui, number, figure.title, figure.claim, claims);
+                    }
                 } else {
                     ui.label(&data.trust.text);
                 }

@@ -1,12 +1,14 @@
 //! How does the oscillation change with two parameters? A map of exact cycles.
 
 mod picture;
+mod settings;
 mod side;
 
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Map, MapInput, Outcome, Parameter, Quantity};
 
 use super::{Command, Desk, View};
+use crate::document::parsed;
 use crate::jobs::{Job, News};
 use crate::tasks::MapTask;
 use crate::theme;
@@ -168,7 +170,7 @@ impl View for Maps {
     }
 
     fn title(&self) -> &'static str {
-        "Parameter maps"
+        "Maps"
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -204,6 +206,19 @@ impl View for Maps {
             let height = ui.available_height();
             self.picture_ui(ui, height, commands);
         });
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(parsed(settings)?, &desk.relay_loop)
     }
 
     fn hook_state(&self) -> serde_json::Value {

@@ -6,6 +6,7 @@ use hysteron_core::tuning::{AMPLITUDE_CONVENTION, Pid, RULES, TuningInput, Wish,
 
 use super::Tune;
 use crate::pages::Desk;
+use crate::pages::controls::slider;
 
 impl Tune {
     pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -22,61 +23,60 @@ impl Tune {
     fn relay_ui(&mut self, ui: &mut egui::Ui, relay: &mut Relay) {
         ui.strong("Relay");
         let normal = Relay::default();
-        slider_ui(
-            ui,
-            &mut relay.gain,
-            0.1..=5.0,
-            normal.gain,
-            "gain k",
-            "How strongly the relay pushes in the experiment",
-        );
-        slider_ui(
+        slider(ui, &mut relay.gain, normal.gain, 1.0, 0.1..=5.0, "gain k")
+            .on_hover_text("How strongly the relay pushes in the experiment");
+        slider(
             ui,
             &mut relay.hysteresis,
-            0.0..=1.0,
             normal.hysteresis,
+            1.0,
+            0.0..=1.0,
             "hysteresis ε",
+        )
+        .on_hover_text(
             "Keeps the relay from switching on noise, and makes the ultimate gain look smaller",
         );
-        slider_ui(
+        slider(
             ui,
             &mut self.asymmetry,
-            -0.6..=0.6,
             TuningInput::default().relay.asymmetry,
+            1.0,
+            -0.6..=0.6,
             "asymmetry a",
-            "Of the relay in step 4 only: without it a test tells no static gain",
-        );
-        slider_ui(
+        )
+        .on_hover_text("Of the relay in step 4 only: without it a test tells no static gain");
+        slider(
             ui,
             &mut relay.delay,
-            0.0..=2.0,
             normal.delay,
+            1.0,
+            0.0..=2.0,
             "delay [s]",
-            "How late the actuator acts; part of the plant for the controller",
-        );
+        )
+        .on_hover_text("How late the actuator acts; part of the plant for the controller");
     }
 
     fn wishes_ui(&mut self, ui: &mut egui::Ui) {
         ui.strong("Controller");
-        let mut degrees = self.input.wish.phase_margin.to_degrees();
-        slider_ui(
+        slider(
             ui,
-            &mut degrees,
+            &mut self.input.wish.phase_margin,
+            Wish::default().phase_margin,
+            180.0 / std::f64::consts::PI,
             5.0..=80.0,
-            Wish::default().phase_margin.to_degrees(),
             "phase margin [°]",
-            "What the relay of step 3 and the rule of Astrom and Hagglund aim at",
-        );
-        self.input.wish.phase_margin = degrees.to_radians();
+        )
+        .on_hover_text("What the relay of step 3 and the rule of Astrom and Hagglund aim at");
         let mut gain = self.input.present.gain;
-        slider_ui(
+        slider(
             ui,
             &mut gain,
-            0.1..=5.0,
             TuningInput::default().present.gain,
+            1.0,
+            0.1..=5.0,
             "gain before",
-            "The proportional controller that the tuned one replaces",
-        );
+        )
+        .on_hover_text("The proportional controller that the tuned one replaces");
         self.input.present = Pid::p(gain);
         let chosen = rule(&self.input.rule).map_or("", |r| r.name);
         egui::ComboBox::from_label("rule")
@@ -117,20 +117,6 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
         ui.small(preset.sentence);
     }
     ui.small("Plant and relay are those of Explore.");
-}
-
-fn slider_ui(
-    ui: &mut egui::Ui,
-    value: &mut f64,
-    range: std::ops::RangeInclusive<f64>,
-    normal: f64,
-    label: &str,
-    explanation: &str,
-) {
-    let slider = ui.add(egui::Slider::new(value, range).text(label).max_decimals(3));
-    if slider.on_hover_text(explanation).double_clicked() {
-        *value = normal;
-    }
 }
 
 fn equations_ui(ui: &mut egui::Ui) {

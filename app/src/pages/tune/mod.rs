@@ -7,12 +7,14 @@ mod loops;
 mod model;
 mod oscillation;
 mod rules;
+mod settings;
 mod ultimate;
 
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{TuningInput, TuningReport};
 
 use super::{Desk, View};
+use crate::document::parsed;
 use crate::jobs::{Job, News};
 use crate::tasks::TuneTask;
 use crate::theme;
@@ -81,7 +83,7 @@ impl View for Tune {
     }
 
     fn title(&self) -> &'static str {
-        "Tune a controller"
+        "Tune"
     }
 
     fn update(&mut self, _ctx: &egui::Context) {
@@ -129,6 +131,19 @@ impl View for Tune {
                 self.stage_ui(ui, height);
             });
         });
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(&parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {

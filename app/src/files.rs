@@ -1,37 +1,29 @@
-//! Measurements: those that come with the app, and those that a user opens.
+//! Files that a user opens: by a dialog or by dropping them on the window, natively and on the web.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// A drifting test that comes with the app.
-pub struct BuiltIn {
-    pub id: &'static str,
-    pub story: &'static str,
-    deflated: &'static [u8],
-}
-
-pub const BUILT_IN: [BuiltIn; 2] = [
-    BuiltIn {
-        id: "drive-03",
-        story: "A drifting test on a rig with dry friction. The load was measured as well, for comparison.",
-        deflated: include_bytes!(concat!(env!("OUT_DIR"), "/drive-03.deflate")),
-    },
-    BuiltIn {
-        id: "drive-10",
-        story: "The same on a rig without dry friction and with half of the gap.",
-        deflated: include_bytes!(concat!(env!("OUT_DIR"), "/drive-10.deflate")),
-    },
-];
-
-impl BuiltIn {
-    /// Its text.
-    pub fn csv(&self) -> Vec<u8> {
-        miniz_oxide::inflate::decompress_to_vec(self.deflated).unwrap_or_default()
-    }
-}
-
 /// A file that is being read elsewhere: its name, and its bytes or why there are none.
-type Arrival = (String, Result<Vec<u8>, String>);
+pub type Arrival = (String, Result<Vec<u8>, String>);
+
+/// What a dialog asks for: in words, and by the endings of names.
+#[derive(Clone, Copy, Debug)]
+pub struct Filter {
+    words: &'static str,
+    endings: &'static [&'static str],
+}
+
+/// A measurement.
+pub const MEASUREMENT: Filter = Filter {
+    words: "Measurement",
+    endings: &["csv", "txt", "tsv"],
+};
+
+/// What the user knows of a model.
+pub const MODEL: Filter = Filter {
+    words: "Model",
+    endings: &["toml"],
+};
 
 /// Files on their way.
 pub struct Files(Sender<Arrival>, Receiver<Arrival>);
@@ -71,9 +63,9 @@ impl Files {
     }
 
     /// Asks for a file.
-    pub fn open_dialog(&self, ctx: &egui::Context) {
+    pub fn open_dialog(&self, ctx: &egui::Context, filter: Filter) {
         let (sender, ctx) = (self.0.clone(), ctx.clone());
-        let dialog = rfd::AsyncFileDialog::new().add_filter("Measurement", &["csv", "txt", "tsv"]);
+        let dialog = rfd::AsyncFileDialog::new().add_filter(filter.words, filter.endings);
         let pick = async move {
             if let Some(file) = dialog.pick_file().await {
                 let bytes = file.read().await;

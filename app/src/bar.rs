@@ -1,0 +1,96 @@
+//! The bar at the top: pages, undo, link, look.
+
+use egui::Ui;
+
+use crate::hook::Targets;
+use crate::pages::{Command, Desk};
+use crate::theme::Look;
+
+/// Width below which the pages stand in a menu, points.
+const NARROW: f32 = 700.0;
+
+/// What the bar shows.
+pub struct Bar<'a> {
+    /// Ids and titles of the pages, in the order of their tabs.
+    pub pages: &'a [(&'static str, &'static str)],
+    /// Index of the page in front.
+    pub front: usize,
+    /// Whether there is something to take back, and to do again.
+    pub undo: [bool; 2],
+    /// The look of the app.
+    pub look: Look,
+}
+
+impl Bar<'_> {
+    /// Draws it; clicks become commands.
+    pub fn ui(&self, ui: &mut Ui, desk: &mut Desk) {
+        let (targets, commands) = (&mut desk.targets, &mut desk.commands);
+        if ui.available_width() < NARROW {
+            ui.horizontal(|ui| {
+                let title = self.pages.get(self.front).map_or("Hysteron", |p| p.1);
+                ui.menu_button(format!("Menu: {title}"), |ui| {
+                    self.pages_ui(ui, targets, commands);
+                    ui.separator();
+                    self.tools_ui(ui, targets, commands);
+                });
+                self.undo_ui(ui, targets, commands);
+            });
+        } else {
+            ui.horizontal_wrapped(|ui| {
+                ui.heading("Hysteron");
+                self.pages_ui(ui, targets, commands);
+                ui.separator();
+                self.undo_ui(ui, targets, commands);
+                self.tools_ui(ui, targets, commands);
+            });
+        }
+    }
+
+    fn pages_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+        for (index, (id, title)) in self.pages.iter().enumerate() {
+            let tab = ui.selectable_label(self.front == index, *title);
+            targets.note(format!("page:{id}"), ui, &tab);
+            if tab.clicked() {
+                commands.push(Command::Go(id));
+            }
+        }
+    }
+
+    fn undo_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+        let [undo, redo] = self.undo;
+        for (name, can, command) in [("Undo", undo, Command::Undo), ("Redo", redo, Command::Redo)] {
+            let button = ui.add_enabled(can, egui::Button::new(name));
+            targets.note(name, ui, &button);
+            if button.clicked() {
+                commands.push(command);
+            }
+        }
+    }
+
+    fn tools_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+        let copy = ui
+            .button("Copy link")
+            .on_hover_text("A link that shows exactly this page, as it is now");
+        targets.note("copy link", ui, &copy);
+        if copy.clicked() {
+            commands.push(Command::CopyLink);
+            ui.close();
+        }
+        ui.menu_button("Look", |ui| {
+            for look in Look::ALL {
+                if ui.radio(self.look == look, look.name()).clicked() {
+                    commands.push(Command::SetLook(look));
+                    ui.close();
+                }
+            }
+        });
+        if ui
+            .button("Keys")
+            .on_hover_text("All keys of the keyboard")
+            .clicked()
+        {
+            commands.push(Command::Sheet);
+            ui.close();
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Everything that is set in the app, as one plain value: links, undo and the autosave hold nothing else.
+
+use hysteron_core::explore::ExploreInput;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use crate::lessons::find;
+use crate::link;
+use crate::pages::{Desk, View};
+
+/// Key of the loop that several pages share.
+const LOOP: &str = "loop";
+/// Key of the lesson that is open.
+const LESSON: &str = "lesson";
+
+/// The page in front and what is set on every page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document {
+    /// Id of the page in front.
+    pub page: String,
+    /// By page, and what pages share.
+    pub settings: Value,
+}
+
+impl Document {
+    /// What is set now.
+    pub fn of(pages: &[Box<dyn View>], front: usize, desk: &Desk) -> Self {
+        let shared = [
+            (LOOP.to_owned(), json!(desk.relay_loop)),
+            (LESSON.to_owned(), json!(desk.study.lesson)),
+        ];
+        let own = pages.iter().map(|p| (p.id().to_owned(), p.settings()));
+        Self {
+            page: pages.get(front).map_or("", |p| p.id()).to_owned(),
+            settings: link::object(shared.into_iter().chain(own)),
+        }
+    }
+
+    /// As a link: what is on the screen, which is the page in front and what it shares with others.
+    pub fn link(&self, defaults: &Self) -> String {
+        let mut shown = defaults.settings.clone();
+        for key in [LOOP, LESSON, &self.page] {
+            shown[key] = self.settings[key].clone();
+        }
+        link::write(&self.page, &shown, &defaults.settings)
+    }
+
+    /// The file on the page in front that no link can carry: one of the user's.
+    pub fn file(&self) -> Option<&str> {
+        let name = self.settings[&self.page]["file"].as_str()?;
+        (!crate::pages::is_built_in(name)).then_some(name)
+    }
+
+    /// As a text that keeps everything.
+    pub fn text(&self, defaults: &Self) -> String {
+        link::write(&self.page, &self.settings, &defaults.settings)
+    }
+
+    /// Reads what [`Self::text`] or [`Self::link`] has written.
+    ///
+    /// # Errors
+    /// One sentence.
+    pub fn read(text: &str, defaults: &Self) -> Result<Self, String> {
+        let (page, settings) = link::read(text, &defaults.settings)?;
+        Ok(Self { page, settings })
+    }
+
+    /// What a link sets here: its page and what pages share; the other pages stay as they are.
+    pub fn within(mut self, present: &Self) -> Self {
+        let mut settings = present.settings.clone();
+        for key in [LOOP, LESSON, &self.page] {
+            settings[key] = self.settings[key].take();
+        }
+        self.settings = settings;
+        self
+    }
+
+    /// Sets all that differs from what is set now; on an error some of it may have been set.
+    ///
+    /// # Errors
+    /// One sentence.
+    pub fn apply(
+        &self,
+        ctx: &egui::Context,
+        pages: &mut [Box<dyn View>],
+        front: &mut usize,
+        desk: &mut Desk,
+    ) -> Result<(), String> {
+        let Some(index) = pages.iter().position(|p| p.id() == self.page) else {
+            let known: Vec<&str> = pages.iter().map(|p| p.id()).collect();
+            return Err(format!(
+                "This link is about a page that does not exist; there are {}.",
+                known.join(", ")
+            ));
+        };
+        let relay_loop: ExploreInput = parsed(&self.settings[LOOP])?;
+        check(&relay_loop)?;
+        let lesson: Option<String> = parsed(&self.settings[LESSON])?;
+        if lesson.as_deref().is_some_and(|id| find(id).is_none()) {
+            return Err("This link is about a lesson that does not exist.".to_owned());
+        }
+        desk.relay_loop = relay_loop;
+        desk.study.lesson = lesson;
+        for page in pages.iter_mut() {
+            let settings = &self.settings[page.id()];
+            if page.settings() != *settings {
+                page.set(ctx, settings, desk)?;
+            }
+        }
+        *front = index;
+        Ok(())
+    }
+
+    /// Sets what can be set, page by page, and leaves out the rest.
+    pub fn restore(
+        &self,
+        ctx: &egui::Context,
+        pages: &mut [Box<dyn View>],
+        front: &mut usize,
+        desk: &mut Desk,
+    ) {
+        if let Ok(relay_loop) = parsed(&self.settings[LOOP])
+            && check(&relay_loop).is_ok()
+        {
+            desk.relay_loop = relay_loop;
+        }
+        let lesson: Option<String> = parsed(&self.settings[LESSON]).ok().flatten();
+        desk.study.lesson = lesson.filter(|id| find(id).is_some());
+        for page in pages.iter_mut() {
+            // A page whose settings are of another day begins anew.
+            let _ = page.set(ctx, &self.settings[page.id()], desk);
+        }
+        if let Some(index) = pages.iter().position(|p| p.id() == self.page) {
+            *front = index;
+        }
+    }
+}
+
+/// Settings of a page from their plain value.
+///
+/// # Errors
+/// One sentence.
+pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
+    T::deserialize(value).map_err(|e| format!("These settings cannot be read: {e}."))
+}
+
+/// Whether a loop can be computed.
+pub fn check(input: &ExploreInput) -> Result<(), String> {
+    let sentence = |e: &dyn std::fmt::Display| format!("This loop cannot be: {e}.");
+    input.plant.validate().map_err(|e| sentence(&e))?;
+    input.relay.validate().map_err(|e| sentence(&e))?;
+    match input.noise {
+        Some(noise) if !(noise.std_dev >= 0.0 && noise.std_dev.is_finite()) => {
+            Err(sentence(&"its noise must be 0 or more"))
+        }
+        Some(noise) if !(LEAST_INTERVAL..=MOST_INTERVAL).contains(&noise.interval) => {
+            Err(sentence(&"its noise must change every 0.001 to 1000 s"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Times between two values of the noise that are taken, s: shorter ones take minutes to simulate.
+const LEAST_INTERVAL: f64 = 1e-3;
+const MOST_INTERVAL: f64 = 1e3;
+
+/// Why a link cannot show what is about a file of the user's.
+pub fn not_enclosed(name: &str) -> String {
+    let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
+    format!("This link is about the file {name}, which is not part of it: open that file here.")
+}

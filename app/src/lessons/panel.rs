@@ -1,0 +1,122 @@
+//! The lesson that stands beside the pages.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use super::{Lesson, after, find, markdown};
+use crate::hook::Targets;
+use crate::pages::Command;
+use crate::theme;
+
+/// Width of the panel, points, and that of the window below which it stands at the foot.
+const WIDTH: f32 = 340.0;
+const NARROW: f32 = 700.0;
+
+/// The lesson that is studied, and how far someone has come.
+#[derive(Default)]
+pub struct Study {
+    /// Id of the lesson that is open.
+    pub lesson: Option<String>,
+    /// Ids of the lessons whose question is solved.
+    pub solved: BTreeSet<String>,
+    /// What is typed for the lesson of this id.
+    typed: (String, String),
+    /// Whether the last try was wrong.
+    missed: bool,
+}
+
+impl Study {
+    /// Draws the lesson that is open beside what comes after.
+    pub fn ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+        let Some(lesson) = self.lesson.as_deref().and_then(find) else {
+            return;
+        };
+        if self.typed.0 != lesson.id {
+            self.typed = (lesson.id.to_owned(), String::new());
+            self.missed = false;
+        }
+        let panel = if ui.available_width() < NARROW {
+            egui::Panel::bottom("lesson below").exact_size(0.42 * ui.available_height())
+        } else {
+            egui::Panel::right("lesson").exact_size(WIDTH)
+        };
+        panel
+            .resizable(false)
+            .show(ui, |ui| self.lesson_ui(ui, &lesson, targets, commands));
+    }
+
+    /// Whether the question of the open lesson is solved by what was typed and what the app shows.
+    pub fn check(&mut self, state: &Value) {
+        let Some(lesson) = self.lesson.as_deref().and_then(find) else {
+            return;
+        };
+        self.missed = !lesson.question.solved(&self.typed.1, state);
+        if !self.missed {
+            self.solved.insert(lesson.id.to_owned());
+        }
+    }
+
+    fn lesson_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        lesson: &Lesson,
+        targets: &mut Targets,
+        commands: &mut Vec<Command>,
+    ) {
+        ui.add_space(4.0);
+        egui::ScrollArea::vertical()
+            .id_salt(lesson.id)
+            .show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(format!("Lesson, {} minutes", lesson.minutes));
+                    let close = ui.button("Close lesson");
+                    targets.note("lesson:close", ui, &close);
+                    if close.clicked() {
+                        commands.push(Command::Lesson(None));
+                    }
+                });
+                ui.add(
+                    egui::Label::new(egui::RichText::new(lesson.title).size(20.0).strong()).wrap(),
+                );
+                if let Some(link) = markdown::ui(ui, &lesson.text) {
+                    commands.push(Command::OpenLink(format!("{link};lesson={}", lesson.id)));
+                }
+                ui.add_space(4.0);
+                self.question_ui(ui, lesson, commands);
+                ui.add_space(12.0);
+            });
+    }
+
+    fn question_ui(&mut self, ui: &mut egui::Ui, lesson: &Lesson, commands: &mut Vec<Command>) {
+        let question = &lesson.question;
+        let mut asked = false;
+        ui.horizontal_wrapped(|ui| {
+            if let Some(answer) = question.answer {
+                let label = ui.label("Your answer");
+                let field = egui::TextEdit::singleline(&mut self.typed.1).desired_width(80.0);
+                let field = ui.add(field).labelled_by(label.id);
+                asked |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+                if !answer.unit.is_empty() {
+                    ui.label(answer.unit);
+                }
+            }
+            asked |= ui.button("Check").clicked();
+        });
+        if asked {
+            commands.push(Command::Check);
+        }
+        if self.missed {
+            ui.colored_label(ui.visuals().warn_fg_color, "Not yet.");
+            ui.label(question.hint);
+        } else if self.solved.contains(lesson.id) {
+            ui.colored_label(theme::readable(ui, theme::NOISE), "Right.");
+            ui.label(question.right);
+            if let Some(next) = after(lesson.id)
+                && ui.button(format!("Next lesson: {}", next.title)).clicked()
+            {
+                commands.push(Command::Lesson(Some(next.id.to_owned())));
+            }
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What is set on the page.
+
+use hysteron_core::drive::{Command, DriveInput, figures};
+use serde::{Deserialize, Serialize};
+
+use super::Backlash;
+use super::built_in::BUILT_IN;
+
+/// The most that a link may ask for: a longer run, or one of more events, would fill the memory.
+const LONGEST_RUN: f64 = 120.0;
+const MOST_SAMPLES: f64 = 500_000.0;
+
+/// Slowest and fastest playback, times real time.
+const SPEEDS: std::ops::RangeInclusive<f64> = 1e-6..=1e3;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Settings {
+    /// Number of the figure whose claim is checked.
+    figure: Option<u32>,
+    /// The drive, its relay, and how long it runs.
+    run: DriveInput,
+    /// Gap, rad, and torque, N m, for which a drifting test is designed.
+    expected_gap: f64,
+    largest_torque: f64,
+    /// Playback, times real time.
+    speed: f64,
+    /// Where it stands still, s.
+    paused: Option<f64>,
+    /// The measurement that is open.
+    file: Option<String>,
+}
+
+/// Whether a measurement of this name comes with the page.
+pub fn is_built_in(name: &str) -> bool {
+    BUILT_IN.iter().any(|b| b.id == name)
+}
+
+impl Backlash {
+    pub(super) fn set_to(&self) -> Settings {
+        Settings {
+            figure: self.figure,
+            run: self.input,
+            expected_gap: self.design.gap,
+            largest_torque: self.design.torque,
+            speed: self.speed,
+            paused: (!self.playing).then_some(self.clock),
+            file: self.file.clone(),
+        }
+    }
+
+    pub(super) fn take(&mut self, ctx: &egui::Context, settings: Settings) -> Result<(), String> {
+        settings.check()?;
+        let file = match &settings.file {
+            Some(name) if settings.file != self.file => {
+                let built_in = BUILT_IN.iter().find(|b| b.id == name);
+                Some(built_in.ok_or_else(|| crate::document::not_enclosed(name))?)
+            }
+            _ => None,
+        };
+        if settings.figure != self.figure && self.file.is_none() {
+            // What the figure claims is checked when the scene is made.
+            self.scene = None;
+        }
+        self.figure = settings.figure;
+        self.input = settings.run;
+        self.design.gap = settings.expected_gap;
+        self.design.torque = settings.largest_torque;
+        self.speed = settings.speed;
+        self.playing = settings.paused.is_none();
+        self.message = None;
+        if let Some(built_in) = file {
+            self.open_bytes(ctx, built_in.id, &built_in.csv());
+        } else if settings.file.is_none() && self.file.is_some() {
+            self.close();
+        }
+        if let Some(clock) = settings.paused {
+            self.clock = clock.max(0.0);
+        }
+        Ok(())
+    }
+}
+
+impl Settings {
+    fn check(&self) -> Result<(), String> {
+        if let Some(number) = self.figure
+            && figures().iter().all(|f| f.number != number)
+        {
+            return Err(format!("There is no figure {number} on this page."));
+        }
+        let run = &self.run;
+        let sentence = |e: &dyn std::fmt::Display| format!("This drive cannot be: {e}.");
+        run.drive.validate().map_err(|e| sentence(&e))?;
+        if let Command::Relay(relay) = run.command {
+            relay.validate().map_err(|e| sentence(&e))?;
+        }
+        if !(run.duration > 0.0 && run.duration <= LONGEST_RUN) {
+            return Err(format!("A run must last above 0 to {LONGEST_RUN} s."));
+        }
+        let samples = run.step.map_or(0.0, |step| run.duration / step);
+        if !(0.0..=MOST_SAMPLES).contains(&samples) {
+            return Err(format!("A run may have {MOST_SAMPLES} samples."));
+        }
+        if run.max_events > hysteron_core::drive::MAX_EVENTS {
+            return Err(sentence(&"it may have 500,000 events"));
+        }
+        let positive = |v: f64| v > 0.0 && v <= 1e6;
+        if !positive(self.expected_gap) || !positive(self.largest_torque) {
+            return Err("Gap and torque of the design must be above 0.".to_owned());
+        }
+        if !SPEEDS.contains(&self.speed) {
+            return Err("The speed of the playback must be above 0.".to_owned());
+        }
+        Ok(())
+    }
+}

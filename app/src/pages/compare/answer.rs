@@ -1,0 +1,112 @@
+//! The page's answer, where the model fails, and messages, in words.
+
+use hysteron_core::criticism::{StepReport, with_error};
+use hysteron_core::effect::{self, Effect, EffectId};
+use hysteron_core::user_model::UserModel;
+
+use super::{Command, Compare};
+use crate::theme;
+
+impl Compare {
+    pub(super) fn message_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        if let Some(message) = &self.message {
+            ui.horizontal_wrapped(|ui| {
+                ui.colored_label(ui.visuals().warn_fg_color, message);
+                if ui.small_button("Dismiss").clicked() {
+                    commands.push(Command::Dismiss);
+                }
+            });
+        }
+    }
+
+    pub(super) fn answer_ui(&self, ui: &mut egui::Ui) {
+        let text = match self.report() {
+            None => "Fitting the simplest model ...".to_owned(),
+            Some(report) => {
+                let present = self.model.as_ref().map(UserModel::present);
+                answer(report, &present.unwrap_or_default())
+            }
+        };
+        theme::answer_ui(ui, &text);
+    }
+
+    pub(super) fn findings_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        let Some(report) = self.report() else {
+            return;
+        };
+        for (index, finding) in report.step.findings.iter().enumerate().take(3) {
+            let row = ui.selectable_label(self.finding == index, &finding.text);
+            if row
+                .on_hover_text("Click to shade it in the plots")
+                .clicked()
+            {
+                commands.push(Command::Shade(index));
+            }
+        }
+    }
+}
+
+/// Name of an effect on screen.
+pub(super) fn name_of(id: EffectId) -> &'static str {
+    effect::find(id).map_or(id.as_str(), Effect::name)
+}
+
+/// An error in noise units, three digits.
+pub(super) fn times_noise(error: f64) -> String {
+    if error >= 100.0 {
+        format!("{error:.0}")
+    } else if error >= 10.0 {
+        format!("{error:.1}")
+    } else {
+        format!("{error:.2}")
+    }
+}
+
+/// The page's answer in one or two sentences; `present` are the effects of the user's model.
+fn answer(report: &StepReport, present: &[EffectId]) -> String {
+    let step = &report.step;
+    let added: Vec<String> = step
+        .effects
+        .iter()
+        .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
+        .map(|id| {
+            let main = step.parameters.iter().find(|p| p.effect == Some(*id));
+            main.map_or_else(
+                || name_of(*id).to_owned(),
+                |p| {
+                    format!(
+                        "{}: {}",
+                        name_of(*id),
+                        with_error(p.value, p.std_error, &p.unit)
+                    )
+                },
+            )
+        })
+        .collect();
+    match (&report.verdict, added.is_empty()) {
+        (Some(verdict), false) if verdict.complete => {
+            let ambiguous = verdict.missing.iter().any(|class| class.len() > 1);
+            let tail = if ambiguous {
+                "Another effect would explain it as well."
+            } else {
+                "Nothing more is missing."
+            };
+            format!("The missing effect was {}. {tail}", added.join(" and "))
+        }
+        (Some(verdict), true) if verdict.complete => {
+            "Nothing is missing: what the model leaves is measurement noise.".to_owned()
+        }
+        (Some(verdict), _) if !verdict.contradicted.is_empty() => {
+            let names: Vec<&str> = verdict
+                .contradicted
+                .iter()
+                .map(|c| c.name.as_str())
+                .collect();
+            format!("The data contradict the known {}.", names.join(" and "))
+        }
+        _ => format!(
+            "The model misses by {} times the noise.",
+            times_noise(step.error)
+        ),
+    }
+}

@@ -1,0 +1,102 @@
+//! What comes in: measurements, models, effects of the user's own.
+
+use std::sync::Arc;
+
+use hysteron_core::measurement::import_csv;
+use hysteron_core::user_model::UserModel;
+
+use super::{Compare, export, own};
+use crate::jobs::Job;
+
+impl Compare {
+    /// Opens a measurement, or a model (TOML), from the bytes of a file; a bad one leaves everything as it was.
+    pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        if name.to_ascii_lowercase().ends_with(".toml") {
+            return self.open_model(ctx, name, bytes);
+        }
+        match import_csv(name, bytes, None) {
+            Ok(measurement) => {
+                self.message = measurement.warnings.first().cloned();
+                self.measurement = Some(Arc::new(measurement));
+                self.source = export::Source::of(bytes);
+                let kind = self.measurement.as_ref().map(|m| m.kind);
+                if self.model.as_ref().is_some_and(|m| Some(m.kind) != kind) {
+                    self.forget_model();
+                }
+                self.restart(ctx);
+            }
+            Err(error) => self.message = Some(error.to_string()),
+        }
+    }
+
+    /// Takes a model and begins anew with it.
+    fn open_model(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        let read = str::from_utf8(bytes)
+            .map_err(|_| "a model must be UTF-8 text".to_owned())
+            .and_then(|text| UserModel::from_toml(text).map_err(|e| e.to_string()));
+        match (read, &self.measurement) {
+            (Err(error), _) => self.message = Some(format!("{name}, {error}")),
+            (Ok(model), Some(measurement)) if model.kind != measurement.kind => {
+                self.message = Some(format!(
+                    "{name} is the model of a {}, but {} is the measurement of a {}.",
+                    model.kind.name(),
+                    measurement.name,
+                    measurement.kind.name()
+                ));
+            }
+            (Ok(model), _) => {
+                self.message = None;
+                self.forget_model();
+                self.model = Some(model);
+                self.model_file = Some(name.to_owned());
+                self.restart(ctx);
+            }
+        }
+    }
+
+    pub(super) fn forget_model(&mut self) {
+        self.model = None;
+        self.model_file = None;
+        self.own.clear();
+    }
+
+    /// Adds an effect of the user's own to the model.
+    pub(super) fn add_own(&mut self, ctx: &egui::Context, typed: &own::Typed) {
+        let Some(measurement) = &self.measurement else {
+            return;
+        };
+        let blank = || UserModel::blank(measurement.kind);
+        let mut model = self.model.clone().unwrap_or_else(blank);
+        match model.add_candidate(&typed.line()) {
+            Ok(()) => {
+                self.message = None;
+                self.effects.extend(model.candidates.last().map(|c| c.id));
+                self.model = Some(model);
+                self.own.push(typed.line());
+                self.start(ctx);
+            }
+            Err(error) => self.message = Some(error),
+        }
+    }
+
+    /// Begins with the first model again.
+    pub(super) fn restart(&mut self, ctx: &egui::Context) {
+        self.effects.clear();
+        self.reports.clear();
+        self.shown = None;
+        self.finding = 0;
+        self.start(ctx);
+    }
+
+    /// Shows the step of the present effects: at once if it is known, else by a job.
+    pub(super) fn start(&mut self, ctx: &egui::Context) {
+        self.job = None;
+        if self.reports.contains_key(&self.effects) {
+            self.shown = Some(self.effects.clone());
+        } else if let Some(measurement) = &self.measurement {
+            self.progress = (0.0, "Starting".to_owned());
+            let model = self.model.as_ref();
+            self.job = Some(Job::start(ctx, measurement, &self.effects, model));
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The page before a measurement is open.
+
+use super::{Command, Compare};
+use crate::hook::Targets;
+use crate::theme;
+
+/// A measurement that comes with the app.
+pub(super) struct BuiltIn {
+    pub id: &'static str,
+    title: &'static str,
+    story: &'static str,
+    pub csv: &'static [u8],
+}
+
+pub(super) const BUILT_IN: [BuiltIn; 3] = [
+    BuiltIn {
+        id: "drive-02",
+        title: "A drive that loses its swing",
+        story: "A motor under a velocity relay. It never moves quite as far as its inertia says it should.",
+        csv: include_bytes!("../../../../assets/measurements/drive-02.csv"),
+    },
+    BuiltIn {
+        id: "drive-12",
+        title: "A drive that answers late",
+        story: "The same rig with another amplifier and older bearings. One effect is not enough.",
+        csv: include_bytes!("../../../../assets/measurements/drive-12.csv"),
+    },
+    BuiltIn {
+        id: "process-02",
+        title: "A slow heating process",
+        story: "A heater switched by a relay. The temperature overshoots both limits, every time.",
+        csv: include_bytes!("../../../../assets/measurements/process-02.csv"),
+    },
+];
+
+impl Compare {
+    pub(super) fn welcome_ui(
+        &self,
+        ui: &mut egui::Ui,
+        targets: &mut Targets,
+        commands: &mut Vec<Command>,
+    ) {
+        egui::ScrollArea::vertical().show(ui, |ui| {
+            ui.add_space(16.0);
+            theme::answer_ui(ui, "What is missing from the model?");
+            ui.label("Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which physical effect would explain the rest.");
+            self.message_ui(ui, commands);
+            ui.add_space(12.0);
+            for (index, built_in) in BUILT_IN.iter().enumerate() {
+                egui::Frame::group(ui.style()).show(ui, |ui| {
+                    ui.set_width(ui.available_width().min(620.0));
+                    ui.strong(built_in.title);
+                    ui.label(built_in.story);
+                    let button = ui.button(format!("Open {}", built_in.id));
+                    targets.note(format!("builtin:{}", built_in.id), ui, &button);
+                    if button.clicked() {
+                        commands.push(Command::OpenBuiltIn(index));
+                    }
+                });
+            }
+            ui.add_space(12.0);
+            ui.label("Or your own: drop a CSV file anywhere on this window, or");
+            if ui.button("Open a file ...").clicked() {
+                commands.push(Command::OpenDialog);
+            }
+            ui.small("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process.");
+        });
+    }
+}

@@ -1,0 +1,42 @@
+//! What is set on the page, besides the loop.
+
+use hysteron_core::figures::figures;
+use serde::{Deserialize, Serialize};
+
+use super::Explore;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Settings {
+    /// Number of the figure whose claim is checked.
+    figure: Option<u32>,
+    /// Whether the point S is shown in the Nyquist plot.
+    margin: bool,
+    /// Where the playback stands still, s.
+    paused: Option<f64>,
+}
+
+impl Explore {
+    pub(super) fn set_to(&self) -> Settings {
+        Settings {
+            figure: self.figure,
+            margin: self.nyquist.margin,
+            paused: (!self.playing).then_some(self.clock),
+        }
+    }
+
+    pub(super) fn take(&mut self, settings: &Settings) -> Result<(), String> {
+        if let Some(number) = settings.figure
+            && figures().iter().all(|f| f.number != number)
+        {
+            return Err(format!("There is no figure {number} on this page."));
+        }
+        self.figure = settings.figure;
+        self.nyquist.margin = settings.margin;
+        self.playing = settings.paused.is_none();
+        if let Some(clock) = settings.paused {
+            self.clock = clock.max(0.0);
+        }
+        Ok(())
+    }
+}

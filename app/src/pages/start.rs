@@ -1,0 +1,247 @@
+//! The first minute: a loop that runs, a question, and doors to the rest.
+
+use hysteron_core::explore::{ExploreData, ExploreInput, compute};
+use hysteron_core::relay::Relay;
+use serde::{Deserialize, Serialize};
+
+use super::controls::slider;
+use super::explore::plots;
+use super::{Command, Desk, View};
+use crate::document::parsed;
+use crate::theme;
+
+/// Simulated periods that are played in a second.
+const PERIODS_PER_SECOND: f64 = 0.6;
+
+/// Width below which everything stands in one column, points.
+const NARROW: f32 = 700.0;
+
+/// A door to another page.
+struct Door {
+    page: &'static str,
+    button: &'static str,
+    question: &'static str,
+    story: &'static str,
+}
+
+const DOORS: [Door; 3] = [
+    Door {
+        page: "explore",
+        button: "Open Explore",
+        question: "How does a relay loop swing?",
+        story: "Turn its knobs; see the exact limit cycle beside what the describing function predicts.",
+    },
+    Door {
+        page: "backlash",
+        button: "Open Backlash",
+        question: "How wide is a gap that nobody can see?",
+        story: "A motor under a relay drifts through the play of its gear and feels both walls.",
+    },
+    Door {
+        page: "compare",
+        button: "Open Compare",
+        question: "What is missing from the model?",
+        story: "Take a measurement; see where the model fails, and which physics would explain the rest.",
+    },
+];
+
+/// Doors of the second row: pages and their buttons.
+const MORE: [(&str, &str); 3] = [
+    ("lessons", "Lessons of ten minutes"),
+    ("tune", "Tune a controller from one experiment"),
+    ("maps", "Maps of period and amplitude"),
+];
+
+/// The page.
+pub struct Start {
+    playing: bool,
+    clock: f64,
+    /// The last loop and what it does.
+    finished: Option<(ExploreInput, Result<ExploreData, String>)>,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self {
+            playing: true,
+            clock: 0.0,
+            finished: None,
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// Where the playback stands still, s.
+    paused: Option<f64>,
+}
+
+impl View for Start {
+    fn id(&self) -> &'static str {
+        "start"
+    }
+
+    fn title(&self) -> &'static str {
+        "Start"
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        self.compute(&desk.relay_loop);
+        self.play(ui);
+        egui::CentralPanel::default().show(ui, |ui| {
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                self.loop_ui(ui, &mut desk.relay_loop.relay);
+                ui.add_space(10.0);
+                doors_ui(ui, desk);
+            });
+        });
+    }
+
+    fn toggle_play(&mut self) {
+        self.playing = !self.playing;
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(Settings {
+            paused: (!self.playing).then_some(self.clock),
+        })
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        let Settings { paused } = parsed(settings)?;
+        self.playing = paused.is_none();
+        self.clock = paused.unwrap_or(self.clock).max(0.0);
+        Ok(())
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": false,
+            "answer": self.data().map(|d| d.text.clone()),
+            "clock": self.clock,
+            "playing": self.playing,
+        })
+    }
+}
+
+impl Start {
+    fn compute(&mut self, input: &ExploreInput) {
+        if self
+            .finished
+            .as_ref()
+            .is_none_or(|(known, _)| known != input)
+        {
+            let data = compute(input).map_err(|e| e.to_string());
+            self.finished = Some((input.clone(), data));
+        }
+    }
+
+    fn data(&self) -> Option<&ExploreData> {
+        self.finished.as_ref()?.1.as_ref().ok()
+    }
+
+    /// Moves the playback on; at its end it begins again.
+    fn play(&mut self, ui: &egui::Ui) {
+        let Some(data) = self.data() else {
+            return;
+        };
+        let end = data.time.last().copied().unwrap_or(0.0);
+        let period = data
+            .exact
+            .or(data.simulated)
+            .map_or(0.1 * end, |c| c.period);
+        if self.playing {
+            let seconds = f64::from(ui.input(|i| i.stable_dt).min(0.1));
+            self.clock += seconds * PERIODS_PER_SECOND * period;
+            ui.ctx().request_repaint();
+        }
+        if self.clock > end {
+            self.clock = 0.0;
+        }
+    }
+
+    fn loop_ui(&mut self, ui: &mut egui::Ui, relay: &mut Relay) {
+        ui.add_space(6.0);
+        theme::answer_ui(ui, "Why does a thermostat never come to rest?");
+        ui.label("A relay switches a process up and down. It acts late, so that the output overshoots both thresholds, for ever: a limit cycle.");
+        match self.finished.as_ref().map(|(_, data)| data) {
+            Some(Ok(data)) => {
+                ui.strong(&data.text);
+                if ui.available_width() < NARROW {
+                    plots::time_ui(ui, relay, data, self.clock, 200.0);
+                } else {
+                    let height = (0.42 * ui.ctx().content_rect().height()).max(160.0);
+                    ui.columns(2, |columns| {
+                        plots::time_ui(&mut columns[0], relay, data, self.clock, height);
+                        plots::phase_ui(&mut columns[1], data, self.clock, height);
+                    });
+                }
+            }
+            Some(Err(error)) => {
+                ui.colored_label(ui.visuals().warn_fg_color, error);
+            }
+            None => {}
+        }
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Turn it:");
+            let normal = Relay::default().hysteresis;
+            slider(
+                ui,
+                &mut relay.hysteresis,
+                normal,
+                1.0,
+                0.0..=1.0,
+                "hysteresis ε",
+            )
+            .on_hover_text("How far the output must pass zero before the relay switches");
+            let label = if self.playing { "Pause" } else { "Play" };
+            if ui.button(label).clicked() {
+                self.toggle_play();
+            }
+        });
+    }
+}
+
+fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
+    if ui.available_width() < NARROW {
+        for door in &DOORS {
+            door_ui(ui, desk, door);
+        }
+    } else {
+        ui.columns(DOORS.len(), |columns| {
+            for (column, door) in columns.iter_mut().zip(&DOORS) {
+                door_ui(column, desk, door);
+            }
+        });
+    }
+    ui.add_space(6.0);
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Or:");
+        for (page, label) in MORE {
+            if ui.button(label).clicked() {
+                desk.commands.push(Command::Go(page));
+            }
+        }
+    });
+}
+
+fn door_ui(ui: &mut egui::Ui, desk: &mut Desk, door: &Door) {
+    egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.strong(egui::RichText::new(door.question).size(17.0));
+        ui.label(door.story);
+        let size = egui::vec2(ui.available_width().min(220.0), 36.0);
+        let button = ui.add_sized(size, egui::Button::new(door.button));
+        desk.targets
+            .note(format!("door:{}", door.page), ui, &button);
+        if button.clicked() {
+            desk.commands.push(Command::Go(door.page));
+        }
+    });
+}

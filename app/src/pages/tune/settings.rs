@@ -1,0 +1,54 @@
+//! What is set on the page, besides plant and relay.
+
+use hysteron_core::tuning::{Pid, rule};
+use serde::{Deserialize, Serialize};
+
+use super::{STAGES, Tune};
+
+/// Phase margins that are taken, rad.
+const MARGINS: std::ops::RangeInclusive<f64> = 0.01..=1.55;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Settings {
+    /// Id of the step in view.
+    step: String,
+    /// Asymmetry of the asymmetric test.
+    asymmetry: f64,
+    /// Wanted phase margin, rad.
+    phase_margin: f64,
+    /// Gain of the proportional controller before.
+    gain_before: f64,
+    /// Id of the rule.
+    rule: String,
+}
+
+impl Tune {
+    pub(super) fn set_to(&self) -> Settings {
+        Settings {
+            step: STAGES.get(self.stage).map_or("", |s| s.id).to_owned(),
+            asymmetry: self.asymmetry,
+            phase_margin: self.input.wish.phase_margin,
+            gain_before: self.input.present.gain,
+            rule: self.input.rule.clone(),
+        }
+    }
+
+    pub(super) fn take(&mut self, settings: &Settings) -> Result<(), String> {
+        let stage = STAGES.iter().position(|s| s.id == settings.step);
+        let stage = stage.ok_or("This step of the tuning does not exist.")?;
+        rule(&settings.rule).map_err(|_| "This tuning rule does not exist.")?;
+        if settings.asymmetry.abs() > 0.99 {
+            return Err("The asymmetry must be -0.99 to 0.99.".to_owned());
+        }
+        if !MARGINS.contains(&settings.phase_margin) {
+            return Err("The phase margin must be 0.01 to 1.55 rad.".to_owned());
+        }
+        self.stage = stage;
+        self.asymmetry = settings.asymmetry;
+        self.input.wish.phase_margin = settings.phase_margin;
+        self.input.present = Pid::p(settings.gain_before);
+        self.input.rule.clone_from(&settings.rule);
+        Ok(())
+    }
+}

@@ -1,0 +1,147 @@
+//! Keys: one table for what they do and for the sheet that says so.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::pages::Command;
+
+/// A key and what it asks for.
+struct Shortcut {
+    keys: &'static [KeyboardShortcut],
+    sentence: &'static str,
+    command: Command,
+}
+
+const PLAIN: Modifiers = Modifiers::NONE;
+const COMMAND: Modifiers = Modifiers::COMMAND;
+const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+const fn key(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(modifiers, key)
+}
+
+/// All but those of the pages, which are numbered in the order of their tabs. Longer combinations stand
+/// first: Ctrl+Z would take Ctrl+Shift+Z too.
+const SHORTCUTS: [Shortcut; 8] = [
+    Shortcut {
+        keys: &[key(COMMAND_SHIFT, Key::Z), key(COMMAND, Key::Y)],
+        sentence: "Do again what was taken back",
+        command: Command::Redo,
+    },
+    Shortcut {
+        keys: &[key(COMMAND, Key::Z)],
+        sentence: "Take back the last change",
+        command: Command::Undo,
+    },
+    Shortcut {
+        keys: &[key(PLAIN, Key::P)],
+        sentence: "Play or pause",
+        command: Command::Play,
+    },
+    Shortcut {
+        keys: &[key(PLAIN, Key::R)],
+        sentence: "Reset this page",
+        command: Command::Reset,
+    },
+    Shortcut {
+        keys: &[key(PLAIN, Key::L)],
+        sentence: "Copy the link to this page as it is; a link is opened by pasting it",
+        command: Command::CopyLink,
+    },
+    Shortcut {
+        keys: &[key(PLAIN, Key::T)],
+        sentence: "Next look: dark, light, projector",
+        command: Command::NextLook,
+    },
+    Shortcut {
+        keys: &[
+            key(PLAIN, Key::F1),
+            key(PLAIN, Key::Questionmark),
+            key(PLAIN, Key::H),
+        ],
+        sentence: "Show or hide this sheet",
+        command: Command::Sheet,
+    },
+    Shortcut {
+        keys: &[key(PLAIN, Key::Escape)],
+        sentence: "Close what lies on top",
+        command: Command::Close,
+    },
+];
+
+/// Keys of the pages, by their tabs.
+const PAGES: [Key; 9] = [
+    Key::Num1,
+    Key::Num2,
+    Key::Num3,
+    Key::Num4,
+    Key::Num5,
+    Key::Num6,
+    Key::Num7,
+    Key::Num8,
+    Key::Num9,
+];
+
+/// What the keys of this frame ask for. A text field keeps its keys.
+pub fn pressed(ctx: &egui::Context, pages: &[&'static str], commands: &mut Vec<Command>) {
+    if ctx.text_edit_focused() {
+        return;
+    }
+    ctx.input_mut(|input| {
+        for shortcut in &SHORTCUTS {
+            // Where a keyboard needs Shift for the question mark, its modifier must not count.
+            let asked = shortcut.keys.iter().any(|k| {
+                input.consume_shortcut(k)
+                    || (k.logical_key == Key::Questionmark
+                        && input.consume_key(Modifiers::SHIFT, Key::Questionmark))
+            });
+            if asked {
+                commands.push(shortcut.command.clone());
+            }
+        }
+        for (key, page) in PAGES.iter().zip(pages) {
+            if input.consume_key(PLAIN, *key) {
+                commands.push(Command::Go(page));
+            }
+        }
+    });
+}
+
+/// The sheet; false when it was closed.
+pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
+    let mut open = true;
+    egui::Window::new("Keyboard")
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+        .show(ctx, |ui| {
+            egui::Grid::new("shortcuts")
+                .num_columns(2)
+                .striped(true)
+                .show(ui, |ui| {
+                    for (key, title) in PAGES.iter().zip(titles) {
+                        ui.strong(key.symbol_or_name());
+                        ui.label(*title);
+                        ui.end_row();
+                    }
+                    for shortcut in &SHORTCUTS {
+                        let names: Vec<String> = shortcut
+                            .keys
+                            .iter()
+                            .map(|k| match k.logical_key {
+                                Key::Questionmark => "?".to_owned(),
+                                _ => ctx.format_shortcut(k),
+                            })
+                            .collect();
+                        ui.strong(names.join("  or  "));
+                        ui.label(shortcut.sentence);
+                        ui.end_row();
+                    }
+                });
+            ui.separator();
+            ui.label("Tab goes from control to control, the arrow keys move a slider.");
+            ui.label("A double click on a slider resets it; a click on its number types one.");
+            ui.label("A file is opened by dropping it on the window.");
+        });
+    open
+}

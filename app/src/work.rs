@@ -1,0 +1,125 @@
+//! What long computations do. The same code runs on a thread natively and in the worker on the web; the page
+//! itself has none of it, which keeps it small.
+
+use hysteron_core::backlash::estimate_gap;
+use hysteron_core::criticism::{Progress, StepJob, StepReport};
+use hysteron_core::drive::{Recorder, record};
+use hysteron_core::maps::{MapJob, Tile};
+use hysteron_core::measurement::import_csv;
+use hysteron_core::tuning::{TuningReport, tune};
+use hysteron_core::user_model::UserModel;
+
+use crate::tasks::{GapReport, GapTask, MapTask, News, StepTask, Task, TuneTask};
+
+/// Where a task says its news; false when nobody listens any more and it should end.
+pub type Say<'a, R> = &'a mut dyn FnMut(News<R>) -> bool;
+
+/// A task that can be carried out here.
+pub trait Work: Task {
+    /// Runs until it is finished or nobody listens.
+    fn run(self, say: Say<'_, Self::Report>);
+}
+
+impl Work for StepTask {
+    fn run(self, say: Say<'_, StepReport>) {
+        let blank = UserModel::blank(self.measurement.kind);
+        let model = self.model.as_ref().unwrap_or(&blank);
+        let mut job = match StepJob::with_model(&self.measurement, &self.effects, model) {
+            Ok(job) => job,
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        loop {
+            match advance_step(&mut job) {
+                Progress::Running { fraction, text } => {
+                    if !say(News::Progress(fraction, text)) {
+                        return;
+                    }
+                }
+                Progress::Done(report) => {
+                    say(News::Report(Box::new(report)));
+                    return;
+                }
+            }
+        }
+    }
+}
+
+impl Work for MapTask {
+    fn run(self, say: Say<'_, Tile>) {
+        let mut job = match MapJob::new(self.0) {
+            Ok(job) => job,
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        loop {
+            let tile = advance(&mut job);
+            if tile.is_empty() || !say(News::Report(Box::new(tile))) {
+                return;
+            }
+        }
+    }
+}
+
+impl Work for TuneTask {
+    fn run(self, say: Say<'_, TuningReport>) {
+        say(match tune(&self.0) {
+            Ok(report) => News::Report(Box::new(report)),
+            Err(error) => News::Failed(error.to_string()),
+        });
+    }
+}
+
+impl Work for GapTask {
+    fn run(self, say: Say<'_, GapReport>) {
+        let (read, keep) = match self {
+            Self::Simulated(input) => (
+                record(&input, &Recorder::default()).map_err(|e| e.to_string()),
+                false,
+            ),
+            Self::File(name, text) => (
+                import_csv(&name, text.as_bytes(), None).map_err(|e| e.to_string()),
+                true,
+            ),
+        };
+        say(match read {
+            Ok(measurement) => News::Report(Box::new(GapReport {
+                estimate: estimate_gap(&measurement).map_err(|e| e.to_string()),
+                measurement: keep.then_some(measurement),
+            })),
+            Err(error) => News::Failed(error),
+        });
+    }
+}
+
+/// Some work, on all cores.
+#[cfg(not(target_arch = "wasm32"))]
+fn advance_step(job: &mut StepJob) -> Progress<StepReport> {
+    job.advance_with(crate::pieces::width(), &mut crate::pieces::run)
+}
+
+#[cfg(target_arch = "wasm32")]
+fn advance_step(job: &mut StepJob) -> Progress<StepReport> {
+    job.advance()
+}
+
+/// One batch on all cores.
+#[cfg(not(target_arch = "wasm32"))]
+fn advance(job: &mut MapJob) -> Tile {
+    use rayon::prelude::*;
+    let outcomes = job
+        .batch()
+        .par_iter()
+        .map(|place| job.outcome(*place))
+        .collect();
+    job.accept(outcomes)
+}
+
+#[cfg(target_arch = "wasm32")]
+fn advance(job: &mut MapJob) -> Tile {
+    job.advance()
+}

@@ -1,0 +1,51 @@
+//! The search as a job of its own, for limits that a user changes.
+
+use super::bench::Hypothesis;
+use super::design::Design;
+use super::limits::Limits;
+use super::{FittedModel, NextExperiment, TRYING};
+use crate::criticism::session::Session;
+use crate::criticism::{CriticismError, Progress};
+use crate::measurement::Measurement;
+use crate::user_model::UserModel;
+
+/// Looks for the experiment again, within other limits.
+pub struct ExperimentJob(Option<Design>);
+
+impl ExperimentJob {
+    /// `models` as an earlier proposal on this measurement named them, `today` likewise; `model` is what the user
+    /// knows.
+    ///
+    /// # Errors
+    /// What a diagnosis of the measurement would say; a model that lacks a parameter.
+    pub fn new(
+        measurement: &Measurement,
+        model: &UserModel,
+        models: &[FittedModel],
+        limits: Limits,
+        today: f64,
+    ) -> Result<Self, CriticismError> {
+        let session = Session::new(measurement, model)?;
+        let models = models
+            .iter()
+            .map(|said| Hypothesis::of(&session, said))
+            .collect::<Result<_, _>>()?;
+        Ok(Self(Design::new(&session, models, limits, today)))
+    }
+
+    /// Does a small piece of work; `None` where the limits leave no room for an experiment.
+    pub fn advance(&mut self) -> Progress<Option<NextExperiment>> {
+        match &mut self.0 {
+            Some(design) => {
+                if design.advance() {
+                    return Progress::Running {
+                        fraction: design.progress(),
+                        text: TRYING.to_owned(),
+                    };
+                }
+                Progress::Done(self.0.take().and_then(Design::finish))
+            }
+            None => Progress::Done(None),
+        }
+    }
+}

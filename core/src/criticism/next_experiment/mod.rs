@@ -1,0 +1,88 @@
+//! Which experiment tells apart what this one could not?
+//!
+//! The models that explain a record equally well are simulated with their fitted parameters under relays, stairs and
+//! sums of sines, within the limits of the user. What one of them does is then explained with the other, *its
+//! parameters fitted anew*: a difference that a parameter could swallow does not count (discrimination between
+//! rival models, Hunter and Reiner 1965; with all parameters projected out, Buzzi-Ferraris and Forzatti 1983). What
+//! is left, in units of the noise, is the separation.
+
+mod bench;
+mod candidates;
+mod design;
+mod job;
+mod limits;
+mod program;
+mod words;
+
+pub(super) use bench::Hypothesis;
+pub(super) use design::Design;
+pub use job::ExperimentJob;
+pub use limits::{LimitError, Limits};
+pub use program::{Controller, Program, Sine};
+
+use serde::{Deserialize, Serialize};
+
+use super::Parameter;
+use crate::effect::EffectId;
+
+/// What is being done, in words.
+pub(super) const TRYING: &str = "Looking for the next experiment";
+
+/// A model that explains the record, fitted to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FittedModel {
+    /// The effect for which others could stand.
+    pub effect: EffectId,
+    /// Every effect on top of the baseline, in order.
+    pub effects: Vec<EffectId>,
+    /// Every parameter with the fit's value.
+    pub parameters: Vec<Parameter>,
+}
+
+/// A program with how well it tells the models apart.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// What drives the experiment.
+    pub program: Program,
+    /// Root mean square of what the wrong model would leave, in noise units: of the pair that is closest.
+    pub separation: f64,
+    /// The program in words.
+    pub text: String,
+}
+
+/// The experiment that tells the members of a class apart.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NextExperiment {
+    /// What it tells apart.
+    pub class: Vec<EffectId>,
+    /// What drives it.
+    pub program: Program,
+    /// Unit of the input.
+    pub input_unit: String,
+    /// Unit of the velocity, or of the output of a process.
+    pub output_unit: String,
+    /// Sampling time, s.
+    pub step: f64,
+    /// Length of record that is enough to tell them apart, s.
+    pub needed: f64,
+    /// Length of record that is advised, s: all other effects are to be judged as well.
+    pub duration: f64,
+    /// Root mean square of what the wrong model would leave, in noise units: of the pair that is closest.
+    pub separation: f64,
+    /// The same of the record at hand.
+    pub today: f64,
+    /// Whether it decides within the limits; else it is only the best that there is.
+    pub sufficient: bool,
+    /// Largest velocity of the drive, or output of the process, that is expected.
+    pub speed: f64,
+    /// Travel of the drive that is expected, rad or m; 0 for a process.
+    pub travel: f64,
+    /// What it keeps to.
+    pub limits: Limits,
+    /// The best of the other kinds, best first.
+    pub others: Vec<Trial>,
+    /// The models that it tells apart, in the order of `class`.
+    pub models: Vec<FittedModel>,
+    /// In words with numbers.
+    pub text: String,
+}

@@ -1,0 +1,281 @@
+//! What may drive an experiment: relays, levels in turn, sums of sines.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+use serde::{Deserialize, Serialize};
+
+/// One sine of a sum, `amplitude sin(2 pi frequency t + phase)`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sine {
+    /// In the unit of the input.
+    pub amplitude: f64,
+    /// Hz.
+    pub frequency: f64,
+    /// rad.
+    pub phase: f64,
+}
+
+/// An input, as a controller would make it sample by sample.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum Program {
+    /// A relay on the velocity of a drive or the output of a process, `u = -k h`.
+    Relay {
+        /// Gains k in the unit of the input, in turn; at least one, each above 0.
+        gains: Vec<f64>,
+        /// How long each gain holds, s; without meaning where there is one.
+        hold: f64,
+        /// Hysteresis, in the unit of what it switches on; at least 0.
+        hysteresis: f64,
+        /// Asymmetry a: the levels are `k (1 + a)` and `-k (1 - a)`.
+        asymmetry: f64,
+    },
+    /// Levels one after the other, over and over.
+    Levels {
+        /// In the unit of the input.
+        levels: Vec<f64>,
+        /// How long each holds, s.
+        hold: f64,
+    },
+    /// A sum of sines.
+    Multisine {
+        /// From low to high.
+        sines: Vec<Sine>,
+    },
+}
+
+/// What kind of program it is: of each kind one is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    Relay,
+    AsymmetricRelay,
+    ChangingRelay,
+    Levels,
+    TwoLevels,
+    Multisine,
+}
+
+impl Program {
+    pub(super) fn shape(&self) -> Shape {
+        match self {
+            Self::Relay { gains, .. } if gains.len() > 1 => Shape::ChangingRelay,
+            Self::Relay { asymmetry, .. } if *asymmetry != 0.0 => Shape::AsymmetricRelay,
+            Self::Relay { .. } => Shape::Relay,
+            Self::Levels { levels, .. } if levels.iter().all(|u| u.abs() == levels[0].abs()) => {
+                Shape::TwoLevels
+            }
+            Self::Levels { .. } => Shape::Levels,
+            Self::Multisine { .. } => Shape::Multisine,
+        }
+    }
+
+    /// The controller, before its first sample.
+    pub fn controller(&self) -> Controller<'_> {
+        Controller {
+            program: self,
+            high: false,
+        }
+    }
+
+    /// Time after which it has shown all that it does, s; 0 where that depends on the plant.
+    pub fn cycle(&self) -> f64 {
+        match self {
+            Self::Relay { gains, hold, .. } if gains.len() > 1 => hold * gains.len() as f64,
+            Self::Relay { .. } => 0.0,
+            Self::Levels { levels, hold } => hold * levels.len() as f64,
+            Self::Multisine { sines } => {
+                sines.iter().map(|s| 1.0 / s.frequency).fold(0.0, f64::max)
+            }
+        }
+    }
+
+    /// The same with every size of the input multiplied by `factor`.
+    #[must_use]
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        match &mut scaled {
+            Self::Relay { gains, .. } => gains.iter_mut().for_each(|k| *k *= factor),
+            Self::Levels { levels, .. } => levels.iter_mut().for_each(|u| *u *= factor),
+            Self::Multisine { sines } => sines.iter_mut().for_each(|s| s.amplitude *= factor),
+        }
+        scaled
+    }
+
+    /// In words with numbers: `a relay with gain 0.5 N m and hysteresis 0.6 rad/s`. `input` and `output` are the
+    /// units.
+    pub fn words(&self, input: &str, output: &str) -> String {
+        let with = |value: f64, unit: &str| {
+            if unit == "1" {
+                short(value)
+            } else {
+                format!("{} {unit}", short(value))
+            }
+        };
+        match self {
+            Self::Relay {
+                gains,
+                hold,
+                hysteresis,
+                asymmetry,
+            } => {
+                let hysteresis = with(*hysteresis, output);
+                let mut text = match gains.as_slice() {
+                    [gain] => format!("a relay with gain {}", with(*gain, input)),
+                    _ => format!(
+                        "a relay whose gain changes every {} s: {}",
+                        short(*hold),
+                        list(gains, input)
+                    ),
+                };
+                if *asymmetry != 0.0 {
+                    let _ = write!(text, ", asymmetry {}", short(*asymmetry));
+                }
+                text + &format!(", hysteresis {hysteresis}")
+            }
+            Self::Levels { levels, hold } => {
+                let kind = match self.shape() {
+                    Shape::TwoLevels => "two levels in a random order",
+                    _ => "a staircase",
+                };
+                let shown: &[f64] = match self.shape() {
+                    Shape::TwoLevels => &[levels[0].abs(), -levels[0].abs()],
+                    _ => levels,
+                };
+                format!(
+                    "{kind}, each step {} s long: {}",
+                    short(*hold),
+                    list(shown, input)
+                )
+            }
+            Self::Multisine { sines } => {
+                let ends = sines.first().zip(sines.last());
+                let (low, high) = ends.map_or((0.0, 0.0), |(a, b)| (a.frequency, b.frequency));
+                let size = sines.first().map_or(0.0, |s| s.amplitude);
+                format!(
+                    "a sum of {} sines from {} to {} Hz, {} each",
+                    sines.len(),
+                    short(low),
+                    short(high),
+                    with(size, input)
+                )
+            }
+        }
+    }
+}
+
+/// Values with their unit at the end.
+fn list(values: &[f64], unit: &str) -> String {
+    let numbers: Vec<String> = values.iter().map(|v| short(*v)).collect();
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    format!("{}{unit}", numbers.join(", "))
+}
+
+/// A number with three digits that count.
+pub(super) fn short(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    if !(1e-4..1e5).contains(&size) {
+        return format!("{value:.2e}");
+    }
+    let digits = (2 - size.log10().floor() as i32).clamp(0, 7) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A program under way.
+#[derive(Clone, Debug)]
+pub struct Controller<'a> {
+    program: &'a Program,
+    high: bool,
+}
+
+impl Controller<'_> {
+    /// Input at `time` (s) where the velocity, or the output of a process, is `seen`.
+    pub fn command(&mut self, time: f64, seen: f64) -> f64 {
+        // A sample on the edge of a step belongs to the new one, whatever the rounding.
+        let turn = |hold: f64| (time / hold + 1e-9) as usize;
+        match self.program {
+            Program::Relay {
+                gains,
+                hold,
+                hysteresis,
+                asymmetry,
+            } => {
+                if seen > *hysteresis {
+                    self.high = true;
+                } else if seen < -*hysteresis {
+                    self.high = false;
+                }
+                let gain = match gains.as_slice() {
+                    [gain] => *gain,
+                    [] => 0.0,
+                    gains => gains[turn(*hold) % gains.len()],
+                };
+                if self.high {
+                    -gain * (1.0 - asymmetry)
+                } else {
+                    gain * (1.0 + asymmetry)
+                }
+            }
+            Program::Levels { levels, hold } => {
+                if levels.is_empty() {
+                    return 0.0;
+                }
+                levels[turn(*hold) % levels.len()]
+            }
+            Program::Multisine { sines } => sines
+                .iter()
+                .map(|s| s.amplitude * (TAU * s.frequency * time + s.phase).sin())
+                .sum(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_three_digits_that_count() {
+        for (value, text) in [
+            (0.5, "0.5"),
+            (0.065, "0.065"),
+            (1234.5, "1234"),
+            (0.123_456, "0.123"),
+            (-3.0, "-3"),
+            (2e-5, "2.00e-5"),
+            (20.0, "20"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+    }
+
+    #[test]
+    fn a_relay_switches_at_its_hysteresis_and_changes_its_gain() {
+        let program = Program::Relay {
+            gains: vec![1.0, 0.5],
+            hold: 2.0,
+            hysteresis: 0.1,
+            asymmetry: 0.0,
+        };
+        let mut relay = program.controller();
+        let seen = [0.0, 0.2, 0.05, -0.2, 0.0];
+        let commands: Vec<f64> = seen
+            .iter()
+            .enumerate()
+            .map(|(i, y)| relay.command(i as f64, *y))
+            .collect();
+        assert_eq!(commands, [1.0, -1.0, -0.5, 0.5, 1.0]);
+    }
+}

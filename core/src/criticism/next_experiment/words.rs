@@ -1,0 +1,58 @@
+//! The proposal in words.
+
+use super::NextExperiment;
+use super::program::short;
+use crate::effect::{self, Effect, EffectId};
+
+/// Separation below which two models do the same for all that can be computed.
+const THE_SAME: f64 = 1e-3;
+
+fn name(id: EffectId) -> &'static str {
+    effect::find(id).map_or(id.as_str(), Effect::name)
+}
+
+/// Times the noise, with as many digits as count.
+pub(super) fn times(separation: f64) -> String {
+    if separation < 0.01 {
+        "less than 0.01".to_owned()
+    } else {
+        short(separation)
+    }
+}
+
+/// What to do and what to expect.
+pub(super) fn text(proposal: &NextExperiment) -> String {
+    let names: Vec<&str> = proposal.class.iter().map(|id| name(*id)).collect();
+    let names = names.join(" and ");
+    let program = proposal
+        .program
+        .words(&proposal.input_unit, &proposal.output_unit);
+    if proposal.separation < THE_SAME {
+        return format!(
+            "{names} do the same to what is measured here, whatever the input: no relay and no other excitation within \
+             the limits tells them apart. Measure another quantity, or what is between."
+        );
+    }
+    if !proposal.sufficient {
+        return format!(
+            "No experiment within the limits tells {names} apart. The best of those tried is {program}: the wrong one \
+             would leave only {} times the noise. A larger input or a longer record would help.",
+            times(proposal.separation)
+        );
+    }
+    let enough = if proposal.needed < proposal.duration {
+        format!(
+            " {} s are enough for this; {} s let all other effects be judged as well.",
+            short(proposal.needed),
+            short(proposal.duration)
+        )
+    } else {
+        format!(" Measure for {} s.", short(proposal.duration))
+    };
+    format!(
+        "To tell {names} apart, measure again with {program}. The wrong one would then leave {} times the noise; in this \
+         record it leaves {}.{enough}",
+        times(proposal.separation),
+        times(proposal.today),
+    )
+}

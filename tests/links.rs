@@ -1,0 +1,283 @@
+//! The whole state in a link: what is on the screen goes into a text and comes back from it, and nothing else
+//! comes from any other text.
+
+#[path = "support/ui.rs"]
+mod ui;
+
+use egui_kittest::kittest::Queryable as _;
+use hysteron::{HysteronApp, link};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+use ui::{WIDE, app, click, finish, picture, state, type_over};
+
+/// Opens a link in an app of its own and gives the link to what is there then.
+fn through(text: &str) -> Result<String, String> {
+    let mut app = HysteronApp::default();
+    app.open_link(&egui::Context::default(), text)?;
+    Ok(app.link())
+}
+
+#[test]
+fn untouched_pages_have_the_shortest_links() {
+    for id in HysteronApp::default().page_ids() {
+        assert_eq!(HysteronApp::at(id).link(), format!("v1;{id}"));
+    }
+}
+
+#[test]
+fn a_link_reads_like_what_it_sets() {
+    let text = "v1;explore;loop.plant.denominator=3,1;loop.plant.dead_time=0.5;loop.relay.gain=2;explore.margin=true";
+    let mut app = HysteronApp::default();
+    let ctx = egui::Context::default();
+    app.open_link(&ctx, &format!("https://example.org/lab/#{text}"))
+        .expect("a link");
+    assert_eq!(app.hook_state()["page"], "explore");
+    let written = app.link();
+    let mut parts: Vec<&str> = written.split(';').collect();
+    let mut expected: Vec<&str> = text.split(';').collect();
+    parts.sort_unstable();
+    expected.sort_unstable();
+    assert_eq!(parts, expected);
+}
+
+#[test]
+fn what_was_set_by_hand_comes_back_in_another_window() {
+    let mut here = app("explore", WIDE);
+    type_over(&mut here, "P(s) =", "2 e^{-0.5s}/(3s+1)");
+    click(&mut here, "phase-margin point S");
+    click(&mut here, "Pause");
+    let copied = state(&here)["link"].as_str().expect("a link").to_owned();
+    assert!(copied.len() < 200, "{copied}");
+    let mut there = app("compare", WIDE);
+    let ctx = there.ctx.clone();
+    there
+        .state_mut()
+        .open_link(&ctx, &copied)
+        .expect("a link of ours");
+    finish(&mut there);
+    for key in [
+        "page",
+        "link",
+        "loop",
+        "answer",
+        "exact",
+        "describing_function",
+    ] {
+        assert_eq!(state(&there)[key], state(&here)[key], "{key}");
+    }
+}
+
+#[test]
+fn a_link_diagnoses_a_measurement_with_its_effects() {
+    let mut there = app("explore", WIDE);
+    let ctx = there.ctx.clone();
+    let text = "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02";
+    there.state_mut().open_link(&ctx, text).expect("a link");
+    finish(&mut there);
+    let shown = state(&there);
+    assert_eq!(shown["file"], "drive-02");
+    assert!(shown["error"].as_f64().expect("an error") < 1.2, "{shown}");
+    assert_eq!(shown["link"], text);
+}
+
+#[test]
+fn a_link_opens_a_measured_drifting_test_and_back() {
+    let mut there = app("explore", WIDE);
+    let ctx = there.ctx.clone();
+    let text = "v1;backlash;backlash.file=drive-10;backlash.paused=1.5";
+    there.state_mut().open_link(&ctx, text).expect("a link");
+    finish(&mut there);
+    assert_eq!(state(&there)["file"], "drive-10");
+    assert_eq!(state(&there)["clock"], 1.5);
+    assert_eq!(state(&there)["link"], text);
+    there
+        .state_mut()
+        .open_link(&ctx, "v1;backlash")
+        .expect("a link");
+    finish(&mut there);
+    assert_eq!(state(&there)["file"], Value::Null);
+    assert_eq!(state(&there)["direction"], "against");
+}
+
+#[test]
+fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
+    let mut harness = app("explore", WIDE);
+    type_over(&mut harness, "P(s) =", "1/(s+1)^4");
+    click(&mut harness, "Pause");
+    click(&mut harness, "From the start");
+    let before = state(&harness)["link"].clone();
+    let ctx = harness.ctx.clone();
+    for (text, reason) in [
+        ("", "no link to Hysteron"),
+        ("<script>alert(1)</script>", "no link to Hysteron"),
+        ("v2;explore", "version v2"),
+        ("v1;nowhere", "a page that does not exist"),
+        ("v1;explore;loop.relay.gian=2", "loop.relay.gian"),
+        ("v1;explore;loop.relay.gain=-2", "gain"),
+        ("v1;explore;loop.relay.gain=1e999", "cannot be read"),
+        ("v1;explore;loop.relay.gain=fast", "cannot be read"),
+        ("v1;explore;loop.relay=1", "cannot be read"),
+        ("v1;explore;loop.relay.gain", "without a value"),
+        ("v1;explore;loop.relay.gain=%F", "bad value"),
+        ("v1;explore;loop.plant.denominator=%5B1%5D", "order"),
+        ("v1;explore;explore.figure=77", "no figure 77"),
+        ("v1;backlash;backlash.run.duration=1e9", "120 s"),
+        ("v1;backlash;backlash.run.drive.half_gap=-1", "half_gap"),
+        ("v1;compare;compare.file=passwords.csv", "passwords.csv"),
+        (
+            "v1;compare;compare.file=drive-02;compare.effects=%5B%22magic%22%5D",
+            "does not exist",
+        ),
+        ("v1;tune;tune.rule=luck", "rule"),
+        ("v1;maps;maps.across.from=9", "must be the larger"),
+    ] {
+        let refused = harness
+            .state_mut()
+            .open_link(&ctx, text)
+            .expect_err("this is no state of the app");
+        assert!(refused.contains(reason), "{text}: {refused}");
+        assert_eq!(refused.lines().count(), 1, "{refused}");
+        assert!(refused.len() < 240, "{refused}");
+        assert_eq!(state(&harness)["notice"], refused);
+        assert_eq!(state(&harness)["link"], before, "{text}");
+    }
+    let long = format!("v1;explore;loop.relay.gain={}", "1".repeat(20_000));
+    assert!(through(&long).is_err_and(|e| e.contains("too long")));
+    harness.step();
+    harness.step();
+    picture(&mut harness, "link_refused");
+    click(&mut harness, "Dismiss");
+    assert_eq!(state(&harness)["notice"], Value::Null);
+}
+
+#[test]
+fn the_button_copies_the_link_to_what_is_on_the_screen() {
+    let mut harness = app("tune", WIDE);
+    finish(&mut harness);
+    click(&mut harness, "2 Ultimate gain");
+    harness.get_by_label("Copy link").click();
+    let copied = (0..4).find_map(|_| {
+        harness.step();
+        let commands = &harness.output().platform_output.commands;
+        commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        })
+    });
+    assert_eq!(copied.as_deref(), Some("#v1;tune;tune.step=ultimate"));
+}
+
+/// A number as it may stand in a setting, of any size.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        prop::num::f64::NORMAL,
+        (-1000_i32..1000).prop_map(f64::from),
+        (-1000_i32..1000).prop_map(|n| f64::from(n) / 100.0),
+        Just(-0.0),
+        Just(5e-324),
+        Just(f64::MAX),
+    ]
+}
+
+/// Any setting: numbers, words, lists, what is missing, and things within things.
+fn setting() -> impl Strategy<Value = Value> {
+    let leaf = prop_oneof![
+        number().prop_map(|v| json!(v)),
+        any::<u64>().prop_map(|v| json!(v)),
+        any::<i64>().prop_map(|v| json!(v)),
+        any::<bool>().prop_map(|v| json!(v)),
+        any::<String>().prop_map(|v| json!(v)),
+        "[0-9eE.,+-]{0,6}".prop_map(|v| json!(v)),
+        Just(Value::Null),
+        prop::collection::vec(number(), 0..5).prop_map(|v| json!(v)),
+        prop::collection::vec(any::<String>(), 0..3).prop_map(|v| json!(v)),
+    ];
+    leaf.prop_recursive(3, 24, 4, |inner| {
+        prop::collection::btree_map("[a-z_]{1,6}", inner, 0..4).prop_map(|m| json!(m))
+    })
+}
+
+/// The same numbers, whether written as whole or not: a setting of a number does not care.
+fn same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => a == b || a.as_f64() == b.as_f64(),
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
+        }
+        (Value::Object(a), Value::Object(b)) => {
+            a.len() == b.len() && a.iter().all(|(k, v)| b.get(k).is_some_and(|w| same(v, w)))
+        }
+        _ => a == b,
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_settings_survive_the_way_through_a_link(
+        settings in prop::collection::btree_map("[a-z_]{1,6}", setting(), 1..5),
+        other in setting(),
+    ) {
+        // The defaults have the same names with other values, or with the same.
+        let defaults: Value = settings
+            .iter()
+            .enumerate()
+            .map(|(i, (k, v))| (k.clone(), if i % 2 == 0 { other.clone() } else { v.clone() }))
+            .collect();
+        let settings = json!(settings);
+        let text = link::write("page", &settings, &defaults);
+        prop_assume!(text.len() <= link::LONGEST);
+        prop_assert!(text.bytes().all(|b| b.is_ascii_graphic() && b != b'#' && b != b'"'));
+        let (page, read) = link::read(&text, &defaults).expect("what was written");
+        prop_assert_eq!(page, "page");
+        prop_assert!(same(&read, &settings), "{} became {} through {}", settings, read, text);
+    }
+
+    #[test]
+    fn any_loop_comes_back_to_the_last_bit(
+        gain in 1e-3_f64..1e3,
+        hysteresis in 0.0_f64..10.0,
+        asymmetry in -0.9_f64..0.9,
+        delay in 0.0_f64..5.0,
+        poles in prop::collection::vec(0.01_f64..10.0, 2..6),
+        seed in any::<u64>(),
+        margin in any::<bool>(),
+    ) {
+        let list: Vec<String> = poles.iter().map(ToString::to_string).collect();
+        let text = format!(
+            "v1;explore;explore.margin={margin};loop.relay.gain={gain};loop.relay.hysteresis={hysteresis};\
+             loop.relay.asymmetry={asymmetry};loop.relay.delay={delay};loop.plant.denominator={};\
+             loop.noise=%7B%22std_dev%22:0.01,%22interval%22:0.02,%22seed%22:{seed}%7D",
+            list.join(",")
+        );
+        let once = through(&text).expect("a loop that can be");
+        for (key, value) in [("gain", gain), ("hysteresis", hysteresis), ("asymmetry", asymmetry), ("delay", delay)] {
+            let part = format!("loop.relay.{key}=");
+            let found = once.split(';').find_map(|p| p.strip_prefix(&part));
+            let read: f64 = found.expect("it differs from the default").parse().expect("a number");
+            prop_assert_eq!(read.to_bits(), value.to_bits());
+        }
+        prop_assert!(once.contains(&seed.to_string()));
+        prop_assert_eq!(through(&once).expect("a link of ours"), once);
+    }
+
+    #[test]
+    fn no_text_makes_it_panic(text in any::<String>(), bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let _ = through(&text);
+        let _ = through(&format!("v1;explore;{text}"));
+        let _ = through(&format!("v1;backlash;backlash.{text}"));
+        let _ = through(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn no_value_makes_it_panic(value in setting(), which in 0_usize..8) {
+        let path = [
+            "loop", "loop.relay.gain", "loop.noise", "loop.plant", "maps.across", "backlash.run",
+            "compare.effects", "tune.step",
+        ][which];
+        for page in HysteronApp::default().page_ids() {
+            let settings = json!({"x": value});
+            let text = link::write(page, &settings, &json!({"x": "nothing"}));
+            let _ = through(&text.replace(";x=", &format!(";{path}=")));
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! What one experiment cannot tell apart, the proposed one does: it is carried out on a rig of other physics, and
+//! then only the truth is left.
+
+#![allow(
+    clippy::large_types_passed_by_value,
+    reason = "definitions of rigs are plain values"
+)]
+
+#[path = "support/drive_rig.rs"]
+#[allow(dead_code)]
+mod drive_rig;
+#[path = "support/process_rig.rs"]
+#[allow(dead_code)]
+mod process_rig;
+#[path = "support/random.rs"]
+#[allow(dead_code)]
+mod random;
+
+use drive_rig::{DriveRig, SAMPLING, relay};
+use hysteron_core::criticism::{
+    CriticismError, Diagnosis, DiagnosisJob, ExperimentJob, Limits, NextExperiment, Program,
+    Progress,
+};
+use hysteron_core::measurement::Measurement;
+use hysteron_core::user_model::UserModel;
+use process_rig::ProcessRig;
+
+/// These two act alike where the input has two opposite levels.
+const OFFSET: [&str; 2] = ["gain_asymmetry", "constant_load"];
+
+fn diagnose(measurement: &Measurement, limits: Limits) -> Diagnosis {
+    let mut job = DiagnosisJob::new(measurement).unwrap().within(limits);
+    loop {
+        if let Progress::Done(diagnosis) = job.advance() {
+            return diagnosis;
+        }
+    }
+}
+
+fn classes(diagnosis: &Diagnosis) -> Vec<Vec<&str>> {
+    let missing = diagnosis.verdict.missing.iter();
+    missing
+        .map(|class| class.iter().map(|e| e.as_str()).collect())
+        .collect()
+}
+
+/// The only proposal, after a check that the record cannot tell the class.
+fn proposal(measurement: &Measurement, limits: Limits, class: &[&str]) -> NextExperiment {
+    let first = diagnose(measurement, limits);
+    assert_eq!(classes(&first), [class], "{}", first.verdict.text);
+    let [proposal] = first.verdict.experiments.as_slice() else {
+        panic!("one proposal: {:?}", first.verdict);
+    };
+    assert_eq!(
+        first.verdict.next_experiment.as_ref(),
+        Some(&proposal.text),
+        "in words"
+    );
+    proposal.clone()
+}
+
+/// What a person at the rig sets.
+fn on_the_drive(rig: DriveRig, proposal: &NextExperiment) -> DriveRig {
+    let excitation = match &proposal.program {
+        Program::Relay {
+            gains,
+            hold,
+            hysteresis,
+            ..
+        } => drive_rig::Excitation::TwoGains {
+            gains: gains.as_slice().try_into().expect("two gains"),
+            hold: *hold,
+            hysteresis: *hysteresis,
+        },
+        Program::Levels { levels, hold } => drive_rig::Excitation::Levels {
+            levels: levels.as_slice().try_into().expect("sixteen levels"),
+            hold: *hold,
+        },
+        Program::Multisine { .. } => panic!("no sines at this rig: {}", proposal.text),
+    };
+    DriveRig {
+        seed: rig.seed + 1000,
+        excitation,
+        samples: (proposal.duration / SAMPLING).round() as usize,
+        ..rig
+    }
+}
+
+fn on_the_process(rig: ProcessRig, proposal: &NextExperiment) -> ProcessRig {
+    let excitation = match &proposal.program {
+        Program::Relay {
+            gains,
+            hold,
+            hysteresis,
+            ..
+        } => process_rig::Excitation::TwoGains {
+            gains: gains.as_slice().try_into().expect("two gains"),
+            hold: *hold,
+            hysteresis: *hysteresis,
+        },
+        Program::Levels { levels, hold } => process_rig::Excitation::Levels {
+            levels: levels.as_slice().try_into().expect("sixteen levels"),
+            hold: *hold,
+        },
+        Program::Multisine { .. } => panic!("no sines at this rig: {}", proposal.text),
+    };
+    ProcessRig {
+        seed: rig.seed + 1000,
+        excitation,
+        samples: (proposal.duration / process_rig::SAMPLING).round() as usize,
+        ..rig
+    }
+}
+
+/// Diagnoses the new record: only the truth is left, with its value.
+fn check_truth(measurement: &Measurement, truth: &str, value: f64) {
+    let second = diagnose(measurement, Limits::of(measurement));
+    assert_eq!(classes(&second), [[truth]], "{}", second.verdict.text);
+    assert!(second.verdict.complete, "{}", second.verdict.text);
+    assert!(second.verdict.experiments.is_empty() && second.verdict.next_experiment.is_none());
+    let last = second.steps.last().unwrap();
+    let own =
+        |p: &&hysteron_core::criticism::Parameter| p.effect.is_some_and(|e| e.as_str() == truth);
+    let found = last.parameters.iter().find(own).unwrap().value;
+    assert!((found / value - 1.0).abs() < 0.05, "{found} for {value}");
+}
+
+fn check_drive(rig: DriveRig, class: &[&str], truth: &str, value: f64) {
+    let record = rig.measure();
+    let proposal = proposal(&record, Limits::of(&record), class);
+    assert!(proposal.sufficient, "{}", proposal.text);
+    assert!(
+        proposal.separation > 5.0 * proposal.today,
+        "{}",
+        proposal.text
+    );
+    check_truth(&on_the_drive(rig, &proposal).measure(), truth, value);
+}
+
+fn check_process(rig: ProcessRig, class: &[&str], truth: &str, value: f64) {
+    let record = rig.measure();
+    let proposal = proposal(&record, Limits::of(&record), class);
+    assert!(proposal.sufficient, "{}", proposal.text);
+    assert!(
+        proposal.separation > 5.0 * proposal.today,
+        "{}",
+        proposal.text
+    );
+    check_truth(&on_the_process(rig, &proposal).measure(), truth, value);
+}
+
+#[test]
+fn gain_asymmetry_of_a_drive_is_told_from_a_constant_load() {
+    let rig = DriveRig {
+        seed: 71,
+        gain_asymmetry: 0.06,
+        excitation: relay(0.0),
+        ..DriveRig::default()
+    };
+    check_drive(rig, &OFFSET, "gain_asymmetry", 0.06);
+}
+
+#[test]
+fn a_constant_load_on_a_drive_is_told_from_gain_asymmetry() {
+    let rig = DriveRig {
+        seed: 72,
+        constant_load: 0.03,
+        excitation: relay(0.0),
+        ..DriveRig::default()
+    };
+    check_drive(rig, &OFFSET, "constant_load", 0.03);
+}
+
+const BINARY: process_rig::Excitation = process_rig::Excitation::Binary { level: 1.0 };
+
+#[test]
+fn gain_asymmetry_of_a_process_is_told_from_a_constant_load() {
+    let rig = ProcessRig {
+        seed: 73,
+        gain_asymmetry: 0.1,
+        excitation: BINARY,
+        ..ProcessRig::default()
+    };
+    check_process(rig, &OFFSET, "gain_asymmetry", 0.1);
+}
+
+#[test]
+fn a_constant_load_on_a_process_is_told_from_gain_asymmetry() {
+    let rig = ProcessRig {
+        seed: 74,
+        constant_load: 0.1,
+        excitation: BINARY,
+        ..ProcessRig::default()
+    };
+    check_process(rig, &OFFSET, "constant_load", 0.1);
+}
+
+/// A lag before a linear process and one behind it commute: no input can tell them.
+#[test]
+fn what_no_input_can_tell_is_said_so() {
+    let rig = ProcessRig {
+        seed: 75,
+        sensor_lag: 4.0,
+        excitation: BINARY,
+        ..ProcessRig::default()
+    };
+    let record = rig.measure();
+    let proposal = proposal(&record, Limits::of(&record), &["second_lag", "sensor_lag"]);
+    assert!(!proposal.sufficient && proposal.separation < 1e-3);
+    assert!(
+        proposal.text.contains("Measure another quantity"),
+        "{}",
+        proposal.text
+    );
+}
+
+/// The limits of the user hold for input, speed and length, and tight ones are named as what stands in the way.
+#[test]
+fn an_experiment_keeps_to_the_limits() {
+    let rig = ProcessRig {
+        seed: 76,
+        gain_asymmetry: 0.1,
+        excitation: BINARY,
+        ..ProcessRig::default()
+    };
+    let record = rig.measure();
+    let mut limits = Limits::of(&record);
+    limits.set("input=0.5, speed=0.8").unwrap();
+    let first = proposal(&record, limits, &OFFSET);
+    let largest = match &first.program {
+        Program::Relay {
+            gains, asymmetry, ..
+        } => gains
+            .iter()
+            .fold(0.0_f64, |m, k| m.max(k * (1.0 + asymmetry))),
+        Program::Levels { levels, .. } => levels.iter().fold(0.0_f64, |m, u| m.max(u.abs())),
+        Program::Multisine { sines } => sines.iter().map(|s| s.amplitude).sum(),
+    };
+    assert!(largest <= 0.5, "{}", first.text);
+    assert!(
+        first.speed <= 0.8 && first.duration <= limits.duration,
+        "{first:?}"
+    );
+    assert!(first.sufficient, "{}", first.text);
+    // Asked again with hardly any input, by the models that the proposal names.
+    limits.set("input=0.01, speed=none").unwrap();
+    let blank = UserModel::blank(record.kind);
+    let again = |models: &[_]| ExperimentJob::new(&record, &blank, models, limits, first.today);
+    let mut job = again(&first.models).unwrap();
+    let faint = loop {
+        if let Progress::Done(found) = job.advance() {
+            break found.expect("an experiment");
+        }
+    };
+    assert!(!faint.sufficient, "{}", faint.text);
+    assert!(faint.text.contains("larger input"), "{}", faint.text);
+    let mut poor = first.models.clone();
+    poor[0].parameters.clear();
+    let error = again(&poor).err();
+    assert!(matches!(error, Some(CriticismError::NoValue { .. })));
+}
+
+#[test]
+fn limits_are_read_and_wrong_ones_are_refused_with_what_would_be_right() {
+    let record = DriveRig {
+        samples: 500,
+        ..DriveRig::default()
+    }
+    .measure();
+    let mut limits = Limits::of(&record);
+    assert!((limits.step - SAMPLING).abs() < 1e-12 && (limits.input - 0.55).abs() < 1e-12);
+    limits.set("duration=2, speed = none").unwrap();
+    assert_eq!((limits.duration, limits.speed), (2.0, None));
+    for (text, expected) in [
+        ("duration", "NAME=VALUE"),
+        ("input=-1", "a number above 0"),
+        ("speed=fast", "a number above 0, or none"),
+        ("colour=3", "one of input, duration"),
+    ] {
+        let error = limits.set(text).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}

@@ -1,0 +1,247 @@
+//! What holds for every page: the first minute, undo, keys, looks, and taking up where one left.
+
+#[path = "support/ui.rs"]
+mod ui;
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use hysteron::HysteronApp;
+use ui::{App, NARROW, WIDE, app, click, finish, picture, state, type_over};
+
+fn press(harness: &mut App, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    finish(harness);
+}
+
+/// Gain of the relay of the loop that the pages share.
+fn hysteresis(harness: &App) -> f64 {
+    let value = state(harness)["explore"]["loop"]["relay"]["hysteresis"].as_f64();
+    value.expect("a hysteresis")
+}
+
+#[test]
+fn the_first_minute_shows_a_running_loop_a_question_and_three_doors() {
+    let ids = HysteronApp::default().page_ids();
+    assert_eq!(ids.first(), Some(&"start"), "it opens there");
+    let mut harness = app("start", WIDE);
+    harness.step();
+    let before = state(&harness)["clock"].as_f64().expect("a clock");
+    for _ in 0..10 {
+        harness.step();
+    }
+    let after = state(&harness)["clock"].as_f64().expect("a clock");
+    assert!(after > before, "the loop runs: {before} {after}");
+    harness.get_by_label("Why does a thermostat never come to rest?");
+    harness.get_by_label_contains("It oscillates: period 4.788 s");
+    harness.get_by_label("Pause").click();
+    harness.step();
+    let ctx = harness.ctx.clone();
+    let still = harness
+        .state_mut()
+        .open_link(&ctx, "v1;start;start.paused=20");
+    still.expect("a place to stand still");
+    harness.step();
+    harness.step();
+    picture(&mut harness, "start");
+    for (door, page) in [
+        ("Open Explore", "explore"),
+        ("Open Backlash", "backlash"),
+        ("Open Compare", "compare"),
+        ("Tune a controller from one experiment", "tune"),
+        ("Maps of period and amplitude", "maps"),
+        ("Lessons of ten minutes", "lessons"),
+    ] {
+        let mut harness = app("start", WIDE);
+        harness.get_by_label(door).click();
+        harness.step();
+        harness.step();
+        assert_eq!(state(&harness)["page"], page);
+    }
+}
+
+#[test]
+fn every_page_stands_in_a_phone_s_window_and_is_reached_by_its_menu() {
+    let pages = [
+        ("start", "Menu: Start"),
+        ("lessons", "Menu: Lessons"),
+        ("explore", "Menu: Explore"),
+    ];
+    for (page, menu) in pages {
+        let mut harness = app(page, [390.0, 844.0]);
+        press(&mut harness, Modifiers::NONE, Key::P);
+        harness.get_by_label(menu).click();
+        harness.step();
+        harness.step();
+        harness.get_by_label("Tune").click();
+        harness.step();
+        harness.step();
+        assert_eq!(state(&harness)["page"], "tune");
+    }
+    let mut harness = app("start", NARROW);
+    let ctx = harness.ctx.clone();
+    let still = harness
+        .state_mut()
+        .open_link(&ctx, "v1;start;start.paused=20");
+    still.expect("a place to stand still");
+    harness.step();
+    harness.step();
+    picture(&mut harness, "start_narrow");
+}
+
+#[test]
+fn what_was_changed_is_taken_back_and_done_again() {
+    let mut harness = app("explore", WIDE);
+    finish(&mut harness);
+    let first = state(&harness)["link"].clone();
+    type_over(&mut harness, "P(s) =", "1/(s+1)^4");
+    let plant = state(&harness)["link"].clone();
+    assert_ne!(plant, first);
+    // The text field keeps its keys, among them its own undo, until it is left.
+    harness.get_by_label("Pause").click();
+    finish(&mut harness);
+    let paused = state(&harness)["link"].clone();
+    click(&mut harness, "Undo");
+    assert_ne!(state(&harness)["link"], paused);
+    press(&mut harness, Modifiers::COMMAND, Key::Y);
+    assert_eq!(state(&harness)["link"], paused);
+    for _ in 0..8 {
+        press(&mut harness, Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(state(&harness)["link"], first, "all is as it was");
+    assert!((hysteresis(&harness) - 0.1).abs() < 1e-12);
+    press(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_ne!(state(&harness)["link"], first);
+}
+
+#[test]
+fn undo_takes_back_an_effect_and_shows_the_stored_result() {
+    let mut harness = app("compare", WIDE);
+    click(&mut harness, "Open drive-02");
+    let before = state(&harness)["error"].clone();
+    click(&mut harness, "Add Coulomb friction");
+    assert_ne!(state(&harness)["error"], before);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(state(&harness)["error"], before);
+    press(&mut harness, Modifiers::COMMAND, Key::Y);
+    assert_eq!(state(&harness)["effects"][1], "coulomb_friction");
+}
+
+#[test]
+fn keys_do_what_the_sheet_says() {
+    let mut harness = app("start", WIDE);
+    press(&mut harness, Modifiers::NONE, Key::Num3);
+    assert_eq!(state(&harness)["page"], "explore");
+    press(&mut harness, Modifiers::NONE, Key::P);
+    let paused = state(&harness)["link"].as_str().expect("a link").to_owned();
+    assert!(paused.contains("explore.paused="), "{paused}");
+    press(&mut harness, Modifiers::NONE, Key::R);
+    assert_eq!(state(&harness)["link"], "v1;explore");
+    press(&mut harness, Modifiers::NONE, Key::L);
+    assert!(state(&harness)["notice"].is_string());
+    press(&mut harness, Modifiers::NONE, Key::F1);
+    harness.get_by_label("Take back the last change");
+    press(&mut harness, Modifiers::NONE, Key::P);
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(
+        harness
+            .query_by_label("Take back the last change")
+            .is_none()
+    );
+    // In a text field the same keys are letters.
+    type_over(&mut harness, "P(s) =", "1/(s+1)^3");
+    press(&mut harness, Modifiers::NONE, Key::Num1);
+    assert_eq!(state(&harness)["page"], "explore");
+}
+
+#[test]
+fn the_sheet_of_keys_is_drawn() {
+    let mut harness = app("lessons", WIDE);
+    click(&mut harness, "Keys");
+    picture(&mut harness, "keys");
+}
+
+#[test]
+fn a_pasted_link_is_opened() {
+    let mut harness = app("start", WIDE);
+    harness.event(egui::Event::Paste(
+        "https://example.org/hysteron/#v1;tune;tune.step=rules".to_owned(),
+    ));
+    finish(&mut harness);
+    assert_eq!(state(&harness)["page"], "tune");
+    assert_eq!(state(&harness)["step"], "rules");
+}
+
+#[test]
+fn a_slider_is_reset_by_a_double_click() {
+    let mut harness = app("explore", WIDE);
+    let ctx = harness.ctx.clone();
+    let link = "v1;explore;explore.paused=0;loop.relay.hysteresis=0.5";
+    harness.state_mut().open_link(&ctx, link).expect("a link");
+    finish(&mut harness);
+    assert!((hysteresis(&harness) - 0.5).abs() < 1e-12);
+    let at = harness
+        .get_by_role_and_label(egui::accesskit::Role::Slider, "hysteresis ε")
+        .rect()
+        .left_center()
+        + egui::vec2(12.0, 0.0);
+    for _ in 0..2 {
+        harness.hover_at(at);
+        harness.drag_at(at);
+        harness.drop_at(at);
+        harness.step();
+    }
+    finish(&mut harness);
+    assert!((hysteresis(&harness) - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn each_look_draws_every_page() {
+    let mut harness = app("explore", WIDE);
+    let ctx = harness.ctx.clone();
+    for (look, name) in [("Light", "light"), ("Projector", "projector")] {
+        let link = "v1;explore;explore.paused=12;loop.relay.hysteresis=0.2";
+        harness.state_mut().open_link(&ctx, link).expect("a link");
+        click(&mut harness, "Look");
+        click(&mut harness, look);
+        assert_eq!(state(&harness)["look"], look);
+        finish(&mut harness);
+        picture(&mut harness, &format!("explore_{name}"));
+        for page in HysteronApp::default().page_ids() {
+            let link = format!("v1;{page}");
+            harness.state_mut().open_link(&ctx, &link).expect("a page");
+            harness.step();
+            harness.step();
+            assert_eq!(state(&harness)["page"], page);
+        }
+    }
+}
+
+#[test]
+fn the_app_opens_as_it_was_left() {
+    let mut harness = app("tune", WIDE);
+    finish(&mut harness);
+    click(&mut harness, "5 Rule");
+    click(&mut harness, "Ziegler-Nichols PI");
+    let ctx = harness.ctx.clone();
+    let link = "v1;explore;explore.margin=true;loop.relay.gain=2";
+    harness.state_mut().open_link(&ctx, link).expect("a link");
+    finish(&mut harness);
+    let kept = harness.state().kept();
+
+    let mut later = app("start", WIDE);
+    let ctx = later.ctx.clone();
+    later.state_mut().restore(&ctx, &kept);
+    finish(&mut later);
+    assert_eq!(state(&later)["link"], state(&harness)["link"]);
+    assert_eq!(later.state().kept(), kept);
+    press(&mut later, Modifiers::NONE, Key::Num5);
+    press(&mut later, Modifiers::NONE, Key::Num5);
+
+    // What another version has left, or a file that is gone, does no harm.
+    later.state_mut().restore(&ctx, "v1;explore;old.setting=1");
+    let gone = kept.replace("v1;explore", "v1;explore;compare.file=gone.csv");
+    later.state_mut().restore(&ctx, &gone);
+    finish(&mut later);
+    assert_eq!(state(&later)["page"], "explore");
+    assert_eq!(state(&later)["compare"]["file"], serde_json::Value::Null);
+}
