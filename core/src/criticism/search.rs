@@ -25,6 +25,9 @@ const WORTH_A_START: f64 = 0.2;
 /// Effects with at most this many starting values have one valley.
 const FEW_STARTS: usize = 1;
 
+/// The best starting point is not given up while an iteration brings its cost below this share.
+const COMING_ON: f64 = 0.5;
+
 /// Starting points that are followed on the whole record.
 const FINALISTS: usize = 3;
 
@@ -316,9 +319,16 @@ impl Search {
         self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
         let share = scout.used() as f64 / data.used() as f64;
         let mut scanned = std::mem::take(&mut self.scanned).into_iter();
-        let Some((best, starts)) = scanned.next() else {
+        let Some((mut best, starts)) = scanned.next() else {
             return;
         };
+        while best.cost > self.limit && !best.done {
+            let before = best.cost;
+            best.iterate(scout, scales);
+            if best.cost > COMING_ON * before {
+                break;
+            }
+        }
         let hopeless = HOPELESS * self.present * share;
         let near = (NEAR * best.cost).min(self.limit);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
