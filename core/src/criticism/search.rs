@@ -25,6 +25,10 @@ const WORTH_A_START: f64 = 0.2;
 /// Effects with at most this many starting values have one valley.
 const FEW_STARTS: usize = 1;
 
+/// A point from which the first iteration does not lead to within this many times the cost that it must come
+/// to is not followed where the model leaves nothing but noise: what is missing there must be faint.
+const FAR_OFF: f64 = 2.0;
+
 /// The best starting point is not given up while an iteration brings its cost below this share.
 const COMING_ON: f64 = 0.5;
 
@@ -69,7 +73,9 @@ pub(super) struct Search {
     present: f64,
     /// Cost on the scout below which a starting point must come to be followed.
     limit: f64,
-    /// Whether a point that does not is tried again with another body.
+    /// The model to which an effect is added leaves nothing but noise.
+    settled: bool,
+    /// Whether a point that does not come to be followed is tried again with another body.
     retries: bool,
     total: usize,
     optimism: f64,
@@ -161,6 +167,7 @@ impl Search {
         }
         Self {
             limit: ground.map_or(f64::INFINITY, |g| g.limit),
+            settled,
             retries: ground.is_some() && instead.is_none() && !settled,
             ..Self::from_points(structure, points, fit.cost)
         }
@@ -249,6 +256,7 @@ impl Search {
             given_up: false,
             present,
             limit: f64::INFINITY,
+            settled: false,
             retries: false,
             optimism: f64::INFINITY,
         }
@@ -281,8 +289,12 @@ impl Search {
             return false;
         };
         let mut fit = self.begun(&point, scout, scales);
+        if self.settled {
+            fit.iterate(scout, scales);
+            fit.done |= fit.cost > FAR_OFF * self.limit;
+        }
         let retry = self.retries.then(|| fit.clone());
-        for _ in 0..SCAN_ITERATIONS {
+        for _ in usize::from(self.settled)..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
         if let Some(mut other) = retry.filter(|_| fit.cost > self.limit) {
@@ -310,7 +322,9 @@ impl Search {
             .filter(|s| scout.windows.binary_search(&s.sample).is_ok())
             .collect();
         let mut fit = Fit::new(scout, self.structure.clone(), values.clone(), known, scales);
-        fit.take_measured_starts(scout);
+        if !self.settled {
+            fit.take_measured_starts(scout);
+        }
         fit
     }
 
@@ -322,7 +336,7 @@ impl Search {
         let Some((mut best, starts)) = scanned.next() else {
             return;
         };
-        while best.cost > self.limit && !best.done {
+        while !self.settled && best.cost > self.limit && !best.done {
             let before = best.cost;
             best.iterate(scout, scales);
             if best.cost > COMING_ON * before {
