@@ -13,6 +13,8 @@ use hysteron_core::measurement::{
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
+use super::Format;
+
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
     /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file; many files: one
@@ -60,14 +62,6 @@ enum Kind {
     Drive,
     /// Any input u, any output y
     Process,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(super) enum Format {
-    /// A report in words and tables
-    Text,
-    /// One JSON object; of many files one line each
-    Json,
 }
 
 /// A value of an option and how it was written.
