@@ -261,6 +261,36 @@ struct State {
     seen_v: f64,
 }
 
+/// A drifting test on `rig`, whose relay flips every `flip` s: the first asymmetry with which the motor of
+/// the `trial` rig travels more than `travel` rad, as one would try them at the bench. A sampled relay locks
+/// to its clock at some inertias, and then nothing drifts.
+#[allow(dead_code, reason = "not every test needs one")]
+pub fn carried_over(
+    rig: DriveRig,
+    travel: f64,
+    flip: f64,
+    trial: impl Fn(DriveRig) -> DriveRig,
+) -> DriveRig {
+    let tries = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4].map(|asymmetry| DriveRig {
+        excitation: Excitation::Relay {
+            gain: 0.5,
+            asymmetry,
+            hysteresis: 0.5,
+            flip: Some(flip),
+        },
+        ..rig
+    });
+    let crosses = |rig: &DriveRig| {
+        let record = trial(*rig).measure();
+        let x = &record.outputs[0].values;
+        let (low, high) = x
+            .iter()
+            .fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(*x), h.max(*x)));
+        high - low > travel
+    };
+    tries.into_iter().find(crosses).unwrap_or(rig)
+}
+
 impl DriveRig {
     /// Runs the experiment.
     pub fn measure(&self) -> Measurement {
