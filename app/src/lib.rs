@@ -14,6 +14,8 @@ pub mod lessons;
 pub mod link;
 mod notice;
 mod pages;
+#[cfg(not(target_arch = "wasm32"))]
+mod pieces;
 mod save;
 mod shortcuts;
 mod start;

@@ -32,7 +32,7 @@ impl Work for StepTask {
             }
         };
         loop {
-            match job.advance() {
+            match advance_step(&mut job) {
                 Progress::Running { fraction, text } => {
                     if !say(News::Progress(fraction, text)) {
                         return;
@@ -94,6 +94,17 @@ impl Work for GapTask {
             Err(error) => News::Failed(error),
         });
     }
+}
+
+/// Some work, on all cores.
+#[cfg(not(target_arch = "wasm32"))]
+fn advance_step(job: &mut StepJob) -> Progress<StepReport> {
+    job.advance_with(crate::pieces::width(), &mut crate::pieces::run)
+}
+
+#[cfg(target_arch = "wasm32")]
+fn advance_step(job: &mut StepJob) -> Progress<StepReport> {
+    job.advance()
 }
 
 /// One batch on all cores.

@@ -14,6 +14,7 @@ use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
 use super::Format;
+use crate::pieces;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -246,7 +247,7 @@ pub(super) fn one(
     let mut job =
         DiagnosisJob::with_model(&measurement, &given).map_err(|e| format!("{name}: {e}"))?;
     loop {
-        match job.advance() {
+        match job.advance_with(pieces::width(), &mut pieces::run) {
             Progress::Running { fraction, text } => show(fraction, &text),
             Progress::Done(mut diagnosis) => {
                 diagnosis.seconds = started.elapsed().as_secs_f64();

@@ -1,5 +1,6 @@
 //! Long computations as resumable jobs: threads natively, a worker on the web, a loop in tests.
 
+use super::race::{Piece, one_by_one};
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
 use super::{Diagnosis, Limits, Step, StepReport};
@@ -175,10 +176,20 @@ impl DiagnosisJob {
 
     /// Does a small piece of work.
     pub fn advance(&mut self) -> Progress<Diagnosis> {
+        self.advance_with(1, &mut one_by_one)
+    }
+
+    /// Does some work, of which `run` gets up to `width` independent pieces at a time where there are any.
+    /// It must run each of them, in any order, on one thread or on many; the result is the same.
+    pub fn advance_with(
+        &mut self,
+        width: usize,
+        run: &mut dyn FnMut(&mut [Piece<'_>]),
+    ) -> Progress<Diagnosis> {
         let Some(job) = &mut self.job else {
             return Progress::Done(self.diagnosis.clone());
         };
-        let report = match job.advance() {
+        let report = match job.advance_with(width, run) {
             Progress::Running { fraction, text } => {
                 let done = self.diagnosis.steps.len() as f64;
                 // The number of steps is not known: each takes half of what is left.

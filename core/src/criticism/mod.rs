@@ -30,6 +30,7 @@ pub use next_experiment::{
     Trial,
 };
 pub use noise::noise_level;
+pub use race::Piece;
 pub use report::{
     Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
     StepReport, Verdict,

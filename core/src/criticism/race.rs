@@ -5,7 +5,7 @@ use super::score::score;
 use super::search::{Ground, Search};
 use super::select::is_plain_noise;
 use super::session::Session;
-use crate::effect::Effect;
+use crate::effect::{Effect, Probe};
 
 /// Iterations on the whole record that every effect gets.
 const HEAT: usize = 2;
@@ -27,13 +27,73 @@ const PROMISING: f64 = 0.995;
 /// to where that was may still have some way to go.
 const WITHIN_REACH: f64 = 30.0;
 
+/// What the effects in a race are added to.
+struct Track {
+    fit: Fit,
+    /// The fit whose effect at this place they stand in for.
+    instead: Option<(Fit, usize)>,
+    probe: Probe,
+    ground: Ground,
+}
+
 /// One effect in the race.
 struct Contender {
     effect: &'static dyn Effect,
-    search: Search,
+    /// None before it has begun.
+    search: Option<Search>,
     /// It is fitted to the end while it may come this close to the best cost.
     close: f64,
     heats: usize,
+    /// It has had its heats.
+    over: bool,
+}
+
+impl Contender {
+    /// Begins, tries a starting point or does an iteration.
+    fn advance(&mut self, track: &Track, session: &Session) {
+        let Session {
+            data,
+            scout,
+            scales,
+            ..
+        } = session;
+        let search = self.search.get_or_insert_with(|| {
+            let instead = track.instead.as_ref().map(|(fit, place)| (fit, *place));
+            let (fit, probe, ground) = (&track.fit, &track.probe, Some(track.ground));
+            Search::adding(data, fit, self.effect, probe, instead, ground)
+        });
+        if !search.scan(data, scout, scales) {
+            self.heats += 1;
+            self.over = !search.iterate(data, scales) || self.heats >= HEAT;
+        }
+    }
+
+    /// Least cost so far.
+    fn cost(&self) -> f64 {
+        self.search.as_ref().map_or(f64::INFINITY, Search::cost)
+    }
+}
+
+/// A piece of a computation that is independent of others handed out with it: they may be done in any order,
+/// also at the same time, and the result is the same to the last digit.
+pub struct Piece<'a> {
+    contender: &'a mut Contender,
+    track: &'a Track,
+    session: &'a Session,
+}
+
+impl Piece<'_> {
+    /// Does it; once.
+    pub fn run(&mut self) {
+        self.contender.advance(self.track, self.session);
+    }
+}
+
+/// Does pieces one after the other.
+pub(super) fn one_by_one(pieces: &mut [Piece<'_>]) {
+    for piece in pieces {
+        piece.run();
+    }
 }
 
 /// Whether the effect at this place of a fit contains `part`.
@@ -44,9 +104,8 @@ fn contains(whole: &Fit, place: usize, part: &dyn Effect) -> bool {
 
 /// A race that goes on piece by piece.
 pub(super) struct Race {
+    track: Track,
     contenders: Vec<Contender>,
-    /// Index of the contender that is scanned or in its heat.
-    at: usize,
     /// Cost to come close to; infinite where the best of the race sets it.
     target: f64,
     /// Cost above which it is not worth going on.
@@ -63,8 +122,6 @@ impl Race {
         effects: impl IntoIterator<Item = &'static dyn Effect>,
         instead: Option<(&Fit, usize)>,
     ) -> Self {
-        let target = instead.map(|(whole, _)| whole.cost);
-        let probe = session.probe(fit);
         let ground = match instead {
             None => Ground {
                 limit: PROMISING * session.scouted(fit),
@@ -76,31 +133,29 @@ impl Race {
             },
         };
         Self {
+            track: Track {
+                fit: fit.clone(),
+                instead: instead.map(|(whole, place)| (whole.clone(), place)),
+                probe: session.probe(fit),
+                ground,
+            },
             contenders: effects
                 .into_iter()
                 .map(|effect| Contender {
                     effect,
-                    search: Search::adding(
-                        &session.data,
-                        fit,
-                        effect,
-                        &probe,
-                        instead,
-                        Some(ground),
-                    ),
+                    search: None,
                     close: match instead {
                         Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
                         _ => CLOSE,
                     },
                     heats: 0,
+                    over: false,
                 })
                 .collect(),
-            at: 0,
-            target: target.unwrap_or(f64::INFINITY),
-            ceiling: if target.is_some() {
-                f64::INFINITY
-            } else {
-                WORTHWHILE * fit.cost
+            target: instead.map_or(f64::INFINITY, |(whole, _)| whole.cost),
+            ceiling: match instead {
+                Some(_) => f64::INFINITY,
+                None => WORTHWHILE * fit.cost,
             },
         }
     }
@@ -108,46 +163,55 @@ impl Race {
     /// Share done, 0 to 1, roughly, and the name of the effect that is tried.
     pub fn progress(&self) -> (f64, &'static str) {
         let count = self.contenders.len().max(1) as f64;
-        match self.contenders.get(self.at) {
-            Some(c) => (
-                0.7 * (self.at as f64 + c.search.scanned()) / count,
-                c.effect.name(),
-            ),
+        let scanned = |c: &Contender| c.search.as_ref().map_or(0.0, Search::scanned);
+        let done: f64 = self
+            .contenders
+            .iter()
+            .map(|c| if c.over { 1.0 } else { scanned(c) })
+            .sum();
+        match self.contenders.iter().find(|c| !c.over) {
+            Some(c) => (0.7 * done / count, c.effect.name()),
             None => (0.8, "the best of them"),
         }
     }
 
-    /// One iteration; false when the race is over.
-    pub fn advance(&mut self, session: &Session) -> bool {
-        let Session {
-            data,
-            scout,
-            scales,
-            ..
-        } = session;
-        if let Some(contender) = self.contenders.get_mut(self.at) {
-            if !contender.search.scan(data, scout, scales) {
-                contender.heats += 1;
-                if !contender.search.iterate(data, scales) || contender.heats >= HEAT {
-                    self.at += 1;
-                }
-            }
+    /// Some work, at most `width` pieces at a time given to `run`; false when the race is over.
+    pub fn advance(
+        &mut self,
+        session: &Session,
+        width: usize,
+        run: &mut dyn FnMut(&mut [Piece<'_>]),
+    ) -> bool {
+        let mut pieces: Vec<Piece<'_>> = self
+            .contenders
+            .iter_mut()
+            .filter(|c| !c.over)
+            .take(width.max(1))
+            .map(|contender| Piece {
+                contender,
+                track: &self.track,
+                session,
+            })
+            .collect();
+        if !pieces.is_empty() {
+            run(&mut pieces);
             return true;
         }
         let best = self
             .contenders
             .iter()
-            .map(|c| c.search.cost())
+            .map(Contender::cost)
             .fold(self.target, f64::min);
         let ceiling = self.ceiling;
         let next = self
             .contenders
             .iter_mut()
-            .filter(|c| c.search.goes_on() && c.search.optimism() <= ceiling.min(c.close * best))
-            .min_by(|a, b| a.search.optimism().total_cmp(&b.search.optimism()));
+            .filter_map(|c| Some((c.close, c.search.as_mut()?)))
+            .filter(|(close, s)| s.goes_on() && s.optimism() <= ceiling.min(close * best))
+            .min_by(|a, b| a.1.optimism().total_cmp(&b.1.optimism()));
         match next {
-            Some(contender) => {
-                contender.search.iterate(data, scales);
+            Some((_, search)) => {
+                search.iterate(&session.data, &session.scales);
                 true
             }
             None => false,
@@ -159,7 +223,7 @@ impl Race {
         self.contenders
             .into_iter()
             .filter_map(|c| {
-                let fit = c.search.finish(&session.data, &session.scales)?;
+                let fit = c.search?.finish(&session.data, &session.scales)?;
                 Some((c.effect, fit))
             })
             .collect()

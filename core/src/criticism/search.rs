@@ -13,6 +13,9 @@ use crate::model::Start;
 /// Iterations that every starting point gets before the best are chosen.
 const SCAN_ITERATIONS: usize = 2;
 
+/// Starting points that get them; of more, those that are best after a first iteration.
+const SHORTLIST: usize = 4;
+
 /// A starting point that still costs this many times the present model is not followed.
 const HOPELESS: f64 = 10.0;
 
@@ -21,6 +24,13 @@ const WORTH_A_START: f64 = 0.2;
 
 /// Effects with at most this many starting values have one valley.
 const FEW_STARTS: usize = 1;
+
+/// A point from which the first iteration does not lead to within this many times the cost that it must come
+/// to is not followed where the model leaves nothing but noise: what is missing there must be faint.
+const FAR_OFF: f64 = 2.0;
+
+/// The best starting point is not given up while an iteration brings its cost below this share.
+const COMING_ON: f64 = 0.5;
 
 /// Starting points that are followed on the whole record.
 const FINALISTS: usize = 3;
@@ -44,17 +54,28 @@ pub(super) struct Ground {
     pub settled: bool,
 }
 
+/// Values and states of the windows from which a fit starts.
+type Point = (Vec<f64>, Vec<Start>);
+
 /// A search that goes on piece by piece.
 pub(super) struct Search {
     structure: Structure,
-    pending: VecDeque<(Vec<f64>, Vec<Start>)>,
+    pending: VecDeque<Point>,
+    /// Points with the cost after a first iteration.
+    tried: Vec<(f64, Point)>,
+    /// The best of these, worst first.
+    shortlist: Vec<Point>,
     scanned: Vec<(Fit, Vec<Start>)>,
     finalists: Vec<Fit>,
+    /// No starting point came to be followed.
+    given_up: bool,
     /// Cost of the model that this one would replace.
     present: f64,
     /// Cost on the scout below which a starting point must come to be followed.
     limit: f64,
-    /// Whether a point that does not is tried again with another body.
+    /// The model to which an effect is added leaves nothing but noise.
+    settled: bool,
+    /// Whether a point that does not come to be followed is tried again with another body.
     retries: bool,
     total: usize,
     optimism: f64,
@@ -116,11 +137,25 @@ impl Search {
                 }
             }
         }
+        // What can stand in for another effect speaks of the same body, and of the same other effects.
+        let (body, at) = match instead {
+            Some((from, index)) => {
+                let mut rest = from.values.clone();
+                rest.drain(from.structure.range(index));
+                (rest, from)
+            }
+            None => (kept.clone(), fit),
+        };
+        let (body, at) = if body.len() == kept.len() {
+            (&body, at)
+        } else {
+            (&kept, fit)
+        };
         for start in &own {
-            let mut values = kept.clone();
+            let mut values = body.clone();
             values.extend(start);
             structure.begin(&mut values, kept.len());
-            points.push((values.clone(), fit.starts.clone()));
+            points.push((values.clone(), at.starts.clone()));
             if !settled {
                 points.extend(Self::regressed(data, fit, &structure, values));
             }
@@ -132,6 +167,7 @@ impl Search {
         }
         Self {
             limit: ground.map_or(f64::INFINITY, |g| g.limit),
+            settled,
             retries: ground.is_some() && instead.is_none() && !settled,
             ..Self::from_points(structure, points, fit.cost)
         }
@@ -202,19 +238,25 @@ impl Search {
         )
     }
 
-    fn from_points(
-        structure: Structure,
-        points: Vec<(Vec<f64>, Vec<Start>)>,
-        present: f64,
-    ) -> Self {
+    fn from_points(structure: Structure, points: Vec<Point>, present: f64) -> Self {
+        let few = points.len() <= SHORTLIST;
+        let (pending, shortlist) = if few {
+            (Vec::new(), points)
+        } else {
+            (points, Vec::new())
+        };
         Self {
             structure,
-            total: points.len(),
-            pending: points.into(),
+            total: pending.len() + SHORTLIST,
+            pending: pending.into(),
+            tried: Vec::new(),
+            shortlist,
             scanned: Vec::new(),
             finalists: Vec::new(),
+            given_up: false,
             present,
             limit: f64::INFINITY,
+            settled: false,
             retries: false,
             optimism: f64::INFINITY,
         }
@@ -222,23 +264,37 @@ impl Search {
 
     /// Share of the scan that is done, 0 to 1.
     pub fn scanned(&self) -> f64 {
-        1.0 - self.pending.len() as f64 / self.total.max(1) as f64
+        let left = match self.pending.len() {
+            0 => self.shortlist.len(),
+            pending => pending + SHORTLIST,
+        };
+        1.0 - left as f64 / self.total as f64
     }
 
     /// Tries the next starting point on `scout`; false when all are tried and the best are chosen.
     pub fn scan(&mut self, data: &Data, scout: &Data, scales: &Scales) -> bool {
-        let Some((values, starts)) = self.pending.pop_front() else {
+        if let Some(point) = self.pending.pop_front() {
+            let mut fit = self.begun(&point, scout, scales);
+            fit.iterate(scout, scales);
+            self.tried.push((fit.cost, point));
+            if self.pending.is_empty() {
+                self.tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let best = std::mem::take(&mut self.tried).into_iter().take(SHORTLIST);
+                self.shortlist = best.map(|(_, point)| point).collect();
+                self.shortlist.reverse();
+            }
+            return true;
+        }
+        let Some(point) = self.shortlist.pop() else {
             return false;
         };
-        let known = starts
-            .iter()
-            .copied()
-            .filter(|s| scout.windows.binary_search(&s.sample).is_ok())
-            .collect();
-        let mut fit = Fit::new(scout, self.structure.clone(), values, known, scales);
-        fit.take_measured_starts(scout);
+        let mut fit = self.begun(&point, scout, scales);
+        if self.settled {
+            fit.iterate(scout, scales);
+            fit.done |= fit.cost > FAR_OFF * self.limit;
+        }
         let retry = self.retries.then(|| fit.clone());
-        for _ in 0..SCAN_ITERATIONS {
+        for _ in usize::from(self.settled)..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
         if let Some(mut other) = retry.filter(|_| fit.cost > self.limit) {
@@ -251,11 +307,25 @@ impl Search {
                 fit = other;
             }
         }
-        self.scanned.push((fit, starts));
-        if self.pending.is_empty() {
+        self.scanned.push((fit, point.1));
+        if self.shortlist.is_empty() {
             self.choose_finalists(data, scout, scales);
         }
         true
+    }
+
+    /// A fit on the scout that begins at this point.
+    fn begun(&self, (values, starts): &Point, scout: &Data, scales: &Scales) -> Fit {
+        let known = starts
+            .iter()
+            .copied()
+            .filter(|s| scout.windows.binary_search(&s.sample).is_ok())
+            .collect();
+        let mut fit = Fit::new(scout, self.structure.clone(), values.clone(), known, scales);
+        if !self.settled {
+            fit.take_measured_starts(scout);
+        }
+        fit
     }
 
     /// Goes on with the best of the scanned points on the whole record.
@@ -263,13 +333,21 @@ impl Search {
         self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
         let share = scout.used() as f64 / data.used() as f64;
         let mut scanned = std::mem::take(&mut self.scanned).into_iter();
-        let Some((best, starts)) = scanned.next() else {
+        let Some((mut best, starts)) = scanned.next() else {
             return;
         };
+        while !self.settled && best.cost > self.limit && !best.done {
+            let before = best.cost;
+            best.iterate(scout, scales);
+            if best.cost > COMING_ON * before {
+                break;
+            }
+        }
         let hopeless = HOPELESS * self.present * share;
         let near = (NEAR * best.cost).min(self.limit);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        first.done |= best.cost > hopeless.min(self.limit);
+        self.given_up = best.cost > hopeless.min(self.limit);
+        first.done |= self.given_up;
         settle(&mut first, best.cost / share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {
@@ -320,7 +398,7 @@ impl Search {
         let mut finalists = self.finalists;
         finalists.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let mut best = finalists.into_iter().next()?;
-        if best.done && best.cost.is_finite() {
+        if best.done && !self.given_up && best.cost.is_finite() {
             best.polish_starts(data, scales);
         }
         Some(best)

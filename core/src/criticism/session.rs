@@ -23,7 +23,7 @@ pub(super) struct Scored {
 }
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
-const COMPARED: usize = 60_000;
+const COMPARED: usize = 20_000;
 
 /// Iterations of a fit of the whole record from that of a part of it.
 const WHOLE_ITERATIONS: usize = 2;

@@ -3,7 +3,7 @@
 use super::knowledge::contradictions;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Hypothesis, TRYING};
-use super::race::Race;
+use super::race::{Piece, Race, one_by_one};
 use super::search::Search;
 use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same, suffices};
 use super::session::{Scored, Session};
@@ -166,6 +166,16 @@ impl StepJob {
 
     /// Does a small piece of work.
     pub fn advance(&mut self) -> Progress<StepReport> {
+        self.advance_with(1, &mut one_by_one)
+    }
+
+    /// Does some work, of which `run` gets up to `width` independent pieces at a time where there are any.
+    /// It must run each of them, in any order, on one thread or on many; the result is the same.
+    pub fn advance_with(
+        &mut self,
+        width: usize,
+        run: &mut dyn FnMut(&mut [Piece<'_>]),
+    ) -> Progress<StepReport> {
         if matches!(self.stage, Stage::Report)
             && let Some(report) = self.report()
         {
@@ -177,7 +187,7 @@ impl StepJob {
                 let (data, scales) = (&session.data, &session.scales);
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
-            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session),
+            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session, width, run),
             Stage::Design(designs) => !designs.first_mut().is_some_and(Design::advance),
             Stage::Report => true,
         };

@@ -26,13 +26,21 @@ const PIECE: f64 = 0.12;
 const LONGEST_PIECE: f64 = 1.0;
 const PIECE_RADIANS: f64 = 0.35;
 
+/// A displacement below this share of the motion that is left is crossed at once: far less would be lost in
+/// the digits of the position.
+const UNSEEN: f64 = 1e-9;
+
 /// The contact of one body.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
-    inertia: f64,
+    /// Inverse inertia of the body.
+    b: f64,
     viscous: f64,
-    lag: Option<f64>,
+    /// Rate of the lag of its input.
+    mu: Option<f64>,
     stiffness: f64,
+    /// Natural angular frequency while the bristle does not slip at all, rad/s.
+    frequency: f64,
     /// While the bristle does not slip at all.
     damping: f64,
 }
@@ -54,17 +62,18 @@ impl Contact {
         }
         let stiffness = level / friction.presliding;
         Some(Self {
-            inertia: model.inertia,
+            b: 1.0 / model.inertia,
             viscous: model.viscous,
-            lag: model.lag,
+            mu: model.lag.map(|tau| 1.0 / tau),
             stiffness,
+            frequency: (stiffness / model.inertia.abs()).sqrt(),
             damping: 2.0 * friction.contact_damping * (stiffness * model.inertia.abs()).sqrt(),
         })
     }
 
     /// Whether its own motion can be seen in intervals of `h` seconds.
     pub fn is_soft(&self, h: f64) -> bool {
-        (self.stiffness / self.inertia.abs()).sqrt() * h < RIGID_RADIANS
+        self.frequency * h < RIGID_RADIANS
     }
 
     /// Deflection after a known displacement `moved` at friction `level`.
@@ -111,7 +120,8 @@ impl Contact {
                 motion.v.signum()
             };
             let share = 1.0 - direction * *deflection / limit;
-            left -= if share > SLIP_SHARE {
+            let seen = limit > UNSEEN * (motion.v * left).abs();
+            left -= if seen && share > SLIP_SHARE {
                 self.bend(&acting, motion, deflection, direction, left)
             } else {
                 *deflection = direction * limit;
@@ -135,20 +145,18 @@ impl Contact {
         let bent = |x: f64| self.followed(z, x, acting.level);
         let reach = limit * (PIECE / share).min(LONGEST_PIECE);
         let net = start.z + acting.force - self.stiffness * z;
-        let a = (net / self.inertia).abs();
+        let a = (net * self.b).abs();
         let reached = 2.0 * reach / (start.v.abs() + (start.v * start.v + 2.0 * a * reach).sqrt());
-        let tangent = self.spring(share);
-        let time = left.min(reached).min(PIECE_RADIANS / tangent.frequency());
-        let flow = |spring: &Spring, share: f64, t: f64| {
-            // A spring with the force of the bristle at the start.
-            let held = Motion {
-                x: z / share,
-                ..start
-            };
-            let end = spring.after(held, acting.w, acting.force, t);
-            (end, end.x - held.x)
+        let time = left
+            .min(reached)
+            .min(PIECE_RADIANS / (self.frequency * share.sqrt()));
+        // A spring with the force of the bristle at the start.
+        let held = |share: f64| Motion {
+            x: z / share,
+            ..start
         };
-        let moved = flow(&tangent, share, time).1;
+        let tangent = self.spring(share);
+        let moved = tangent.moved(held(share), acting.w, acting.force, time);
         // The spring that joins the ends of the piece instead of the one at its start.
         let share = if moved.abs() > f64::MIN_POSITIVE {
             ((bent(moved) - z) / moved)
@@ -158,11 +166,16 @@ impl Contact {
             share
         };
         let spring = self.spring(share);
-        let (mut end, mut moved) = flow(&spring, share, time);
+        let held = held(share);
+        let flow = |t: f64| {
+            let end = spring.after(held, acting.w, acting.force, t);
+            (end, end.x - held.x)
+        };
+        let (mut end, mut moved) = flow(time);
         let mut used = time;
         if end.v * direction < 0.0 && start.v != 0.0 {
-            used = root(time, start.v, end.v, |t| flow(&spring, share, t).0.v);
-            (end, moved) = flow(&spring, share, used);
+            used = root(time, start.v, end.v, |t| flow(t).0.v);
+            (end, moved) = flow(used);
             end.v = 0.0;
         }
         if moved * direction > 0.0 {
@@ -180,10 +193,10 @@ impl Contact {
     /// Body on a bristle that has this share of its stiffness left.
     fn spring(&self, share: f64) -> Spring {
         Spring::new(
-            self.inertia,
+            self.b,
             share * self.stiffness,
             self.viscous + share * self.damping,
-            self.lag,
+            self.mu,
         )
     }
 }
@@ -220,7 +233,7 @@ mod tests {
             let [_, v, z] = s;
             let rate = v - contact.stiffness * v.abs() / level * z;
             let force = contact.stiffness * z + contact.damping * rate;
-            [v, (w - contact.viscous * v - force) / contact.inertia, rate]
+            [v, (w - contact.viscous * v - force) * contact.b, rate]
         };
         let add = |s: [f64; 3], k: [f64; 3], c: f64| std::array::from_fn(|i| s[i] + c * k[i]);
         for _ in 0..n {

@@ -275,19 +275,22 @@ pub(super) struct Spring {
 }
 
 impl Spring {
-    /// A body of `inertia` on a spring of `stiffness` with `damping`; `lag` in s.
-    pub fn new(inertia: f64, stiffness: f64, damping: f64, lag: Option<f64>) -> Self {
+    /// A body of inverse inertia `b` on a spring of `stiffness` with `damping`; `mu` is the rate of the lag.
+    pub fn new(b: f64, stiffness: f64, damping: f64, mu: Option<f64>) -> Self {
         Self {
-            lambda: damping / inertia,
-            kappa: stiffness / inertia,
-            b: 1.0 / inertia,
-            mu: lag.map(|tau| 1.0 / tau),
+            lambda: damping * b,
+            kappa: stiffness * b,
+            b,
+            mu,
         }
     }
 
-    /// Natural angular frequency, rad/s.
-    pub fn frequency(&self) -> f64 {
-        self.kappa.sqrt()
+    /// Roughly how far the body moves from state `m` in a short time `h`: three terms of the series.
+    pub fn moved(&self, m: Motion, w: f64, q: f64, h: f64) -> f64 {
+        let a = self.b * (m.z + q) - self.kappa * m.x - self.lambda * m.v;
+        let rise = self.mu.map_or(0.0, |mu| self.b * mu * (w - m.z));
+        let jerk = rise - self.kappa * m.v - self.lambda * a;
+        h * (m.v + h * (0.5 * a + h * jerk / 6.0))
     }
 
     /// State after `h` seconds, with `m.x` the deflection of the spring.
