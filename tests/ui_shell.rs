@@ -89,6 +89,20 @@ fn every_page_stands_in_a_phone_s_window_and_is_reached_by_its_menu() {
 }
 
 #[test]
+fn each_page_says_what_to_try_next_and_shows_it() {
+    for page in ["explore", "maps", "tune", "compare", "backlash"] {
+        let mut harness = app(page, WIDE);
+        finish(&mut harness);
+        let before = state(&harness)["link"].clone();
+        click(&mut harness, "Try it");
+        let after = state(&harness);
+        assert_eq!(after["notice"], serde_json::Value::Null, "{page}");
+        assert_eq!(after["page"], page);
+        assert_ne!(after["link"], before, "{page}");
+    }
+}
+
+#[test]
 fn what_was_changed_is_taken_back_and_done_again() {
     let mut harness = app("explore", WIDE);
     finish(&mut harness);
@@ -184,10 +198,18 @@ fn a_slider_is_reset_by_a_double_click() {
         .rect()
         .left_center()
         + egui::vec2(12.0, 0.0);
+    harness.hover_at(at);
+    harness.step();
+    // Each click within one frame: the test's clock goes a quarter of a second from frame to frame.
+    let click = |pressed| egui::Event::PointerButton {
+        pos: at,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
     for _ in 0..2 {
-        harness.hover_at(at);
-        harness.drag_at(at);
-        harness.drop_at(at);
+        let events = [true, false].map(click);
+        harness.input_mut().events.extend(events);
         harness.step();
     }
     finish(&mut harness);
@@ -209,8 +231,7 @@ fn each_look_draws_every_page() {
         for page in HysteronApp::default().page_ids() {
             let link = format!("v1;{page}");
             harness.state_mut().open_link(&ctx, &link).expect("a page");
-            harness.step();
-            harness.step();
+            finish(&mut harness);
             assert_eq!(state(&harness)["page"], page);
         }
     }

@@ -126,6 +126,12 @@ impl HysteronApp {
         egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present));
         let desk = &mut self.desk;
         desk.study.ui(ui, &mut desk.targets, &mut desk.commands);
+        let hint = self.pages.get(self.front).and_then(|p| p.hint());
+        if let Some((sentence, link)) = hint
+            && desk.study.lesson.is_none()
+        {
+            egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, sentence, link, desk));
+        }
         if let Some(page) = self.pages.get_mut(self.front) {
             page.ui(ui, desk);
         }
@@ -230,7 +236,7 @@ impl HysteronApp {
         state["busy"] = busy.into();
         state["page"] = front.map(|p| p.id()).into();
         state["frame"] = self.frame.into();
-        state["lesson"] = self.desk.study.lesson.clone().into();
+        state["studied"] = self.desk.study.lesson.clone().into();
         state["solved"] = serde_json::json!(self.desk.study.solved);
         state["look"] = self.look.name().into();
         state["link"] = self.link().into();
@@ -295,6 +301,18 @@ impl HysteronApp {
         }
         self.pages.get_mut(self.front)
     }
+}
+
+/// What to try next.
+fn hint_ui(ui: &mut egui::Ui, sentence: &str, link: &str, desk: &mut Desk) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(sentence);
+        let button = ui.small_button("Try it");
+        desk.targets.note("try", ui, &button);
+        if button.clicked() {
+            desk.commands.push(Command::OpenLink(link.to_owned()));
+        }
+    });
 }
 
 fn drop_hint_ui(ctx: &egui::Context) {

@@ -38,6 +38,10 @@ pub trait View {
     ) -> Result<(), String>;
     /// What it shows, for tests: an object, with `busy` while a job runs.
     fn hook_state(&self) -> serde_json::Value;
+    /// What to try next on it: a sentence, and the link that shows it.
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        None
+    }
     /// Plays or pauses, if something moves on it.
     fn toggle_play(&mut self) {}
     /// Whether files can be opened on it.

@@ -354,6 +354,13 @@ impl View for Backlash {
         self.playing = !self.playing;
     }
 
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Take friction and delay away: then no asymmetry makes it drift.",
+            "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
+        ))
+    }
+
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(self.set_to())
     }

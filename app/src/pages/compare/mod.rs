@@ -261,6 +261,13 @@ impl View for Compare {
         Self::ui(self, ui, &mut desk.targets);
     }
 
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "A drive that answers late: there one effect is not enough.",
+            "v1;compare;compare.file=drive-12",
+        ))
+    }
+
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(self.set_to())
     }

@@ -208,6 +208,13 @@ impl View for Maps {
         });
     }
 
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
+            "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
+        ))
+    }
+
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(self.set_to())
     }

@@ -133,6 +133,13 @@ impl View for Tune {
         });
     }
 
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Ask for a phase margin of 60° and watch the relay of step 3 find the gain.",
+            "v1;tune;tune.step=adaptation;tune.phase_margin=1.0471975511965976",
+        ))
+    }
+
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(self.set_to())
     }
