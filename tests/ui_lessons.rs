@@ -5,7 +5,7 @@ mod ui;
 
 use egui_kittest::kittest::Queryable as _;
 use hysteron::lessons;
-use ui::{App, WIDE, app, click, finish, picture, state};
+use ui::{App, WIDE, app, finish, picture, state};
 
 /// Opens a lesson from the list.
 fn open(id: &str) -> App {

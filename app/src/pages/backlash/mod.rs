@@ -371,7 +371,7 @@ impl View for Backlash {
         settings: &serde_json::Value,
         _desk: &Desk,
     ) -> Result<(), String> {
-        self.take(ctx, parsed(settings)?)
+        self.take(ctx, &parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {
