@@ -266,3 +266,79 @@ fn the_app_opens_as_it_was_left() {
     assert_eq!(state(&later)["page"], "explore");
     assert_eq!(state(&later)["compare"]["file"], serde_json::Value::Null);
 }
+
+/// The app with the last picture that it gave of itself.
+type Drawn = (HysteronApp, String);
+
+#[test]
+fn a_page_is_saved_as_a_picture_of_lines_and_words() {
+    let mut harness = egui_kittest::Harness::builder()
+        .with_size(egui::Vec2::from(WIDE))
+        .build_ui_state(
+            |ui, (app, svg): &mut Drawn| {
+                app.frame_ui(ui);
+                *svg = app.svg(ui);
+            },
+            (HysteronApp::at("explore"), String::new()),
+        );
+    for _ in 0..3 {
+        harness.step();
+    }
+    let svg = &harness.state().1;
+    for part in [
+        "<svg xmlns=",
+        "viewBox=\"0 0 1280 800\"",
+        "It oscillates: period 4.788 s",
+        "time [s]",
+        "its rate dy/dt [1/s]",
+        "rotate(-90",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    let long = svg.lines().filter(|l| l.matches('L').count() > 500).count();
+    assert!(long >= 2, "the curves are there: {long}");
+    assert!(!svg.contains("NaN"));
+    assert!(svg.trim_end().ends_with("</svg>"));
+    assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count());
+}
+
+#[test]
+fn the_numbers_of_a_page_are_saved_as_a_table() {
+    let mut harness = app("explore", WIDE);
+    finish(&mut harness);
+    let tables = harness.state().tables();
+    assert_eq!(tables.len(), 5);
+    let csv = tables[0].csv();
+    assert_eq!(csv.lines().next(), Some("time [s],output y"));
+    let rows: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|l| l.split(',').map(|n| n.parse().expect("a number")).collect())
+        .collect();
+    // The output of the exact cycle stays within its amplitude, and reaches it.
+    let late = rows.iter().filter(|r| r[0] > 40.0).map(|r| r[1].abs());
+    let largest = late.fold(0.0, f64::max);
+    assert!((largest / 0.285_687_386 - 1.0).abs() < 1e-3, "{largest}");
+
+    for (page, columns) in [
+        ("backlash", "t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]"),
+        ("tune", "time [s],output y"),
+    ] {
+        let mut harness = app(page, WIDE);
+        finish(&mut harness);
+        let tables = harness.state().tables();
+        let csv = tables.first().expect("a table").csv();
+        assert_eq!(csv.lines().next(), Some(columns));
+        assert!(csv.lines().count() > 100, "{page}");
+    }
+    let mut harness = app("explore", WIDE);
+    finish(&mut harness);
+    click(&mut harness, "Export");
+    for item in [
+        "Picture of this page (SVG)",
+        "Picture of this page (PNG)",
+        "Data: Nyquist curve (CSV)",
+    ] {
+        harness.get_by_label(item);
+    }
+}
