@@ -2,13 +2,10 @@
 
 use super::CriticismError;
 use super::noise::noise_level;
+use super::window::drive_window;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::model::{Excitation, Sensor, Start};
-
-/// Samples per window of a drive: its position integrates, so that long windows would drown the
-/// effect in drift; a few relay periods fit in.
-const DRIVE_WINDOW: usize = 250;
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
@@ -90,7 +87,8 @@ impl Data {
         }
         let (window, block) = match measurement.kind {
             Kind::Drive => {
-                let w = (n / MIN_BLOCKS).clamp(MIN_WINDOW, DRIVE_WINDOW);
+                let longest = (n / MIN_BLOCKS).max(MIN_WINDOW);
+                let w = drive_window(&outputs, longest);
                 (w, w)
             }
             Kind::Process => (

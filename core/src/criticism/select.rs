@@ -73,9 +73,17 @@ pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
 }
 
 /// Whether a `part` of an effect does as well as the `whole` for all that the data can tell: what is left may be
-/// correlated so far that the whole gains by chance.
-pub(super) fn suffices(part: &Score, whole: &Score) -> bool {
-    statistic(part, whole) < SAME_STATISTIC && fall(part, whole) < LEAST_FALL
+/// correlated so far that the whole gains by chance, or it is next to nothing of what there was at `first`.
+pub(super) fn suffices(part: &Score, whole: &Score, first: &Score) -> bool {
+    (statistic(part, whole) < SAME_STATISTIC && fall(part, whole) < LEAST_FALL)
+        || !matters(part, whole, first)
+}
+
+/// Whether the step from `before` to `after` takes away more than a trifle of the error that there was at
+/// `first`: below that, an effect only mends what a clock, a rig or an equation is off by.
+pub(super) fn matters(before: &Score, after: &Score, first: &Score) -> bool {
+    let gain = (before.error.powi(2) - after.error.powi(2)).max(0.0).sqrt();
+    gain > SMALL_SHARE * first.error
 }
 
 /// Whether what is left looks like noise in itself.
