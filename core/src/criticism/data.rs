@@ -275,6 +275,11 @@ impl Data {
             viscous: viscous.abs().max(inertia.abs() / (step * n as f64)),
             speed,
             travel: high - low,
+            resolution: self
+                .outputs
+                .iter()
+                .find(|o| !o.is_velocity)
+                .map_or(0.0, |o| o.noise),
             time_constant: if constant.is_finite() {
                 constant
             } else {

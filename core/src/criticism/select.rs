@@ -94,10 +94,15 @@ pub(super) fn is_plain_noise(score: &Score) -> bool {
 
 /// Whether what is left is noise, against what the baseline left at first.
 pub(super) fn is_noise(score: &Score, first: &Score) -> bool {
-    let excess = (score.error.powi(2) - 1.0).max(0.0).sqrt();
     is_plain_noise(score)
-        || (score.error < SMALL_ERROR && excess < SMALL_SHARE * first.error)
+        || (score.error < SMALL_ERROR && is_trifle(score.error, first))
         || is_noise_but_for_stretches(score, first)
+}
+
+/// Whether what is left beyond the noise is a trifle of what there was at `first`, though it may be many times
+/// the noise: the effects found are the right ones.
+pub(super) fn is_trifle(error: f64, first: &Score) -> bool {
+    (error.powi(2) - 1.0).max(0.0).sqrt() < SMALL_SHARE * first.error
 }
 
 /// Whether the held-back blocks are noise but for a few, and these are explained to a hundredth of what
