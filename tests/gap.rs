@@ -150,7 +150,7 @@ fn no_gap_is_claimed_where_a_relay_shows_something_else() {
 
 /// A drifting test on a rig that carries the free motor over `travel` rad before the relay flips.
 fn drifting(rig: DriveRig, travel: f64, flip: f64) -> DriveRig {
-    carried_over(rig, travel, flip, |rig| DriveRig {
+    carried_over(&rig, travel, flip, |rig| DriveRig {
         samples: (flip / SAMPLING) as usize,
         load: None,
         ..rig

@@ -228,7 +228,7 @@ impl HysteronApp {
             let shapes = graphics
                 .get(layer)
                 .into_iter()
-                .flat_map(|list| list.all_entries());
+                .flat_map(egui::layers::PaintList::all_entries);
             export::svg(shapes, size, ground)
         })
     }

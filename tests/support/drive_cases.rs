@@ -90,7 +90,7 @@ pub fn bare(random: &mut Random, excitation: Excitation) -> DriveRig {
 
 /// The same with a relay that makes the motor cross the gap.
 fn crossing(rig: DriveRig, half_gap: f64, flip: f64) -> DriveRig {
-    carried_over(rig, 3.0 * half_gap, flip, |rig| DriveRig {
+    carried_over(&rig, 3.0 * half_gap, flip, |rig| DriveRig {
         samples: 8000,
         ..rig
     })
