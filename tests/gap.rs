@@ -16,7 +16,9 @@ use hysteron_core::backlash::{
 };
 use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity, import_csv};
 use proptest::prelude::*;
-use support::drive_rig::{DriveRig, Excitation, Friction, Load, Recorded, Stranger};
+use support::drive_rig::{
+    DriveRig, Excitation, Friction, Load, Recorded, SAMPLING, Stranger, carried_over,
+};
 use support::random::Random;
 
 /// What the issue of an estimate may be off by.
@@ -146,33 +148,13 @@ fn no_gap_is_claimed_where_a_relay_shows_something_else() {
     }
 }
 
-/// A drifting test on a rig: the first asymmetry of the relay that carries the free motor over the gap, as
-/// one would try them at the bench.
+/// A drifting test on a rig that carries the free motor over `travel` rad before the relay flips.
 fn drifting(rig: DriveRig, travel: f64, flip: f64) -> DriveRig {
-    let tries = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4].map(|asymmetry| DriveRig {
-        excitation: Excitation::Relay {
-            gain: 0.5,
-            asymmetry,
-            hysteresis: 0.5,
-            flip: Some(flip),
-        },
+    carried_over(&rig, travel, flip, |rig| DriveRig {
+        samples: (flip / SAMPLING) as usize,
+        load: None,
         ..rig
-    });
-    let crosses = |rig: &DriveRig| {
-        let samples = (flip / support::drive_rig::SAMPLING) as usize;
-        let free = DriveRig {
-            samples,
-            load: None,
-            ..*rig
-        };
-        let record = free.measure();
-        let x = &record.outputs[0].values;
-        let (low, high) = x
-            .iter()
-            .fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(*x), h.max(*x)));
-        high - low > travel
-    };
-    tries.into_iter().find(crosses).unwrap_or(rig)
+    })
 }
 
 /// A rig with this gap: all that a diagnosis does not know is drawn from the seed.

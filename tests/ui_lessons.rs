@@ -5,7 +5,7 @@ mod ui;
 
 use egui_kittest::kittest::Queryable as _;
 use hysteron::lessons;
-use ui::{App, WIDE, app, click, finish, picture, state};
+use ui::{App, WIDE, app, finish, picture, state};
 
 /// Opens a lesson from the list.
 fn open(id: &str) -> App {
@@ -18,7 +18,7 @@ fn open(id: &str) -> App {
         .get_by_label(&format!("{}  {}", index + 1, lesson.title))
         .click();
     finish(&mut harness);
-    assert_eq!(state(&harness)["lesson"], id);
+    assert_eq!(state(&harness)["studied"], id);
     harness
 }
 
@@ -101,10 +101,10 @@ fn the_relay_and_its_hysteresis() {
         .get_by_label("Next lesson: Why does it oscillate?")
         .click_accesskit();
     finish(&mut harness);
-    assert_eq!(state(&harness)["lesson"], "oscillation");
+    assert_eq!(state(&harness)["studied"], "oscillation");
     harness.get_by_label("Close lesson").click_accesskit();
     finish(&mut harness);
-    assert_eq!(state(&harness)["lesson"], serde_json::Value::Null);
+    assert_eq!(state(&harness)["studied"], serde_json::Value::Null);
 }
 
 #[test]

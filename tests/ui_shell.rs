@@ -89,6 +89,20 @@ fn every_page_stands_in_a_phone_s_window_and_is_reached_by_its_menu() {
 }
 
 #[test]
+fn each_page_says_what_to_try_next_and_shows_it() {
+    for page in ["explore", "maps", "tune", "compare", "backlash"] {
+        let mut harness = app(page, WIDE);
+        finish(&mut harness);
+        let before = state(&harness)["link"].clone();
+        click(&mut harness, "Try it");
+        let after = state(&harness);
+        assert_eq!(after["notice"], serde_json::Value::Null, "{page}");
+        assert_eq!(after["page"], page);
+        assert_ne!(after["link"], before, "{page}");
+    }
+}
+
+#[test]
 fn what_was_changed_is_taken_back_and_done_again() {
     let mut harness = app("explore", WIDE);
     finish(&mut harness);
@@ -184,10 +198,18 @@ fn a_slider_is_reset_by_a_double_click() {
         .rect()
         .left_center()
         + egui::vec2(12.0, 0.0);
+    harness.hover_at(at);
+    harness.step();
+    // Each click within one frame: the test's clock goes a quarter of a second from frame to frame.
+    let click = |pressed| egui::Event::PointerButton {
+        pos: at,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
     for _ in 0..2 {
-        harness.hover_at(at);
-        harness.drag_at(at);
-        harness.drop_at(at);
+        let events = [true, false].map(click);
+        harness.input_mut().events.extend(events);
         harness.step();
     }
     finish(&mut harness);
@@ -209,8 +231,7 @@ fn each_look_draws_every_page() {
         for page in HysteronApp::default().page_ids() {
             let link = format!("v1;{page}");
             harness.state_mut().open_link(&ctx, &link).expect("a page");
-            harness.step();
-            harness.step();
+            finish(&mut harness);
             assert_eq!(state(&harness)["page"], page);
         }
     }
@@ -244,4 +265,80 @@ fn the_app_opens_as_it_was_left() {
     finish(&mut later);
     assert_eq!(state(&later)["page"], "explore");
     assert_eq!(state(&later)["compare"]["file"], serde_json::Value::Null);
+}
+
+/// The app with the last picture that it gave of itself.
+type Drawn = (HysteronApp, String);
+
+#[test]
+fn a_page_is_saved_as_a_picture_of_lines_and_words() {
+    let mut harness = egui_kittest::Harness::builder()
+        .with_size(egui::Vec2::from(WIDE))
+        .build_ui_state(
+            |ui, (app, svg): &mut Drawn| {
+                app.frame_ui(ui);
+                *svg = app.svg(ui);
+            },
+            (HysteronApp::at("explore"), String::new()),
+        );
+    for _ in 0..3 {
+        harness.step();
+    }
+    let svg = &harness.state().1;
+    for part in [
+        "<svg xmlns=",
+        "viewBox=\"0 0 1280 800\"",
+        "It oscillates: period 4.788 s",
+        "time [s]",
+        "its rate dy/dt [1/s]",
+        "rotate(-90",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    let long = svg.lines().filter(|l| l.matches('L').count() > 500).count();
+    assert!(long >= 2, "the curves are there: {long}");
+    assert!(!svg.contains("NaN"));
+    assert!(svg.trim_end().ends_with("</svg>"));
+    assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count());
+}
+
+#[test]
+fn the_numbers_of_a_page_are_saved_as_a_table() {
+    let mut harness = app("explore", WIDE);
+    finish(&mut harness);
+    let tables = harness.state().tables();
+    assert_eq!(tables.len(), 5);
+    let csv = tables[0].csv();
+    assert_eq!(csv.lines().next(), Some("time [s],output y"));
+    let rows: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|l| l.split(',').map(|n| n.parse().expect("a number")).collect())
+        .collect();
+    // The output of the exact cycle stays within its amplitude, and reaches it.
+    let late = rows.iter().filter(|r| r[0] > 40.0).map(|r| r[1].abs());
+    let largest = late.fold(0.0, f64::max);
+    assert!((largest / 0.285_687_386 - 1.0).abs() < 1e-3, "{largest}");
+
+    for (page, columns) in [
+        ("backlash", "t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]"),
+        ("tune", "time [s],output y"),
+    ] {
+        let mut harness = app(page, WIDE);
+        finish(&mut harness);
+        let tables = harness.state().tables();
+        let csv = tables.first().expect("a table").csv();
+        assert_eq!(csv.lines().next(), Some(columns));
+        assert!(csv.lines().count() > 100, "{page}");
+    }
+    let mut harness = app("explore", WIDE);
+    finish(&mut harness);
+    click(&mut harness, "Export");
+    for item in [
+        "Picture of this page (SVG)",
+        "Picture of this page (PNG)",
+        "Data: Nyquist curve (CSV)",
+    ] {
+        harness.get_by_label(item);
+    }
 }

@@ -1,15 +1,18 @@
 //! The shell around the pages.
 
+use std::sync::mpsc::{Receiver, Sender, channel};
+
 use egui::util::undoer::Undoer;
 
 use crate::address;
 use crate::bar::Bar;
 use crate::document::Document;
+use crate::export::{self, Table};
 use crate::notice::{self, Notice};
 use crate::pages::{Command, Desk, View, registry};
-use crate::shortcuts;
 use crate::theme::{self, Look};
 use crate::{lessons, link};
+use crate::{save, shortcuts};
 
 /// The app: the pages and what they share.
 pub struct HysteronApp {
@@ -24,6 +27,8 @@ pub struct HysteronApp {
     /// Whether the sheet with the keys is open.
     sheet: bool,
     notice: Option<Notice>,
+    /// What saving a file has to say.
+    said: (Sender<String>, Receiver<String>),
     #[cfg(target_arch = "wasm32")]
     address: address::Address,
     frame: u64,
@@ -41,6 +46,7 @@ impl Default for HysteronApp {
             look: Look::default(),
             sheet: false,
             notice: None,
+            said: channel(),
             #[cfg(target_arch = "wasm32")]
             address: address::Address::default(),
             frame: 0,
@@ -126,18 +132,25 @@ impl HysteronApp {
         egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present));
         let desk = &mut self.desk;
         desk.study.ui(ui, &mut desk.targets, &mut desk.commands);
+        let hint = self.pages.get(self.front).and_then(|p| p.hint());
+        if let Some((sentence, link)) = hint
+            && desk.study.lesson.is_none()
+        {
+            egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, sentence, link, desk));
+        }
         if let Some(page) = self.pages.get_mut(self.front) {
             page.ui(ui, desk);
         }
         for command in std::mem::take(&mut self.desk.commands) {
-            self.carry_out(ui.ctx(), command);
+            self.carry_out(ui, command);
         }
         self.overlays_ui(ui.ctx());
         #[cfg(target_arch = "wasm32")]
         crate::hook::publish(&self.hook_state());
     }
 
-    fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
+    fn carry_out(&mut self, ui: &egui::Ui, command: Command) {
+        let ctx = ui.ctx();
         match command {
             Command::Undo | Command::Redo => self.travel(ctx, command == Command::Undo),
             Command::Reset => {
@@ -160,6 +173,24 @@ impl HysteronApp {
             Command::Play => {
                 if let Some(page) = self.pages.get_mut(self.front) {
                     page.toggle_play();
+                }
+            }
+            Command::SaveSvg => {
+                let text = self.svg(ui);
+                let name = format!("{}.svg", self.document().page);
+                self.save(ctx, name, "Picture", "image/svg+xml", text);
+            }
+            Command::SavePng => {
+                let (said, again) = (self.said.0.clone(), ctx.clone());
+                let page = self.document().page;
+                ctx.request_screenshot(move |image| {
+                    save::save_png(&again, &page, export::png(&image), &said);
+                });
+            }
+            Command::SaveTable(name) => {
+                if let Some(table) = self.tables().into_iter().find(|t| t.name == name) {
+                    let file = format!("{}.csv", name.replace(' ', "-"));
+                    self.save(ctx, file, "Table", "text/csv;charset=utf-8", table.csv());
                 }
             }
             Command::NextLook => self.set_look(ctx, self.look.next()),
@@ -187,6 +218,42 @@ impl HysteronApp {
             Command::Go(id) => self.go(id),
             Command::SetLoop(input) => self.desk.relay_loop = *input,
         }
+    }
+
+    /// The page in front as a picture of lines; to be asked for within the frame, after drawing.
+    pub fn svg(&self, ui: &egui::Ui) -> String {
+        let (layer, size) = (ui.layer_id(), ui.ctx().content_rect());
+        let ground = ui.visuals().panel_fill;
+        ui.ctx().graphics(|graphics| {
+            let shapes = graphics
+                .get(layer)
+                .into_iter()
+                .flat_map(egui::layers::PaintList::all_entries);
+            export::svg(shapes, size, ground)
+        })
+    }
+
+    /// The numbers behind the page in front.
+    pub fn tables(&self) -> Vec<Table> {
+        let front = self.pages.get(self.front);
+        front.map_or_else(Vec::new, |p| p.tables())
+    }
+
+    fn save(
+        &self,
+        ctx: &egui::Context,
+        name: String,
+        kind: &'static str,
+        media: &'static str,
+        text: String,
+    ) {
+        let document = save::Document {
+            name,
+            kind,
+            media,
+            text,
+        };
+        save::save(ctx, document, &self.said.0);
     }
 
     /// Goes back to what was set before the last change, or forth again.
@@ -230,7 +297,7 @@ impl HysteronApp {
         state["busy"] = busy.into();
         state["page"] = front.map(|p| p.id()).into();
         state["frame"] = self.frame.into();
-        state["lesson"] = self.desk.study.lesson.clone().into();
+        state["studied"] = self.desk.study.lesson.clone().into();
         state["solved"] = serde_json::json!(self.desk.study.solved);
         state["look"] = self.look.name().into();
         state["link"] = self.link().into();
@@ -241,8 +308,11 @@ impl HysteronApp {
 
     fn bar_ui(&mut self, ui: &mut egui::Ui, present: &Document) {
         let pages: Vec<_> = self.pages.iter().map(|p| (p.id(), p.title())).collect();
+        let front = self.pages.get(self.front);
+        let tables: Vec<_> = front.map_or_else(Vec::new, |p| p.table_names());
         let bar = Bar {
             pages: &pages,
+            tables: &tables,
             front: self.front,
             undo: [
                 self.history.has_undo(present),
@@ -259,6 +329,9 @@ impl HysteronApp {
         if self.sheet {
             let titles: Vec<_> = self.pages.iter().map(|p| p.title()).collect();
             self.sheet = shortcuts::sheet_ui(ctx, &titles);
+        }
+        if let Some(text) = self.said.1.try_iter().last() {
+            self.notice = Some(Notice::done(ctx, text));
         }
         notice::ui(ctx, &mut self.notice);
     }
@@ -295,6 +368,18 @@ impl HysteronApp {
         }
         self.pages.get_mut(self.front)
     }
+}
+
+/// What to try next.
+fn hint_ui(ui: &mut egui::Ui, sentence: &str, link: &str, desk: &mut Desk) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(sentence);
+        let button = ui.small_button("Try it");
+        desk.targets.note("try", ui, &button);
+        if button.clicked() {
+            desk.commands.push(Command::OpenLink(link.to_owned()));
+        }
+    });
 }
 
 fn drop_hint_ui(ctx: &egui::Context) {

@@ -17,6 +17,8 @@ pub struct Bar<'a> {
     pub front: usize,
     /// Whether there is something to take back, and to do again.
     pub undo: [bool; 2],
+    /// Names of the tables that the page in front can save.
+    pub tables: &'a [&'static str],
     /// The look of the app.
     pub look: Look,
 }
@@ -76,6 +78,19 @@ impl Bar<'_> {
             commands.push(Command::CopyLink);
             ui.close();
         }
+        ui.menu_button("Export", |ui| {
+            let mut item = |label: String, command| {
+                if ui.button(label).clicked() {
+                    commands.push(command);
+                    ui.close();
+                }
+            };
+            item("Picture of this page (SVG)".to_owned(), Command::SaveSvg);
+            item("Picture of this page (PNG)".to_owned(), Command::SavePng);
+            for table in self.tables {
+                item(format!("Data: {table} (CSV)"), Command::SaveTable(table));
+            }
+        });
         ui.menu_button("Look", |ui| {
             for look in Look::ALL {
                 if ui.radio(self.look == look, look.name()).clicked() {

@@ -7,6 +7,7 @@ mod bar;
 pub mod cli;
 mod colors;
 mod document;
+pub mod export;
 mod files;
 mod hook;
 mod jobs;

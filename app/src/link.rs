@@ -187,7 +187,11 @@ fn escape(text: &str) -> String {
         if is_safe(byte) {
             escaped.push(char::from(byte));
         } else {
-            escaped.push_str(&format!("%{byte:02X}"));
+            escaped.push('%');
+            for digit in [byte >> 4, byte & 15] {
+                let digit = char::from_digit(u32::from(digit), 16).unwrap_or('0');
+                escaped.push(digit.to_ascii_uppercase());
+            }
         }
     }
     escaped

@@ -21,7 +21,7 @@ fn lag(order: usize) -> TransferFunction {
     TransferFunction::new(&[1.0], &denominator, 0.0)
 }
 
-const ORDERS: [usize; 4] = [3, 4, 8, 12];
+const ORDERS: [usize; 5] = [2, 3, 4, 8, 12];
 
 fn simulation(c: &mut Criterion) {
     let relay = Relay::default();

@@ -2,7 +2,9 @@
 //! visible: they raise the error of the baseline to a few times the noise, seldom beyond twenty times.
 
 use super::case::{Bench, Case, Truth};
-use super::drive_rig::{DriveRig, Excitation, Friction, Load, Recorded, Stranger, drifting, relay};
+use super::drive_rig::{
+    DriveRig, Excitation, Friction, Load, Recorded, Stranger, carried_over, drifting, relay,
+};
 use super::random::Random;
 
 /// With two levels of input, any static map of it is a gain and an offset, and the gain goes into the
@@ -86,31 +88,12 @@ pub fn bare(random: &mut Random, excitation: Excitation) -> DriveRig {
     }
 }
 
-/// The same with the first asymmetry of the relay that makes the motor cross the gap, as one would try
-/// them at the bench: a sampled relay locks to its clock at some inertias, and then nothing drifts.
+/// The same with a relay that makes the motor cross the gap.
 fn crossing(rig: DriveRig, half_gap: f64, flip: f64) -> DriveRig {
-    let tries = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4].map(|asymmetry| DriveRig {
-        excitation: Excitation::Relay {
-            gain: 0.5,
-            asymmetry,
-            hysteresis: 0.5,
-            flip: Some(flip),
-        },
+    carried_over(&rig, 3.0 * half_gap, flip, |rig| DriveRig {
+        samples: 8000,
         ..rig
-    });
-    let crosses = |rig: &DriveRig| {
-        let shorter = DriveRig {
-            samples: 8000,
-            ..*rig
-        };
-        let record = shorter.measure();
-        let x = &record.outputs[0].values;
-        let (low, high) = x
-            .iter()
-            .fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(*x), h.max(*x)));
-        high - low > 3.0 * half_gap
-    };
-    tries.into_iter().find(crosses).unwrap_or(rig)
+    })
 }
 
 /// Excitations in which a clean drive must stay clean.

@@ -12,13 +12,13 @@ use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
 
 use super::random::Random;
 
-/// Resolution of the encoder, rad.
+/// Resolution of the encoder unless said otherwise, rad.
 const ENCODER: f64 = TAU / 1_048_576.0;
 /// Standard deviation of the velocity noise, rad/s.
 const VELOCITY_NOISE: f64 = 2e-3;
-/// Sampling time of the controller and the record, s.
+/// Sampling time of the controller and the record unless said otherwise, s.
 pub const SAMPLING: f64 = 2e-4;
-/// Steps of integration in a sample; stiff contact needs the finer one.
+/// Steps of integration in that time; stiff contact needs the finer one.
 const SUBSTEPS: usize = 20;
 const SUBSTEPS_CONTACT: usize = 200;
 /// Fixed-point iterations of the implicit midpoint rule; each gains two digits or more here.
@@ -49,6 +49,14 @@ pub enum Excitation {
     },
     /// These levels in turn, over and over, each for so many seconds.
     Levels { levels: [f64; 16], hold: f64 },
+    /// A position loop closed over the encoder: moves within plus or minus `reach` rad, one in each `period` s
+    /// with a dwell after it; stiffness in N m/rad and damping in N m s/rad of the controller.
+    Servo {
+        reach: f64,
+        period: f64,
+        stiffness: f64,
+        damping: f64,
+    },
 }
 
 /// Relay with the paper's default levels.
@@ -190,6 +198,12 @@ pub struct DriveRig {
     pub seed: u64,
     pub excitation: Excitation,
     pub samples: usize,
+    /// Sampling time of the controller and the record, s.
+    pub sampling: f64,
+    /// Resolution of the encoder, rad.
+    pub encoder: f64,
+    /// Standard deviation of the velocity noise, rad/s.
+    pub velocity_noise: f64,
     /// Divides the steps of integration, to show that they are small enough.
     pub refine: usize,
     pub recorded: Recorded,
@@ -225,6 +239,9 @@ impl Default for DriveRig {
             seed: 1,
             excitation: relay(0.1),
             samples: 10_000,
+            sampling: SAMPLING,
+            encoder: ENCODER,
+            velocity_noise: VELOCITY_NOISE,
             refine: 1,
             recorded: Recorded::Both,
             inertia: 8.8e-4,
@@ -261,14 +278,45 @@ struct State {
     seen_v: f64,
 }
 
+/// A drifting test on `rig`, whose relay flips every `flip` s: the first asymmetry with which the motor of
+/// the `trial` rig travels more than `travel` rad, as one would try them at the bench. A sampled relay locks
+/// to its clock at some inertias, and then nothing drifts.
+#[allow(dead_code, reason = "not every test needs one")]
+pub fn carried_over(
+    rig: &DriveRig,
+    travel: f64,
+    flip: f64,
+    trial: impl Fn(DriveRig) -> DriveRig,
+) -> DriveRig {
+    let tries = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4].map(|asymmetry| DriveRig {
+        excitation: Excitation::Relay {
+            gain: 0.5,
+            asymmetry,
+            hysteresis: 0.5,
+            flip: Some(flip),
+        },
+        ..*rig
+    });
+    let crosses = |rig: &DriveRig| {
+        let record = trial(*rig).measure();
+        let x = &record.outputs[0].values;
+        let (low, high) = x
+            .iter()
+            .fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(*x), h.max(*x)));
+        high - low > travel
+    };
+    tries.into_iter().find(crosses).unwrap_or(*rig)
+}
+
 impl DriveRig {
     /// Runs the experiment.
     pub fn measure(&self) -> Measurement {
         let mut random = Random::new(self.seed);
-        let mut controller = Controller::new(self.excitation, &mut random);
+        let mut controller = Controller::new(self.excitation, self.sampling, &mut random);
         let stiff = self.load.is_some_and(|l| l.half_gap > 0.0);
         let substeps = self.refine * if stiff { SUBSTEPS_CONTACT } else { SUBSTEPS };
-        let h = SAMPLING / substeps as f64;
+        let substeps = ((substeps as f64 * self.sampling / SAMPLING).round() as usize).max(1);
+        let h = self.sampling / substeps as f64;
         let late = (self.delay / h).round() as usize;
         let mut s = State {
             x2: self.load_start,
@@ -279,7 +327,7 @@ impl DriveRig {
         let (mut time, mut input, mut position, mut velocity) = (vec![], vec![], vec![], vec![]);
         let mut load_position = vec![];
         for i in 0..self.samples {
-            let t = i as f64 * SAMPLING;
+            let t = i as f64 * self.sampling;
             let lags = self.sensor_lag > 0.0;
             let v = if lags { s.seen_v } else { s.v1 };
             let x = if lags && self.recorded == Recorded::PositionOnly {
@@ -287,13 +335,14 @@ impl DriveRig {
             } else {
                 s.x1
             };
-            let measured = v + VELOCITY_NOISE * random.normal();
-            let u = controller.command(t, measured);
+            let measured = v + self.velocity_noise * random.normal();
+            let counted = |x: f64| (x / self.encoder).round() * self.encoder;
+            let u = controller.command(t, counted(x), measured);
             time.push(t);
             input.push(u);
-            position.push((x / ENCODER).round() * ENCODER);
+            position.push(counted(x));
             velocity.push(measured);
-            load_position.push((s.x2 / ENCODER).round() * ENCODER);
+            load_position.push(counted(s.x2));
             acting.push(self.amplified(u, &mut memory));
             for j in 0..substeps {
                 let now = i * substeps + j;
@@ -339,7 +388,7 @@ impl DriveRig {
             }) => -mid.v1.signum() * torque * (-((mid.v1.abs() - centre) / width).powi(2)).exp(),
             Some(Stranger::Spring { stiffness }) => -stiffness * mid.x1,
             Some(Stranger::Warming { factor }) => {
-                -self.viscous * factor * t / (self.samples as f64 * SAMPLING) * mid.v1
+                -self.viscous * factor * t / (self.samples as f64 * self.sampling) * mid.v1
             }
             Some(Stranger::PositionBump { torque, at, width }) => {
                 -torque * (-((mid.x1 - at) / width).powi(2)).exp()
@@ -431,16 +480,37 @@ fn channel(quantity: Quantity, name: &str, unit: &str, values: Vec<f64>) -> Chan
     }
 }
 
+/// Where a servo shall be, from -1 to 1, after so many moves: each goes to a new place within three fifths of
+/// its time, with the least jerk (Flash and Hogan 1985).
+fn move_at(moves: f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let place = |k: f64| {
+        if k <= 0.0 {
+            0.0
+        } else {
+            2.0 * (k * GOLDEN).fract() - 1.0
+        }
+    };
+    let from = moves.floor();
+    let s = ((moves - from) / 0.6).min(1.0);
+    let share = s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s);
+    place(from) + (place(from + 1.0) - place(from)) * share
+}
+
 /// The sampled controller.
 struct Controller {
     excitation: Excitation,
     high: bool,
     /// Frequency (rad/s) and phase.
     sines: Vec<(f64, f64)>,
+    /// Sampling time, s.
+    sampling: f64,
+    /// Error of the position one sample ago, rad.
+    error: Option<f64>,
 }
 
 impl Controller {
-    fn new(excitation: Excitation, random: &mut Random) -> Self {
+    fn new(excitation: Excitation, sampling: f64, random: &mut Random) -> Self {
         let sines = (0..10)
             .map(|i| {
                 (
@@ -453,10 +523,12 @@ impl Controller {
             excitation,
             high: false,
             sines,
+            sampling,
+            error: None,
         }
     }
 
-    fn command(&mut self, t: f64, velocity: f64) -> f64 {
+    fn command(&mut self, t: f64, position: f64, velocity: f64) -> f64 {
         match self.excitation {
             Excitation::Relay {
                 gain,
@@ -505,6 +577,17 @@ impl Controller {
                     2 => -level,
                     _ => 0.0,
                 }
+            }
+            Excitation::Servo {
+                reach,
+                period,
+                stiffness,
+                damping,
+            } => {
+                let error = reach * move_at(t / period) - position;
+                let rate = self.error.map_or(0.0, |e| (error - e) / self.sampling);
+                self.error = Some(error);
+                stiffness * error + damping * rate
             }
         }
     }

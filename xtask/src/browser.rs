@@ -24,10 +24,13 @@ pub fn test() -> Result<(), String> {
     std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
     let port = serve::in_background()?;
     let session = Session::start(&folder.join("profile"))?;
-    session.open(&format!("http://127.0.0.1:{port}/"))?;
-    wait(&session, "the page to start", |s| s["ready"] == true)?;
-    look(&session, &folder.join("explore.png"))?;
-    click(&session, "page:compare")?;
+    let page = format!("http://127.0.0.1:{port}/");
+    session.open(&page)?;
+    wait(&session, "the page to start", |s| {
+        s["ready"] == true && s["page"] == "start"
+    })?;
+    look(&session, &folder.join("start.png"))?;
+    click(&session, "door:compare")?;
     wait(&session, "the compare page", |s| {
         s["page"] == "compare" && !s["targets"]["builtin:drive-02"].is_null()
     })?;
@@ -48,8 +51,64 @@ pub fn test() -> Result<(), String> {
         return Err(format!("the error fell from {error} to {fallen} only"));
     }
     look(&session, &folder.join("added.png"))?;
+    share(&session, &page, &after)?;
+    offline(&session, &page)?;
     speed::report(&session)?;
     session.quiet()
+}
+
+/// Copies the link of what is shown and opens it anew: the same must be there.
+fn share(session: &Session, page: &str, shown: &Value) -> Result<(), String> {
+    click(session, "copy link")?;
+    wait(session, "the word that the link is copied", |s| {
+        s["notice"].is_string()
+    })?;
+    let address = session.address()?;
+    let expected = format!("{page}#{}", shown["link"].as_str().unwrap_or_default());
+    if address != expected {
+        return Err(format!("the address bar says {address}, not {expected}"));
+    }
+    session.open("about:blank")?;
+    session.open(&address)?;
+    let again = wait(session, "the page of the link", |s| {
+        s["busy"] == false && s["error"].is_number() && s["link"] == shown["link"]
+    })?;
+    for key in ["page", "file", "effects", "error", "verdict"] {
+        if again[key] != shown[key] {
+            return Err(format!(
+                "the link shows another {key}: {} instead of {}",
+                again[key], shown[key]
+            ));
+        }
+    }
+    println!("the link shows the same: {address}");
+    session.open("about:blank")?;
+    session.open(&format!("{page}#v1;explore;loop.relay.gain=-1"))?;
+    let refused = wait(session, "the refusal of a bad link", |s| {
+        s["notice"].is_string()
+    })?;
+    println!("a bad link is refused: {}", refused["notice"]);
+    Ok(())
+}
+
+/// Loads the page again without a network.
+fn offline(session: &Session, page: &str) -> Result<(), String> {
+    let started = Instant::now();
+    while !session.kept_for_offline()? {
+        if started.elapsed() > PATIENCE {
+            return Err("the page was not kept for visits without a network".to_owned());
+        }
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    session.open("about:blank")?;
+    session.network(false)?;
+    session.open(&format!("{page}#v1;lessons"))?;
+    wait(session, "the page without a network", |s| {
+        s["ready"] == true && s["page"] == "lessons"
+    })?;
+    session.network(true)?;
+    println!("the page opens without a network");
+    Ok(())
 }
 
 fn has_candidate(state: &Value) -> bool {

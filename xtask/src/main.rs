@@ -1,9 +1,11 @@
 //! Set-up, web build, serve and tests: `cargo xtask help`.
 
 mod browser;
+mod offline;
 mod run;
 mod serve;
 mod setup;
+mod size;
 mod test;
 mod web;
 

@@ -7,7 +7,9 @@ use std::process::Command;
 
 use wasm_bindgen_cli_support::Bindgen;
 
+use crate::offline;
 use crate::run::{check, output, root, run};
+use crate::size;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -32,16 +34,12 @@ pub fn build() -> Result<(), String> {
     fs::copy(&page, dist.join("index.html")).map_err(|e| format!("{}: {e}", page.display()))?;
     let worker = "import init from \"./worker_bindings.js\";\nawait init();\n";
     fs::write(dist.join("worker.js"), worker).map_err(|e| format!("worker.js: {e}"))?;
-    for (_, name) in BINARIES {
-        let path = dist.join(format!("{name}_bg.wasm"));
-        let size = fs::metadata(&path).map_or(0, |m| m.len());
-        println!("{}: {:.1} MB", path.display(), size as f64 / 1e6);
-    }
+    offline::write(&dist)?;
     println!(
         "The page is in {}; see it with cargo xtask serve.",
         dist.display()
     );
-    Ok(())
+    size::report(&dist)
 }
 
 /// Makes the JavaScript bindings of one module.

@@ -13,7 +13,8 @@ use std::sync::{Mutex, PoisonError, mpsc};
 
 use serde::Serialize;
 
-use super::diagnose::{Arguments, Format, Report, Setup, one};
+use super::Format;
+use super::diagnose::{Arguments, Report, Setup, one};
 
 /// A file that could not be diagnosed, as a line of JSON.
 #[derive(Serialize)]

@@ -13,6 +13,7 @@ use hysteron_core::measurement::{
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
+use super::Format;
 use crate::pieces;
 
 #[derive(Debug, clap::Args)]
@@ -62,14 +63,6 @@ enum Kind {
     Drive,
     /// Any input u, any output y
     Process,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(super) enum Format {
-    /// A report in words and tables
-    Text,
-    /// One JSON object; of many files one line each
-    Json,
 }
 
 /// A value of an option and how it was written.

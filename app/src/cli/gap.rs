@@ -7,6 +7,8 @@ use hysteron_core::backlash::{BacklashMap, GapEstimate, backlash_map, estimate_g
 use hysteron_core::measurement::{ImportOptions, Mapping, Quantity, TorqueConstant};
 use serde_json::json;
 
+use super::Format;
+
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
 
@@ -27,14 +29,6 @@ pub(super) struct Arguments {
     /// For a person or for a program
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Format {
-    /// A sentence and the traverses
-    Text,
-    /// One JSON object
-    Json,
 }
 
 /// The estimate, or one line that says what is wrong with the input.

@@ -10,6 +10,7 @@ use hysteron_core::scenario::{AnyScenario, Scenario};
 use hysteron_core::simulate::Options;
 use serde_json::json;
 
+use super::Format;
 use super::limit_cycle_drive::DriveReport;
 
 /// Version of the JSON object.
@@ -29,14 +30,6 @@ pub(super) struct Arguments {
     /// For a person or for a program
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Format {
-    /// Tables and a sentence
-    Text,
-    /// One JSON object
-    Json,
 }
 
 /// Period and amplitude.

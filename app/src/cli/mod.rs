@@ -39,6 +39,15 @@ enum Command {
     Gap(gap::Arguments),
 }
 
+/// How a result is written.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Format {
+    /// Words and tables
+    Text,
+    /// One JSON object; of many files one line each
+    Json,
+}
+
 fn dispatch(command: &Command) -> ExitCode {
     match command {
         Command::Diagnose(arguments) => diagnose::run(arguments),

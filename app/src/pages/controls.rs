@@ -23,12 +23,27 @@ pub fn slider(
             .max_decimals(3)
             .clamping(egui::SliderClamping::Edits),
     );
-    if response.double_clicked() {
+    if track_double_clicked(ui, &response) {
         *value = normal;
     } else if response.changed() {
         *value = shown / scale;
     }
     response
+}
+
+/// Whether the slider itself was double-clicked, not the number beside it: that one takes what is typed.
+/// egui's sliders sense drags only, so that they never say that they were clicked.
+fn track_double_clicked(ui: &egui::Ui, response: &egui::Response) -> bool {
+    let mut track = response.rect;
+    track.set_width(ui.spacing().slider_width);
+    let pointer = ui.input(|i| {
+        let twice = i
+            .pointer
+            .button_double_clicked(egui::PointerButton::Primary);
+        twice.then(|| i.pointer.interact_pos()).flatten()
+    });
+    response.enabled()
+        && pointer.is_some_and(|at| track.contains(at) && response.contains_pointer())
 }
 
 /// What a figure of the paper claims, and whether it is so with what is set now.

@@ -13,6 +13,7 @@ mod tune;
 
 use hysteron_core::explore::ExploreInput;
 
+use crate::export::Table;
 use crate::hook::Targets;
 use crate::lessons::Study;
 use crate::theme::Look;
@@ -38,6 +39,18 @@ pub trait View {
     ) -> Result<(), String>;
     /// What it shows, for tests: an object, with `busy` while a job runs.
     fn hook_state(&self) -> serde_json::Value;
+    /// The numbers behind what it shows, one table for each of [`Self::table_names`].
+    fn tables(&self) -> Vec<Table> {
+        Vec::new()
+    }
+    /// Names of the tables that it can give now.
+    fn table_names(&self) -> Vec<&'static str> {
+        Vec::new()
+    }
+    /// What to try next on it: a sentence, and the link that shows it.
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        None
+    }
     /// Plays or pauses, if something moves on it.
     fn toggle_play(&mut self) {}
     /// Whether files can be opened on it.
@@ -101,6 +114,10 @@ pub enum Command {
     Lesson(Option<String>),
     /// Checks the question of the lesson.
     Check,
+    /// Saves the page as a picture of lines or of pixels, or a table of its numbers.
+    SaveSvg,
+    SavePng,
+    SaveTable(&'static str),
     /// Changes how the app looks.
     NextLook,
     SetLook(Look),

@@ -5,9 +5,10 @@ use hysteron_core::relay::Relay;
 use serde::{Deserialize, Serialize};
 
 use super::controls::slider;
-use super::explore::plots;
+use super::explore::{TABLES, plots, tables};
 use super::{Command, Desk, View};
 use crate::document::parsed;
+use crate::export::Table;
 use crate::theme;
 
 /// Simulated periods that are played in a second.
@@ -100,6 +101,14 @@ impl View for Start {
 
     fn toggle_play(&mut self) {
         self.playing = !self.playing;
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        self.data().map_or_else(Vec::new, |_| TABLES.to_vec())
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        self.data().map_or_else(Vec::new, tables)
     }
 
     fn settings(&self) -> serde_json::Value {

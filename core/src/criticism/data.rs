@@ -2,13 +2,10 @@
 
 use super::CriticismError;
 use super::noise::noise_level;
+use super::window::drive_window;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::model::{Excitation, Sensor, Start};
-
-/// Samples per window of a drive: its position integrates, so that long windows would drown the
-/// effect in drift; a few relay periods fit in.
-pub(super) const DRIVE_WINDOW: usize = 250;
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
@@ -101,7 +98,8 @@ impl Data {
         }
         let (window, block) = match measurement.kind {
             Kind::Drive => {
-                let w = (n / MIN_BLOCKS).clamp(MIN_WINDOW, DRIVE_WINDOW);
+                let longest = (n / MIN_BLOCKS).max(MIN_WINDOW);
+                let w = drive_window(&outputs, longest);
                 (w, w)
             }
             Kind::Process => (
@@ -288,6 +286,11 @@ impl Data {
             viscous: viscous.abs().max(inertia.abs() / (step * n as f64)),
             speed,
             travel: high - low,
+            resolution: self
+                .outputs
+                .iter()
+                .find(|o| !o.is_velocity)
+                .map_or(0.0, |o| o.noise),
             time_constant: if constant.is_finite() {
                 constant
             } else {

@@ -1,6 +1,7 @@
 //! Long computations as resumable jobs: threads natively, a worker on the web, a loop in tests.
 
 use super::race::{Piece, one_by_one};
+use super::select::is_trifle;
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
 use super::{Diagnosis, Limits, Step, StepReport};
@@ -265,7 +266,8 @@ impl DiagnosisJob {
             Some(other) if !self.diagnosis.verdict.complete => other,
             _ => (self.diagnosis.clone(), self.last.take()),
         };
-        if best.0.verdict.complete || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
+        let settled = best.0.verdict.complete || trifling(&best.0, &session);
+        if settled || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
             (self.diagnosis, self.last) = best;
             return Some(self.diagnosis.clone());
         }
@@ -282,6 +284,13 @@ impl DiagnosisJob {
     pub fn evidence(&self) -> Option<(&StepReport, &StepReport)> {
         self.first.as_ref().zip(self.last.as_ref())
     }
+}
+
+/// Whether the last model leaves a trifle of what there was at first: another way would find nothing else.
+fn trifling(diagnosis: &Diagnosis, session: &Session) -> bool {
+    let last = diagnosis.steps.last().map(|s| s.error);
+    last.zip(session.baseline.as_ref())
+        .is_some_and(|(error, first)| is_trifle(error, first))
 }
 
 /// The report without what is as long as the measurement.

@@ -20,6 +20,7 @@ mod session;
 mod step;
 mod structure;
 mod verdict;
+mod window;
 
 pub use atlas::{Profile, ProfileBin};
 pub use job::{CriticismError, DiagnosisJob, Progress};

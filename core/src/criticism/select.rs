@@ -73,9 +73,17 @@ pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
 }
 
 /// Whether a `part` of an effect does as well as the `whole` for all that the data can tell: what is left may be
-/// correlated so far that the whole gains by chance.
-pub(super) fn suffices(part: &Score, whole: &Score) -> bool {
-    statistic(part, whole) < SAME_STATISTIC && fall(part, whole) < LEAST_FALL
+/// correlated so far that the whole gains by chance, or it is next to nothing of what there was at `first`.
+pub(super) fn suffices(part: &Score, whole: &Score, first: &Score) -> bool {
+    (statistic(part, whole) < SAME_STATISTIC && fall(part, whole) < LEAST_FALL)
+        || !matters(part, whole, first)
+}
+
+/// Whether the step from `before` to `after` takes away more than a trifle of the error that there was at
+/// `first`: below that, an effect only mends what a clock, a rig or an equation is off by.
+pub(super) fn matters(before: &Score, after: &Score, first: &Score) -> bool {
+    let gain = (before.error.powi(2) - after.error.powi(2)).max(0.0).sqrt();
+    gain > SMALL_SHARE * first.error
 }
 
 /// Whether what is left looks like noise in itself.
@@ -86,10 +94,15 @@ pub(super) fn is_plain_noise(score: &Score) -> bool {
 
 /// Whether what is left is noise, against what the baseline left at first.
 pub(super) fn is_noise(score: &Score, first: &Score) -> bool {
-    let excess = (score.error.powi(2) - 1.0).max(0.0).sqrt();
     is_plain_noise(score)
-        || (score.error < SMALL_ERROR && excess < SMALL_SHARE * first.error)
+        || (score.error < SMALL_ERROR && is_trifle(score.error, first))
         || is_noise_but_for_stretches(score, first)
+}
+
+/// Whether what is left beyond the noise is a trifle of what there was at `first`, though it may be many times
+/// the noise: the effects found are the right ones.
+pub(super) fn is_trifle(error: f64, first: &Score) -> bool {
+    (error.powi(2) - 1.0).max(0.0).sqrt() < SMALL_SHARE * first.error
 }
 
 /// Whether the held-back blocks are noise but for a few, and these are explained to a hundredth of what

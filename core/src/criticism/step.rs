@@ -4,8 +4,9 @@ use super::knowledge::contradictions;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Hypothesis, TRYING};
 use super::race::{Piece, Race, one_by_one};
+use super::score::Score;
 use super::search::Search;
-use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, same, suffices};
+use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, matters, same, suffices};
 use super::session::{Scored, Session};
 use super::verdict::{Class, add_experiments, add_idle, add_rest, verdict};
 use super::{
@@ -352,7 +353,9 @@ impl StepJob {
             let swapped = self.session.scored(fit);
             if own.contains().contains(&effect.id()) {
                 let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
-                if enough(model, &swapped) && self.simpler.as_ref().is_none_or(fewer) {
+                if enough(model, &swapped, self.session.first(model))
+                    && self.simpler.as_ref().is_none_or(fewer)
+                {
                     self.simpler = Some(swapped);
                 }
             } else if alike(model, &swapped) && same_body(model, &swapped) {
@@ -381,19 +384,20 @@ impl StepJob {
         if !self.contradicted.is_empty() {
             return None;
         }
+        let first = self.session.first(model);
         // A part of an effect that leaves nothing but noise is not widened to the whole.
         let settled = is_plain_noise(&model.score);
         let widens = |e: &dyn Effect| self.wanted.iter().any(|w| e.contains().contains(&w.id()));
         let helping = || {
             self.tried
                 .iter()
-                .filter(|(e, s)| !(settled && widens(*e)) && helps_clearly(model, s))
+                .filter(|(e, s)| !(settled && widens(*e)) && helps_clearly(model, s, first))
         };
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
             .filter(|(e, s)| {
                 if best.0.contains().contains(&e.id()) {
-                    enough(&best.1, s)
+                    enough(&best.1, s, first)
                 } else {
                     let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
                     alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
@@ -507,6 +511,7 @@ impl StepJob {
     /// Every effect tried, best first; the suggested one leads.
     fn candidates(&self, model: &Scored, suggestion: Option<EffectId>) -> Vec<Candidate> {
         let length = model.fit.values.len();
+        let first = self.session.first(model);
         let mut candidates: Vec<Candidate> = self
             .tried
             .iter()
@@ -517,8 +522,8 @@ impl StepJob {
                     .iter()
                     .filter(|(other, o)| {
                         !nested(*other, *effect)
-                            && helps_clearly(model, scored)
-                            && helps_clearly(model, o)
+                            && helps_clearly(model, scored, first)
+                            && helps_clearly(model, o, first)
                             && same(
                                 &scored.score,
                                 scored.fit.values.len(),
@@ -541,7 +546,7 @@ impl StepJob {
                     } else {
                         delta_bic(&model.score, length, &scored.score, scored.fit.values.len())
                     },
-                    significant: helps_clearly(model, scored),
+                    significant: helps_clearly(model, scored, first),
                     parameters: self
                         .session
                         .parameters(scored)
@@ -607,10 +612,11 @@ impl StepJob {
         let Some((suggested, _)) = self.suggestion(model) else {
             return Vec::new();
         };
+        let first = self.session.first(model);
         let mut others: Vec<&Scored> = self
             .tried
             .iter()
-            .filter(|(e, s)| !nested(*e, *suggested) && helps_clearly(model, s))
+            .filter(|(e, s)| !nested(*e, *suggested) && helps_clearly(model, s, first))
             .map(|(_, s)| s)
             .collect();
         others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
@@ -619,8 +625,8 @@ impl StepJob {
 }
 
 /// Whether a part of an effect does in place of the whole: as well, or so that noise alone is left.
-fn enough(whole: &Scored, part: &Scored) -> bool {
-    alike(whole, part) || is_plain_noise(&part.score) || suffices(&part.score, &whole.score)
+fn enough(whole: &Scored, part: &Scored, first: &Score) -> bool {
+    alike(whole, part) || is_plain_noise(&part.score) || suffices(&part.score, &whole.score, first)
 }
 
 /// Whether two models leave the same error within noise.
@@ -663,8 +669,8 @@ const LEAST_ERRORS: f64 = 1.5;
 const HUGE_FALL: f64 = 0.5;
 
 /// Whether the last effect of `with` helps `model`, and is itself seen.
-fn helps_clearly(model: &Scored, with: &Scored) -> bool {
-    if !helps(&model.score, &with.score) {
+fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
+    if !helps(&model.score, &with.score) || !matters(&model.score, &with.score, first) {
         return false;
     }
     let fall = fall(&model.score, &with.score);

@@ -101,11 +101,9 @@ pub(super) fn add_rest(verdict: &mut Verdict, error: f64, first: f64, findings: 
     }
     let _ = write!(verdict.text, " The error is {error:.2} times the noise");
     if !verdict.missing.is_empty() {
-        let _ = write!(
-            verdict.text,
-            ", {:.0} % of what it was at first",
-            100.0 * error / first
-        );
+        let share = 100.0 * error / first;
+        let digits = if share < 1.0 { 2 } else { 0 };
+        let _ = write!(verdict.text, ", {share:.digits$} % of what it was at first");
     }
     verdict.text.push('.');
     if let Some(strongest) = findings.first() {

@@ -389,6 +389,18 @@ impl Probe {
         level.max(LEAST_FRICTION * self.scales.force)
     }
 
+    /// Constant force that the unexplained force suggests, beside friction and another body.
+    pub fn offset(&self) -> f64 {
+        let sign = self.signature(|_, v| v.signum());
+        let friction: Box<dyn Fn(usize) -> f64 + '_> = Box::new(|k| 0.5 * (sign[k] + sign[k + 1]));
+        let solved = match self.kind {
+            Kind::Drive => self.solve(&[friction], 1),
+            Kind::Process => self.solve(&[], 1),
+        };
+        let found = solved.map(|(c, _)| c[2] / (self.inverse_inertia + c[0]));
+        found.filter(|f| f.is_finite()).unwrap_or(0.0)
+    }
+
     /// Largest commanded input.
     pub fn largest_input(&self) -> f64 {
         self.input.iter().fold(0.0, |m: f64, u| m.max(u.abs()))

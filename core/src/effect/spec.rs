@@ -105,7 +105,7 @@ pub enum Range {
     Stiff,
     /// At least [`LIGHTEST`] times its [`Scales::of`].
     Sizeable,
-    /// [`RIGID_CROSSINGS`] to [`SHORT_CROSSINGS`] times [`Scales::crossed`].
+    /// [`RIGID_CROSSINGS`] to [`SHORT_CROSSINGS`] times [`Scales::crossed`], or as far as the position is blurred.
     Short,
     /// At least [`RIGID_CROSSINGS`] times [`Scales::crossed`].
     Long,
@@ -144,6 +144,9 @@ pub struct ParameterSpec {
 /// A displacement counts as short up to this many times that which a sample crosses after a reversal:
 /// more than that can be seen building up sample by sample.
 pub const SHORT_CROSSINGS: f64 = 8.0;
+
+/// Nor can it be seen within this many times the noise of the position.
+pub const BLURRED: f64 = 1.0;
 
 /// Below this share of it the contact cannot be told from a rigid one.
 pub const RIGID_CROSSINGS: f64 = 0.04;
@@ -188,7 +191,8 @@ impl ParameterSpec {
             Range::Sizeable => value.max(LIGHTEST * scale),
             Range::Short => {
                 let crossed = scales.crossed();
-                value.clamp(RIGID_CROSSINGS * crossed, SHORT_CROSSINGS * crossed)
+                let longest = (SHORT_CROSSINGS * crossed).max(BLURRED * scales.resolution);
+                value.clamp(RIGID_CROSSINGS * crossed, longest)
             }
             Range::Long => value.max(RIGID_CROSSINGS * scales.crossed()),
             Range::Repeating => value.max(WHOLE_TURN * scale),
@@ -213,6 +217,8 @@ pub struct Scales {
     pub speed: f64,
     /// Range of the position over the whole record.
     pub travel: f64,
+    /// Standard deviation of the noise of the position; 0 where it is not measured.
+    pub resolution: f64,
     /// Time constant of the baseline fit, s.
     pub time_constant: f64,
 }

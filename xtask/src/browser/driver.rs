@@ -88,6 +88,32 @@ impl Session {
         serde_json::from_str(text.as_str().unwrap_or("{}")).map_err(|e| e.to_string())
     }
 
+    /// What the address bar says.
+    pub fn address(&self) -> Result<String, String> {
+        let address = self.script("return window.location.href")?;
+        Ok(address.as_str().unwrap_or_default().to_owned())
+    }
+
+    /// Whether the service worker has taken the page over.
+    pub fn kept_for_offline(&self) -> Result<bool, String> {
+        let kept = self
+            .script("return !!(navigator.serviceWorker && navigator.serviceWorker.controller)")?;
+        Ok(kept == true)
+    }
+
+    /// Takes the network from the page, or gives it back.
+    pub fn network(&self, there: bool) -> Result<(), String> {
+        let limits = json!({"offline": !there, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1});
+        for (command, params) in [
+            ("Network.enable", json!({})),
+            ("Network.emulateNetworkConditions", limits),
+        ] {
+            let body = json!({"cmd": command, "params": params});
+            self.command("POST", "goog/cdp/execute", &body)?;
+        }
+        Ok(())
+    }
+
     fn script(&self, script: &str) -> Result<Value, String> {
         self.command(
             "POST",

@@ -16,6 +16,7 @@ use super::{Desk, View};
 pub use settings::is_built_in;
 
 use crate::document::parsed;
+use crate::export::Table;
 use crate::files::Files;
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
@@ -354,6 +355,36 @@ impl View for Backlash {
         self.playing = !self.playing;
     }
 
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Take friction and delay away: then no asymmetry makes it drift.",
+            "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
+        ))
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        self.scene.iter().map(|_| "drive").collect()
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let Some(run) = self.scene.as_ref().map(|s| &s.run) else {
+            return Vec::new();
+        };
+        let mut table = Table::new("drive").with("t [s]", run.time.iter().copied());
+        for (title, values) in [
+            ("u [N m]", &run.input),
+            ("x1 [rad]", &run.x1),
+            ("v1 [rad/s]", &run.v1),
+            ("x2 [rad]", &run.x2),
+        ] {
+            // The load of a measured drive may be unknown.
+            if values.len() == run.time.len() {
+                table = table.with(title, values.iter().copied());
+            }
+        }
+        vec![table]
+    }
+
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(self.set_to())
     }
@@ -364,7 +395,7 @@ impl View for Backlash {
         settings: &serde_json::Value,
         _desk: &Desk,
     ) -> Result<(), String> {
-        self.take(ctx, parsed(settings)?)
+        self.take(ctx, &parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {

@@ -49,7 +49,7 @@ impl Backlash {
         }
     }
 
-    pub(super) fn take(&mut self, ctx: &egui::Context, settings: Settings) -> Result<(), String> {
+    pub(super) fn take(&mut self, ctx: &egui::Context, settings: &Settings) -> Result<(), String> {
         settings.check()?;
         let file = match &settings.file {
             Some(name) if settings.file != self.file => {

@@ -23,12 +23,16 @@ use super::{Desk, View};
 pub use settings::is_built_in;
 
 use crate::document::parsed;
+use crate::export::Table;
 use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::save::save;
 use answer::{name_of, times_noise};
 use welcome::BUILT_IN;
+
+/// Longest time without a new frame while a job runs.
+const ALIVE: std::time::Duration = std::time::Duration::from_millis(100);
 
 /// The page.
 pub struct Compare {
@@ -110,6 +114,10 @@ impl Compare {
         }
         if let Some(text) = self.saved.1.try_iter().last() {
             self.message = Some(text);
+        }
+        if self.job.is_some() {
+            // The page shows that it lives, also where the job says nothing new for a while.
+            ctx.request_repaint_after(ALIVE);
         }
         let news = self.job.as_mut().map(Job::news).unwrap_or_default();
         for news in news {
@@ -259,6 +267,49 @@ impl View for Compare {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         Self::ui(self, ui, &mut desk.targets);
+    }
+
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "A drive that answers late: there one effect is not enough.",
+            "v1;compare;compare.file=drive-12",
+        ))
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        self.measurement
+            .iter()
+            .map(|_| "measurement and model")
+            .collect()
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let Some(measurement) = &self.measurement else {
+            return Vec::new();
+        };
+        let title = |name: &str, unit: &str| format!("{name} [{unit}]");
+        let input = &measurement.input;
+        let mut table = Table::new("measurement and model")
+            .with("t [s]", measurement.time.iter().copied())
+            .with(
+                title(&input.name, &input.unit),
+                input.values.iter().copied(),
+            );
+        for output in &measurement.outputs {
+            table = table.with(
+                title(&output.name, &output.unit),
+                output.values.iter().copied(),
+            );
+        }
+        let modelled = self.report().map(|r| &r.replay.channels);
+        for channel in modelled.into_iter().flatten() {
+            let name = format!("{} of the model", channel.name);
+            table = table.with(
+                title(&name, &channel.unit),
+                channel.modelled.iter().copied(),
+            );
+        }
+        vec![table]
     }
 
     fn settings(&self) -> serde_json::Value {

@@ -14,6 +14,7 @@ use hysteron_core::figures::{Check, checks, figures};
 
 use super::{Desk, View};
 use crate::document::parsed;
+use crate::export::Table;
 use crate::pages::controls::claim_ui;
 use crate::theme;
 use nyquist::Nyquist;
@@ -97,6 +98,21 @@ impl View for Explore {
 
     fn toggle_play(&mut self) {
         self.playing = !self.playing;
+    }
+
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Let the relay wait longer: at ε = 0.5 the describing function misses the amplitude by 5 %.",
+            "v1;explore;loop.relay.hysteresis=0.5",
+        ))
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        self.data().map_or_else(Vec::new, |_| TABLES.to_vec())
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        self.data().map_or_else(Vec::new, |(data, _)| tables(data))
     }
 
     fn settings(&self) -> serde_json::Value {
@@ -274,4 +290,27 @@ impl Explore {
         };
         plots::time_ui(ui, &self.input.relay, data, self.clock, height);
     }
+}
+
+/// Names of [`tables`].
+pub const TABLES: [&str; 5] = [
+    "time series",
+    "relay input",
+    "phase portrait",
+    "limit cycle",
+    "Nyquist curve",
+];
+
+/// The numbers behind the plots.
+pub fn tables(data: &ExploreData) -> Vec<Table> {
+    let [y, rate] = ["output y", "its rate dy/dt [1/s]"];
+    vec![
+        Table::new(TABLES[0])
+            .with("time [s]", data.time.iter().copied())
+            .with(y, data.output.iter().copied()),
+        Table::curve(TABLES[1], ["time [s]", "input u"], &data.input),
+        Table::curve(TABLES[2], [y, rate], &data.phase),
+        Table::curve(TABLES[3], [y, rate], &data.cycle),
+        Table::curve(TABLES[4], ["real part", "imaginary part"], &data.nyquist),
+    ]
 }

@@ -5,10 +5,11 @@ mod settings;
 mod side;
 
 use hysteron_core::explore::ExploreInput;
-use hysteron_core::maps::{Map, MapInput, Outcome, Parameter, Quantity};
+use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
 
 use super::{Command, Desk, View};
 use crate::document::parsed;
+use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::tasks::MapTask;
 use crate::theme;
@@ -206,6 +207,38 @@ impl View for Maps {
             let height = ui.available_height();
             self.picture_ui(ui, height, commands);
         });
+    }
+
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
+            "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
+        ))
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        vec!["map"]
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let size = self.map.size();
+        let known: Vec<_> = (0..size * size)
+            .map(|i| [i % size, i / size])
+            .filter_map(|place| Some((place, self.map.known(place)?)))
+            .collect();
+        let (x, y) = (self.input.x, self.input.y);
+        let title = |axis: Axis| axis_title(axis.parameter.label(), axis.parameter.unit());
+        let mut table = Table::new("map")
+            .with(title(x), known.iter().map(|(p, _)| x.value(p[0], size)))
+            .with(title(y), known.iter().map(|(p, _)| y.value(p[1], size)));
+        for quantity in Quantity::ALL {
+            let title = axis_title(quantity.label(), quantity.unit());
+            let values = known
+                .iter()
+                .map(|(_, o)| quantity.value(o).unwrap_or(f64::NAN));
+            table = table.with(title, values);
+        }
+        vec![table]
     }
 
     fn settings(&self) -> serde_json::Value {

@@ -15,6 +15,7 @@ use hysteron_core::tuning::{TuningInput, TuningReport};
 
 use super::{Desk, View};
 use crate::document::parsed;
+use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::tasks::TuneTask;
 use crate::theme;
@@ -131,6 +132,38 @@ impl View for Tune {
                 self.stage_ui(ui, height);
             });
         });
+    }
+
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Ask for a phase margin of 60° and watch the relay of step 3 find the gain.",
+            "v1;tune;tune.step=adaptation;tune.phase_margin=1.0471975511965976",
+        ))
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        self.seen().map_or_else(Vec::new, |_| {
+            vec!["relay test", "relay input", "true Nyquist curve"]
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let Some(seen) = self.seen() else {
+            return Vec::new();
+        };
+        let run = &seen.report.test.run;
+        let [input, nyquist] = [&run.input, &seen.report.nyquist];
+        vec![
+            Table::new("relay test")
+                .with("time [s]", run.time.iter().copied())
+                .with("output y", run.output.iter().copied()),
+            Table::curve("relay input", ["time [s]", "input u"], input),
+            Table::curve(
+                "true Nyquist curve",
+                ["real part", "imaginary part"],
+                nyquist,
+            ),
+        ]
     }
 
     fn settings(&self) -> serde_json::Value {

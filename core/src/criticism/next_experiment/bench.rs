@@ -6,11 +6,12 @@ use super::design::LEAST_SAMPLES;
 use super::limits::{Limits, extent};
 use super::program::Program;
 use crate::criticism::CriticismError;
-use crate::criticism::data::{DRIVE_WINDOW, Data};
+use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
 use crate::criticism::score::score;
 use crate::criticism::session::{Scored, Session};
 use crate::criticism::structure::Structure;
+use crate::criticism::window;
 use crate::effect::EffectId;
 use crate::measurement::{Channel, Kind, Measurement, Quantity};
 use crate::model::{Run, Sensor, run_controlled};
@@ -145,7 +146,7 @@ impl Bench {
                 Kind::Drive => session.scales.time_constant,
                 Kind::Process => first.values[1],
             },
-            window: DRIVE_WINDOW as f64 * step,
+            window: window::SHORTEST as f64 * step,
             stretch: step * samples,
         };
         Some(Self {

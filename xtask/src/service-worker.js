@@ -1,0 +1,24 @@
+// Keeps the page for visits without a network. Every build has its own store: the files of one build are
+// never mixed with those of another. A new build takes over when the last window of the old one is closed.
+const STORE = "hysteron-VERSION";
+const FILES = FILE_LIST;
+
+self.addEventListener("install", (event) => {
+  event.waitUntil(caches.open(STORE).then((store) => store.addAll(FILES)));
+});
+
+self.addEventListener("activate", (event) => {
+  event.waitUntil((async () => {
+    const old = (await caches.keys()).filter((name) => name.startsWith("hysteron-") && name !== STORE);
+    await Promise.all(old.map((name) => caches.delete(name)));
+    await self.clients.claim();
+  })());
+});
+
+self.addEventListener("fetch", (event) => {
+  if (event.request.method !== "GET") return;
+  event.respondWith((async () => {
+    const store = await caches.open(STORE);
+    return (await store.match(event.request, { ignoreSearch: true })) || fetch(event.request);
+  })());
+});
