@@ -179,9 +179,12 @@ pub fn load_torque(load: &Load, position: &[f64], h: f64, spans: &[(usize, usize
     };
     let mut follower = Follower::new(load, *first, h);
     for (from, to) in spans {
+        let Some(part) = torque.get_mut(*from..*to) else {
+            continue;
+        };
         follower.reach(position, *from, |_| h);
-        for i in *from..(*to).min(position.len()) {
-            torque[i] = follower.step(position, h);
+        for value in part {
+            *value = follower.step(position, h);
         }
     }
     torque
