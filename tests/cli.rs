@@ -336,6 +336,38 @@ fn an_effect_of_ones_own_is_tried() {
     refused(&run("-a*t"), &["name: formula"]);
 }
 
+#[test]
+fn the_next_experiment_is_proposed_within_the_limits() {
+    let run = |limits: &str, format: &str| {
+        let mut command = hysteron();
+        command.arg("diagnose").arg(data("drive-05.csv"));
+        let options = ["--limits", limits, "--format", format];
+        command.args(options).output().unwrap()
+    };
+    let json = run("input=0.4, duration=1.2", "json");
+    let diagnosis: Diagnosis = serde_json::from_slice(&json.stdout).unwrap();
+    let [proposal] = diagnosis.verdict.experiments.as_slice() else {
+        panic!("one proposal: {:?}", diagnosis.verdict);
+    };
+    assert_eq!(proposal.limits.input, 0.4);
+    assert!(
+        proposal.sufficient && proposal.duration <= 1.2,
+        "{proposal:?}"
+    );
+    let words = diagnosis.verdict.next_experiment.as_deref().unwrap();
+    assert!(words.contains("0.4"), "the gain of the relay: {words}");
+    let text = run("input=0.4, duration=1.2", "text");
+    let text = String::from_utf8_lossy(&text.stdout);
+    assert!(
+        text.contains("Next experiment: To tell Gain asymmetry"),
+        "{text}"
+    );
+    refused(
+        &run("torque=3", "text"),
+        &["torque=3", "one of input, duration, step, speed, travel"],
+    );
+}
+
 fn gap(file: &Path, arguments: &[&str]) -> Output {
     hysteron()
         .arg("gap")

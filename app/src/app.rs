@@ -217,6 +217,17 @@ impl HysteronApp {
             }
             Command::Go(id) => self.go(id),
             Command::SetLoop(input) => self.desk.relay_loop = *input,
+            Command::Set(page, field, value) => {
+                let page = self.pages.iter_mut().find(|p| p.id() == page);
+                let refused = page.and_then(|page| {
+                    let mut settings = page.settings();
+                    settings[field] = value;
+                    page.set(ctx, &settings, &self.desk).err()
+                });
+                if let Some(sentence) = refused {
+                    self.notice = Some(Notice::refused(&sentence));
+                }
+            }
         }
     }
 

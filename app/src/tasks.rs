@@ -2,7 +2,7 @@
 //! the web it is the worker that does it, which gets its tasks as JSON text.
 
 use hysteron_core::backlash::GapEstimate;
-use hysteron_core::criticism::StepReport;
+use hysteron_core::criticism::{FittedModel, Limits, NextExperiment, StepReport};
 use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, Tile};
@@ -50,6 +50,26 @@ pub struct StepTask {
 impl Task for StepTask {
     const NAME: &'static str = "step";
     type Report = StepReport;
+}
+
+/// Looks for the experiment that tells models apart, within limits.
+#[derive(Serialize, Deserialize)]
+pub struct ExperimentTask {
+    /// The measurement.
+    pub measurement: Box<Measurement>,
+    /// What the user knows of the model.
+    pub model: Option<UserModel>,
+    /// The models, fitted.
+    pub models: Vec<FittedModel>,
+    /// How far the experiment may go.
+    pub limits: Limits,
+    /// What the others leave in this record beyond the first, in noise units.
+    pub today: f64,
+}
+
+impl Task for ExperimentTask {
+    const NAME: &'static str = "experiment";
+    type Report = NextExperiment;
 }
 
 /// Computes a parameter map, handed over tile by tile.

@@ -2,14 +2,14 @@
 //! itself has none of it, which keeps it small.
 
 use hysteron_core::backlash::estimate_gap;
-use hysteron_core::criticism::{Progress, StepJob, StepReport};
+use hysteron_core::criticism::{ExperimentJob, NextExperiment, Progress, StepJob, StepReport};
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
 use hysteron_core::measurement::import_csv;
 use hysteron_core::tuning::{TuningReport, tune};
 use hysteron_core::user_model::UserModel;
 
-use crate::tasks::{GapReport, GapTask, MapTask, News, StepTask, Task, TuneTask};
+use crate::tasks::{ExperimentTask, GapReport, GapTask, MapTask, News, StepTask, Task, TuneTask};
 
 /// Where a task says its news; false when nobody listens any more and it should end.
 pub type Say<'a, R> = &'a mut dyn FnMut(News<R>) -> bool;
@@ -31,18 +31,52 @@ impl Work for StepTask {
                 return;
             }
         };
-        loop {
-            match advance_step(&mut job) {
-                Progress::Running { fraction, text } => {
-                    if !say(News::Progress(fraction, text)) {
-                        return;
-                    }
-                }
-                Progress::Done(report) => {
-                    say(News::Report(Box::new(report)));
-                    return;
+        if let Some(report) = finish(|| advance_step(&mut job), say) {
+            say(News::Report(Box::new(report)));
+        }
+    }
+}
+
+impl Work for ExperimentTask {
+    fn run(self, say: Say<'_, NextExperiment>) {
+        let blank = UserModel::blank(self.measurement.kind);
+        let model = self.model.as_ref().unwrap_or(&blank);
+        let job = ExperimentJob::new(
+            &self.measurement,
+            model,
+            &self.models,
+            self.limits,
+            self.today,
+        );
+        let mut job = match job {
+            Ok(job) => job,
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        match finish(|| job.advance(), say) {
+            Some(Some(found)) => say(News::Report(Box::new(found))),
+            Some(None) => say(News::Failed(NO_ROOM.to_owned())),
+            None => false,
+        };
+    }
+}
+
+/// What is said where nothing can be tried.
+const NO_ROOM: &str =
+    "These limits leave no room for an experiment: allow a longer record or more motion.";
+
+/// Advances a job to its end; `None` where nobody listens any more.
+fn finish<T, R>(mut advance: impl FnMut() -> Progress<T>, say: Say<'_, R>) -> Option<T> {
+    loop {
+        match advance() {
+            Progress::Running { fraction, text } => {
+                if !say(News::Progress(fraction, text)) {
+                    return None;
                 }
             }
+            Progress::Done(result) => return Some(result),
         }
     }
 }

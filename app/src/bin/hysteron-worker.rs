@@ -24,7 +24,9 @@ mod web {
     use wasm_bindgen::prelude::*;
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
-    use crate::tasks::{GapTask, MapTask, News, READY, StepTask, Task as _, TuneTask};
+    use crate::tasks::{
+        ExperimentTask, GapTask, MapTask, News, READY, StepTask, Task as _, TuneTask,
+    };
     use crate::work::Work;
 
     /// Share of progress below which nothing new is said.
@@ -58,6 +60,7 @@ mod web {
         let (name, task): (String, serde_json::Value) = serde_json::from_str(text)?;
         match name.as_str() {
             StepTask::NAME => run::<StepTask>(scope, task),
+            ExperimentTask::NAME => run::<ExperimentTask>(scope, task),
             MapTask::NAME => run::<MapTask>(scope, task),
             GapTask::NAME => run::<GapTask>(scope, task),
             TuneTask::NAME => run::<TuneTask>(scope, task),

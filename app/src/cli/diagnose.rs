@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::Instant;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob, LimitError, Limits, Progress};
 use hysteron_core::measurement::{
     self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
 };
@@ -43,6 +43,11 @@ pub(super) struct Arguments {
     /// to fit, and where they start if you like: "bump: -a*exp(-((x-b)/c)^2); b = 0.5"
     #[arg(long, value_name = "NAME: FORMULA", allow_hyphen_values = true)]
     effect: Vec<String>,
+    /// How far the next experiment may go where effects cannot be told apart: the largest input, the longest record
+    /// (s), the sampling time (s), the largest speed (of a process: output) and travel, in SI units, such as
+    /// "input=0.5,duration=10,travel=3"; what is not named is as in the file, or twice as fast
+    #[arg(long, value_name = "NAME=VALUE,...", value_parser = limits)]
+    limits: Option<String>,
     /// Write the model with the effects that were found to this file, for --model
     #[arg(long, value_name = "OUT.toml")]
     save_model: Option<PathBuf>,
@@ -81,6 +86,19 @@ impl<T: FromStr> FromStr for AsWritten<T> {
             value: text.parse()?,
         })
     }
+}
+
+/// The limits as written, if they can be read.
+fn limits(text: &str) -> Result<String, LimitError> {
+    let mut any = Limits {
+        input: 1.0,
+        duration: 1.0,
+        step: 1.0,
+        speed: None,
+        travel: None,
+    };
+    any.set(text)?;
+    Ok(text.to_owned())
 }
 
 /// One file by the contract of a single one; many files, or a file to resume from, as a batch.
@@ -244,8 +262,13 @@ pub(super) fn one(
             .add_candidate(effect)
             .map_err(|e| format!("--effect: {e}"))?;
     }
-    let mut job =
-        DiagnosisJob::with_model(&measurement, &given).map_err(|e| format!("{name}: {e}"))?;
+    let mut limits = Limits::of(&measurement);
+    limits
+        .set(arguments.limits.as_deref().unwrap_or_default())
+        .map_err(|e| format!("--limits: {e}"))?;
+    let mut job = DiagnosisJob::with_model(&measurement, &given)
+        .map_err(|e| format!("{name}: {e}"))?
+        .within(limits);
     loop {
         match job.advance_with(pieces::width(), &mut pieces::run) {
             Progress::Running { fraction, text } => show(fraction, &text),

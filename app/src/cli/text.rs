@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Candidate, Diagnosis, Parameter, Step};
+use hysteron_core::criticism::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
 use hysteron_core::effect::{self, EffectId};
 use hysteron_core::measurement::Kind;
 
@@ -47,8 +47,22 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     {
         paragraph(&mut out, "  ", &format!("Next experiment: {experiment}"));
     }
+    for proposal in &diagnosis.verdict.experiments {
+        other_experiments(&mut out, proposal);
+    }
     let _ = writeln!(out, "\nTook {:.2} s.", diagnosis.seconds);
     out
+}
+
+/// What the other kinds of experiment would do.
+fn other_experiments(out: &mut String, proposal: &NextExperiment) {
+    if !proposal.others.is_empty() {
+        paragraph(out, "  ", "Other experiments would leave:");
+    }
+    for other in &proposal.others {
+        let times = other.times_noise();
+        bullet(out, &format!("{times} times the noise with {}", other.text));
+    }
 }
 
 fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, floor: f64) {

@@ -101,6 +101,8 @@ pub enum Command {
     Go(&'static str),
     /// Sets the loop that the pages are about.
     SetLoop(Box<ExploreInput>),
+    /// Sets one field of what is set on the page with this id.
+    Set(&'static str, &'static str, serde_json::Value),
     /// Puts the link to what is on the screen on the clipboard.
     CopyLink,
     /// Takes the last change back, or does it again.

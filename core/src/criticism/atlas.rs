@@ -38,10 +38,22 @@ pub struct Profile {
 
 /// Every output over every axis. `velocity_unit` is that of the drive's velocity or of the process output.
 pub(super) fn atlas(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Profile> {
-    let residuals = residuals(data, motion);
+    profiles(data, motion, &residuals(data, motion), velocity_unit)
+}
+
+/// A series for each output, in noise units, over every axis of a motion.
+pub(super) fn profiles(
+    data: &Data,
+    motion: &Motion,
+    series: &[Vec<f64>],
+    velocity_unit: &str,
+) -> Vec<Profile> {
+    let runs = data.runs();
     let mut profiles = Vec::new();
     for axis in axes(data, motion) {
-        let mut order: Vec<usize> = (0..data.len())
+        let mut order: Vec<usize> = runs
+            .iter()
+            .flat_map(|(from, to)| *from..*to)
             .filter(|i| axis.values[*i].is_finite())
             .collect();
         if order.len() < 2 * BINS {
@@ -54,7 +66,7 @@ pub(super) fn atlas(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Pr
             "relay_phase" => ("relay_phase", "1"),
             name => (name, "s"),
         };
-        for (output, residual) in residuals.iter().enumerate() {
+        for (output, residual) in series.iter().enumerate() {
             let bins = (0..BINS)
                 .filter_map(|k| {
                     let part = &order[k * order.len() / BINS..(k + 1) * order.len() / BINS];

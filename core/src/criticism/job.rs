@@ -302,6 +302,7 @@ fn without_curves(report: &StepReport) -> StepReport {
             window_starts: Vec::new(),
         },
         atlas: report.atlas.clone(),
+        fingerprints: Vec::new(),
         verdict: report.verdict.clone(),
         needless: report.needless.clone(),
         missing: report.missing.clone(),

@@ -4,6 +4,7 @@ mod atlas;
 mod baseline;
 mod cost;
 mod data;
+mod fingerprint;
 mod fit;
 mod job;
 mod knowledge;
@@ -23,12 +24,13 @@ mod verdict;
 mod window;
 
 pub use atlas::{Profile, ProfileBin};
+pub use fingerprint::Fingerprint;
 pub use job::{CriticismError, DiagnosisJob, Progress};
 pub use knowledge::baseline_symbols;
 pub use missing::MissingPart;
 pub use next_experiment::{
-    Controller, ExperimentJob, FittedModel, LimitError, Limits, NextExperiment, Program, Sine,
-    Trial,
+    Controller, ExperimentJob, FittedModel, LimitError, Limits, NextExperiment, Opening, Program,
+    Sine, Trial,
 };
 pub use noise::noise_level;
 pub use race::Piece;

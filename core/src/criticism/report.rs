@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{MissingPart, NextExperiment, Profile};
+use super::{Fingerprint, MissingPart, NextExperiment, Profile};
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Quantity};
 use crate::user_model::Status;
@@ -176,6 +176,9 @@ pub struct StepReport {
     pub replay: Replay,
     /// The residual over every axis.
     pub atlas: Vec<Profile>,
+    /// What the best of the effects that were tried would leave.
+    #[serde(default)]
+    pub fingerprints: Vec<Fingerprint>,
     /// The effect that data say should be added next, if any.
     pub suggestion: Option<EffectId>,
     /// Effects in the model that data say are not needed.

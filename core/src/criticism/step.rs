@@ -1,8 +1,9 @@
 //! One step of a diagnosis: fits one model and tries every effect on top of it.
 
+use super::fingerprint::fingerprints;
 use super::knowledge::contradictions;
 use super::missing::missing_parts;
-use super::next_experiment::{Design, Hypothesis, TRYING};
+use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::{Piece, Race, one_by_one};
 use super::score::Score;
 use super::search::Search;
@@ -47,8 +48,8 @@ pub struct StepJob {
     tried: Vec<(&'static dyn Effect, Scored)>,
     without: Vec<Scored>,
     classes: Vec<Class>,
-    /// What could stand in the place of an effect, fitted: the place, the effect, the model.
-    rivals: Vec<(usize, EffectId, Scored)>,
+    /// What could stand in the place of an effect.
+    rivals: Vec<Rival>,
     /// How far the next experiment may go.
     limits: Limits,
     experiments: Vec<NextExperiment>,
@@ -315,21 +316,13 @@ impl StepJob {
         if !explains || self.simpler.is_some() {
             return Stage::Report;
         }
-        let designs: Vec<Design> = self
-            .wanted
-            .iter()
-            .enumerate()
-            .filter_map(|(place, own)| {
-                let mut models = vec![Hypothesis::new(&self.session, own.id(), model)];
-                let mut today = 0.0_f64;
-                for (_, effect, rival) in self.rivals.iter().filter(|(k, ..)| *k == place) {
-                    models.push(Hypothesis::new(&self.session, *effect, rival));
-                    let beyond = rival.score.error.powi(2) - model.score.error.powi(2);
-                    today = today.max(beyond.max(0.0).sqrt());
-                }
-                Design::new(&self.session, models, self.limits, today)
-            })
-            .collect();
+        let designs = designs(
+            &self.session,
+            model,
+            &self.wanted,
+            &self.rivals,
+            self.limits,
+        );
         if designs.is_empty() {
             Stage::Report
         } else {
@@ -360,7 +353,11 @@ impl StepJob {
                 }
             } else if alike(model, &swapped) && same_body(model, &swapped) {
                 class.push(effect);
-                self.rivals.push((place, effect.id(), swapped));
+                self.rivals.push(Rival {
+                    place,
+                    effect: effect.id(),
+                    model: swapped,
+                });
             }
         }
         self.classes.resize_with(place, Class::default);
@@ -485,7 +482,10 @@ impl StepJob {
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
+        let findings = self.session.findings(&whole);
+        let tried: Vec<(EffectId, &Scored)> = self.tried.iter().map(|(e, s)| (e.id(), s)).collect();
         Some(StepReport {
+            fingerprints: fingerprints(&self.session, model, &tried, &findings),
             missing: if unknown {
                 missing_parts(&self.session, &whole)
             } else {

@@ -129,12 +129,25 @@ pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId]) {
 
 /// Puts the experiments that were found in the place of the general advice.
 pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperiment]) {
-    if experiments.is_empty() || verdict.next_experiment.is_none() {
-        return;
+    if !experiments.is_empty() && verdict.next_experiment.is_some() {
+        verdict.experiments = experiments.to_vec();
+        verdict.say_experiments();
     }
-    let texts: Vec<&str> = experiments.iter().map(|e| e.text.as_str()).collect();
-    verdict.next_experiment = Some(texts.join(" "));
-    verdict.experiments = experiments.to_vec();
+}
+
+impl Verdict {
+    fn say_experiments(&mut self) {
+        let texts: Vec<&str> = self.experiments.iter().map(|e| e.text.as_str()).collect();
+        self.next_experiment = Some(texts.join(" "));
+    }
+
+    /// Puts a proposal in the place of another, in words too; one that is not there changes nothing.
+    pub fn replace_experiment(&mut self, index: usize, proposal: NextExperiment) {
+        if let Some(place) = self.experiments.get_mut(index) {
+            *place = proposal;
+            self.say_experiments();
+        }
+    }
 }
 
 /// For effects that act alike in one experiment.

@@ -128,6 +128,9 @@ fn answer(out: &mut String, input: &ReportInput) {
             escape(next)
         );
     }
+    for proposal in input.verdict.iter().flat_map(|v| &v.experiments) {
+        out.push_str(&model::experiments(proposal));
+    }
     for note in &measurement.warnings {
         let _ = writeln!(out, "<p class=\"small\">{}</p>", escape(note));
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::html::{Cell, escape, table};
 use super::{ReportInput, name_of, short};
-use crate::criticism::{Parameter, Step, with_error};
+use crate::criticism::{NextExperiment, Parameter, Step, with_error};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION};
 use crate::measurement::Kind;
 use crate::user_model::Status;
@@ -46,6 +46,21 @@ pub(super) fn equations(input: &ReportInput) -> String {
             escape(effect.source())
         );
     }
+    out
+}
+
+/// What each kind of experiment would tell of a class, the proposed one first.
+pub(super) fn experiments(proposal: &NextExperiment) -> String {
+    let trials = std::iter::once(proposal.trial()).chain(proposal.others.iter().cloned());
+    let rows: Vec<Vec<Cell>> = trials
+        .map(|t| vec![Cell::Text(t.text.clone()), Cell::Number(t.times_noise())])
+        .collect();
+    let mut out = String::new();
+    table(
+        &mut out,
+        &["Experiment", "The wrong one leaves (times the noise)"],
+        &rows,
+    );
     out
 }
 

@@ -85,13 +85,22 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
         .collect();
     match (&report.verdict, added.is_empty()) {
         (Some(verdict), false) if verdict.complete => {
-            let ambiguous = verdict.missing.iter().any(|class| class.len() > 1);
-            let tail = if ambiguous {
-                "Another effect would explain it as well."
-            } else {
-                "Nothing more is missing."
-            };
-            format!("The missing effect was {}. {tail}", added.join(" and "))
+            if verdict.missing.iter().all(|class| class.len() < 2) {
+                let added = added.join(" and ");
+                return format!("The missing effect was {added}. Nothing more is missing.");
+            }
+            let classes: Vec<String> = verdict
+                .missing
+                .iter()
+                .map(|class| {
+                    let names: Vec<&str> = class.iter().map(|id| name_of(*id)).collect();
+                    names.join(" or ")
+                })
+                .collect();
+            format!(
+                "The missing effect is {}: this record cannot tell which.",
+                classes.join(", and ")
+            )
         }
         (Some(verdict), true) if verdict.complete => {
             "Nothing is missing: what the model leaves is measurement noise.".to_owned()

@@ -1,11 +1,16 @@
 //! Files that the page can give away.
 
-use hysteron_core::criticism::Step;
+use std::fmt::Write as _;
+
+use hysteron_core::criticism::{Program, Step};
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
 use super::Compare;
 use crate::save::Document;
+
+/// Samples of an input that is saved, at most.
+const MOST_SAMPLES: f64 = 2e6;
 
 /// Where the measurement on screen comes from.
 #[derive(Clone, Debug, Default)]
@@ -72,6 +77,29 @@ pub(super) fn model(page: &Compare) -> Option<Document> {
         kind: "Model",
         media: "application/toml;charset=utf-8",
         text: model.to_toml(),
+    })
+}
+
+/// The input of a proposed experiment, sample by sample; `None` where it follows from what is measured.
+pub(super) fn input(page: &Compare, index: usize) -> Option<Document> {
+    let measurement = page.measurement.as_ref()?;
+    let proposal = page.report()?.verdict.as_ref()?.experiments.get(index)?;
+    let samples = (proposal.duration / proposal.step).min(MOST_SAMPLES) as usize;
+    let open = !matches!(proposal.program, Program::Relay { .. });
+    open.then(|| {
+        let mut controller = proposal.program.controller();
+        let mut text = format!("t [s],u [{}]\n", proposal.input_unit);
+        for i in 0..samples {
+            let time = i as f64 * proposal.step;
+            // Writing into a string cannot fail.
+            let _ = writeln!(text, "{time:?},{:?}", controller.command(time, 0.0));
+        }
+        Document {
+            name: format!("{}-next-input.csv", stem(&measurement.name)),
+            kind: "Input",
+            media: "text/csv;charset=utf-8",
+            text,
+        }
     })
 }
 

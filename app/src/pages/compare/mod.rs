@@ -1,20 +1,26 @@
 //! What is missing from the model? A measurement, the model's replay, and the effects that could be added.
 
 mod answer;
+mod atlas;
+mod experiment;
 mod export;
+mod fingerprint;
+mod history;
 mod missing;
 mod open;
 mod own;
+mod parameters;
 mod plots;
 mod settings;
 mod side;
+mod waterfall;
 mod welcome;
 
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use hysteron_core::criticism::StepReport;
+use hysteron_core::criticism::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
@@ -28,6 +34,7 @@ use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::save::save;
+use crate::tasks::ExperimentTask;
 use answer::{name_of, times_noise};
 use welcome::BUILT_IN;
 
@@ -55,6 +62,17 @@ pub struct Compare {
     job: Option<Job>,
     progress: (f64, String),
     message: Option<String>,
+    /// Effects that were taken back, the next one to come again first.
+    undone: Vec<EffectId>,
+    /// What the plots show, and whether beside the step before.
+    look: Look,
+    before: bool,
+    /// The effect whose fingerprint is shown; the likeliest if it is none of those.
+    fingerprint: Option<EffectId>,
+    /// Limits of the next experiment that are being set.
+    limits: Option<Limits>,
+    /// A search within other limits: for which model, and the number of the proposal.
+    search: Option<(Vec<EffectId>, usize, Job<ExperimentTask>)>,
     /// The finding that is shaded.
     finding: usize,
     files: Files,
@@ -77,11 +95,29 @@ impl Default for Compare {
             job: None,
             progress: (0.0, String::new()),
             message: None,
+            undone: Vec::new(),
+            look: Look::default(),
+            before: false,
+            fingerprint: None,
+            limits: None,
+            search: None,
             finding: 0,
             files: Files::default(),
             saved: channel(),
         }
     }
+}
+
+/// What the plots show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Look {
+    /// Everything over time.
+    #[default]
+    Time,
+    /// The residual over every axis.
+    Places,
+    /// What an effect would leave.
+    Fingerprint,
 }
 
 /// What a click asks for; carried out once, after drawing.
@@ -92,6 +128,19 @@ enum Command {
     Close,
     Add(EffectId),
     Undo,
+    Redo,
+    /// Goes to the model with so many effects.
+    Step(usize),
+    Look(Look),
+    Before(bool),
+    Fingerprint(EffectId),
+    Limit(Limits),
+    /// Looks for a proposal again, within these limits.
+    Search(usize, Limits),
+    /// Saves the input of a proposal.
+    SaveInput(usize),
+    /// What the app is to do.
+    Desk(Vec<super::Command>),
     Cancel,
     Shade(usize),
     Dismiss,
@@ -135,6 +184,7 @@ impl Compare {
                 }
             }
         }
+        self.take_search();
     }
 
     /// The step on screen.
@@ -143,8 +193,9 @@ impl Compare {
     }
 
     /// Draws the page and carries out what was clicked.
-    pub fn ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    pub fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         let mut commands = Vec::new();
+        let targets = &mut desk.targets;
         if self.measurement.is_some() {
             let narrow = ui.available_width() < 700.0;
             if narrow {
@@ -152,7 +203,8 @@ impl Compare {
                     egui::ScrollArea::vertical().show(ui, |ui| {
                         self.answer_ui(ui);
                         side::ui(self, ui, targets, &mut commands);
-                        plots::ui(self, ui, 220.0);
+                        self.looks_ui(ui, targets, &mut commands);
+                        self.evidence_ui(ui, 220.0, targets, &mut commands);
                     });
                 });
             } else {
@@ -167,8 +219,11 @@ impl Compare {
                     self.answer_ui(ui);
                     self.message_ui(ui, &mut commands);
                     self.findings_ui(ui, &mut commands);
-                    let height = ui.available_height();
-                    plots::ui(self, ui, height);
+                    self.looks_ui(ui, targets, &mut commands);
+                    egui::ScrollArea::vertical().show(ui, |ui| {
+                        let height = ui.available_height();
+                        self.evidence_ui(ui, height, targets, &mut commands);
+                    });
                 });
             }
         } else {
@@ -176,7 +231,52 @@ impl Compare {
                 .show(ui, |ui| self.welcome_ui(ui, targets, &mut commands));
         }
         for command in commands {
-            self.carry_out(ui.ctx(), command);
+            match command {
+                Command::Desk(asked) => desk.commands.extend(asked),
+                command => self.carry_out(ui.ctx(), command),
+            }
+        }
+    }
+
+    /// What the plots may show.
+    fn looks_ui(&self, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+        ui.horizontal_wrapped(|ui| {
+            for (look, id, title) in [
+                (Look::Time, "time", "Over time"),
+                (Look::Places, "places", "Where it fails"),
+                (Look::Fingerprint, "fingerprint", "Fingerprints"),
+            ] {
+                let tab = ui.selectable_label(self.look == look, title);
+                targets.note(format!("look:{id}"), ui, &tab);
+                if tab.clicked() {
+                    commands.push(Command::Look(look));
+                }
+            }
+            let mut before = self.before;
+            let can = self.report_before().is_some() && self.look != Look::Fingerprint;
+            let toggle = ui.add_enabled(
+                can,
+                egui::Checkbox::new(&mut before, "Beside the step before"),
+            );
+            targets.note("before", ui, &toggle);
+            if toggle.changed() {
+                commands.push(Command::Before(before));
+            }
+        });
+    }
+
+    /// The plots; `height` is for those over time.
+    fn evidence_ui(
+        &self,
+        ui: &mut egui::Ui,
+        height: f32,
+        targets: &mut Targets,
+        commands: &mut Vec<Command>,
+    ) {
+        match self.look {
+            Look::Time => plots::ui(self, ui, height),
+            Look::Places => atlas::ui(self, ui),
+            Look::Fingerprint => fingerprint::ui(self, ui, targets, commands),
         }
     }
 
@@ -203,13 +303,27 @@ impl Compare {
                 };
             }
             Command::Add(effect) => {
-                self.effects.push(effect);
-                self.start(ctx);
+                let mut effects = self.effects.clone();
+                effects.push(effect);
+                self.go_to(ctx, effects);
             }
-            Command::Undo => {
-                self.effects.pop();
-                self.start(ctx);
+            Command::Undo => self.step_to(ctx, self.effects.len().saturating_sub(1)),
+            Command::Redo => self.step_to(ctx, self.effects.len() + 1),
+            Command::Step(n) => self.step_to(ctx, n),
+            Command::Look(look) => self.look = look,
+            Command::Before(before) => self.before = before,
+            Command::Fingerprint(effect) => {
+                self.fingerprint = Some(effect);
+                self.look = Look::Fingerprint;
             }
+            Command::Limit(limits) => self.limits = Some(limits),
+            Command::Search(index, limits) => self.search_again(ctx, index, limits),
+            Command::SaveInput(index) => {
+                if let Some(document) = export::input(self, index) {
+                    save(ctx, document, &self.saved.0);
+                }
+            }
+            Command::Desk(_) => {}
             Command::Cancel => {
                 self.job = None;
                 match &self.shown {
@@ -236,7 +350,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.job.is_some(),
+            "busy": self.job.is_some() || self.search.is_some(),
             "progress": self.progress.0,
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
             "effects": report.map(|r| r.step.effects.clone()),
@@ -246,6 +360,10 @@ impl Compare {
                 r.step.candidates.iter().map(|c| serde_json::json!({"effects": c.effects, "error": c.error})).collect()
             }),
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
+            "next_experiment": report.and_then(|r| r.verdict.as_ref()).and_then(|v| v.next_experiment.clone()),
+            "experiments": report.and_then(|r| r.verdict.as_ref()).map_or(0, |v| v.experiments.len()),
+            "undone": self.undone,
+            "fingerprint": self.chosen(),
             "model": self.model_file,
             "message": self.message,
         })
@@ -266,7 +384,7 @@ impl View for Compare {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        Self::ui(self, ui, &mut desk.targets);
+        Self::ui(self, ui, desk);
     }
 
     fn hint(&self) -> Option<(&'static str, &'static str)> {

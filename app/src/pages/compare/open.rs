@@ -71,6 +71,7 @@ impl Compare {
             Ok(()) => {
                 self.message = None;
                 self.effects.extend(model.candidates.last().map(|c| c.id));
+                self.undone.clear();
                 self.model = Some(model);
                 self.own.push(typed.line());
                 self.start(ctx);
@@ -84,6 +85,9 @@ impl Compare {
         self.effects.clear();
         self.reports.clear();
         self.shown = None;
+        self.undone.clear();
+        self.limits = None;
+        self.search = None;
         self.finding = 0;
         self.start(ctx);
     }

@@ -1,8 +1,8 @@
 //! Measured and modelled curves over each other, the residual beneath.
 
-use egui_plot::{HLine, Legend, Line, LineStyle, Plot, PlotPoints, Span};
+use egui_plot::{HLine, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, Span, Text};
 use hysteron_core::criticism::{Finding, ReplayChannel};
-use hysteron_core::measurement::{Channel, Measurement};
+use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
 use crate::pages::chart::{axes, envelope};
@@ -32,7 +32,9 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
         signal_plot(ui, measurement, output, modelled, finding, each);
         if let Some(modelled) = modelled {
-            residual_plot(ui, measurement, output, modelled, finding, each);
+            let before = page.report_before().filter(|_| page.before);
+            let before = before.and_then(|r| r.replay.channels.get(index));
+            residual_plot(ui, measurement, output, (modelled, before), finding, each);
         }
     }
 }
@@ -78,6 +80,8 @@ fn signal_plot(
     )
     .show(ui, |plot| {
         shade(plot, finding);
+        let alone = measurement.outputs.len() == 1;
+        mark(plot, finding.filter(|f| alone || is_about(f, output)));
         let measured = points(&measurement.time, &output.values);
         plot.line(
             Line::new("measured", measured)
@@ -99,17 +103,16 @@ fn residual_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
     output: &Channel,
-    modelled: &ReplayChannel,
+    (modelled, before): (&ReplayChannel, Option<&ReplayChannel>),
     finding: Option<&Finding>,
     height: f32,
 ) {
     let label = unit_label(&format!("{} - model", output.name), &output.unit);
-    let residual: Vec<f64> = output
-        .values
-        .iter()
-        .zip(&modelled.modelled)
-        .map(|(y, m)| y - m)
-        .collect();
+    let less = |model: &ReplayChannel| -> Vec<f64> {
+        let pairs = output.values.iter().zip(&model.modelled);
+        pairs.map(|(y, m)| y - m).collect()
+    };
+    let residual = less(modelled);
     plot(
         measurement,
         format!("residual {}", output.name),
@@ -118,6 +121,10 @@ fn residual_plot(
     )
     .show(ui, |plot| {
         shade(plot, finding);
+        if let Some(before) = before {
+            let line = Line::new("the step before", points(&measurement.time, &less(before)));
+            plot.line(line.color(theme::MODEL).width(1.2));
+        }
         plot.line(
             Line::new("residual", points(&measurement.time, &residual))
                 .color(theme::RESIDUAL)
@@ -143,6 +150,32 @@ fn shade(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
     for span in visible.take(60) {
         let color = theme::SHADE.gamma_multiply(0.16);
         plot.add(Span::new("", span.0..=span.1).fill(color).border_width(0.0));
+    }
+}
+
+/// Whether a finding is about this output.
+fn is_about(finding: &Finding, output: &Channel) -> bool {
+    let word = match output.quantity {
+        Quantity::Position => "position",
+        _ => "velocity",
+    };
+    finding.text.contains(&format!("squared {word} error"))
+}
+
+/// Says at the first of its stretches on screen how much of the error is in the selected finding.
+fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
+    let Some(finding) = finding else {
+        return;
+    };
+    let bounds = plot.plot_bounds();
+    let (low, high) = (bounds.min(), bounds.max());
+    let seen = |s: &&(f64, f64)| s.1 >= low[0] && s.0 <= high[0];
+    if let Some(span) = finding.spans.iter().find(seen) {
+        let text = format!("{:.0} % of the error", 100.0 * finding.share_of_error);
+        let at = PlotPoint::new(span.0.max(low[0]), high[1]);
+        plot.text(
+            Text::new("", at, egui::RichText::new(text).strong()).anchor(egui::Align2::LEFT_TOP),
+        );
     }
 }
 

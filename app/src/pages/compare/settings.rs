@@ -76,8 +76,7 @@ impl Compare {
         let effects = settings.effects.iter().map(|id| self.effect(id));
         let effects: Vec<EffectId> = effects.collect::<Result<_, _>>()?;
         if effects != self.effects {
-            self.effects = effects;
-            self.start(ctx);
+            self.go_to(ctx, effects);
         }
         self.finding = settings.finding;
         Ok(())

@@ -1,20 +1,15 @@
-//! The side of the page: how the error fell, and what could be added.
+//! The side of the page: the file, what the data say, and what could be added.
 
-use egui::{Color32, RichText};
+use egui::RichText;
 use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
 
-use super::{Command, Compare, missing, name_of, own, times_noise};
+use super::waterfall::{BAR_WIDTH, bar_ui};
+use super::{
+    Command, Compare, Look, experiment, missing, name_of, own, parameters, times_noise, waterfall,
+};
 use crate::hook::Targets;
 use crate::theme;
-
-/// Width of the widest bar, in points.
-const BAR_WIDTH: f32 = 150.0;
-
-/// Width of a narrow one, of the names beside the bars, and of these with the numbers and gaps.
-const LEAST_BAR: f32 = 50.0;
-const WATERFALL_LABEL: f32 = 140.0;
-const WATERFALL_TEXT: f32 = 230.0;
 
 pub(super) fn ui(
     page: &Compare,
@@ -28,21 +23,27 @@ pub(super) fn ui(
         return;
     };
     ui.separator();
-    waterfall_ui(page, ui, targets, commands);
+    waterfall::ui(page, ui, targets, commands);
     ui.separator();
     if let Some(verdict) = &report.verdict {
         egui::Frame::group(ui.style()).show(ui, |ui| {
+            ui.set_width(ui.available_width());
             ui.strong("The data say");
             ui.label(&verdict.text);
-            if let Some(next) = &verdict.next_experiment {
+            if verdict.experiments.is_empty()
+                && let Some(next) = &verdict.next_experiment
+            {
                 ui.label(next);
             }
         });
+        for (index, proposal) in verdict.experiments.iter().enumerate() {
+            experiment::ui(page, index, proposal, ui, targets, commands);
+        }
     }
     missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
     own::ui(page, ui, targets, commands);
-    ui.collapsing("Parameters of the model", |ui| parameters_ui(report, ui));
+    parameters::ui(report, ui);
 }
 
 fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
@@ -94,68 +95,6 @@ fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             }
         });
     }
-}
-
-/// The error from the baseline to the noise floor.
-fn waterfall_ui(
-    page: &Compare,
-    ui: &mut egui::Ui,
-    targets: &mut Targets,
-    commands: &mut Vec<Command>,
-) {
-    ui.strong("Error, in units of the noise");
-    let shown = page.shown.as_deref().unwrap_or_default();
-    let steps: Vec<(String, &StepReport)> = (0..=shown.len())
-        .filter_map(|n| {
-            let report = page.reports.get(&shown[..n])?;
-            let first = if page.model_file.is_some() {
-                "Your model"
-            } else {
-                "Baseline"
-            };
-            let label = n
-                .checked_sub(1)
-                .map_or(first.to_owned(), |i| format!("+ {}", name_of(shown[i])));
-            Some((label, report))
-        })
-        .collect();
-    let largest = steps.iter().map(|(_, r)| r.step.error).fold(2.0, f64::max);
-    let floor = steps.first().map_or(1.0, |(_, r)| r.noise_floor);
-    let width = (ui.available_width() - WATERFALL_TEXT).clamp(LEAST_BAR, BAR_WIDTH);
-    egui::Grid::new("waterfall").num_columns(3).show(ui, |ui| {
-        let mut row = |label: &str, error: f64, color: Color32| {
-            ui.allocate_ui(egui::vec2(WATERFALL_LABEL, 18.0), |ui| {
-                ui.set_width(WATERFALL_LABEL);
-                ui.add(egui::Label::new(label).truncate());
-            });
-            ui.label(times_noise(error));
-            bar_ui(ui, error, floor, largest, color, width);
-            ui.end_row();
-        };
-        for (label, report) in &steps {
-            row(label, report.step.error, theme::MODEL);
-        }
-        row("Noise floor", floor, theme::NOISE);
-    });
-    ui.small("Bars on a logarithmic scale.");
-    if !page.effects.is_empty() && page.job.is_none() {
-        let undo = ui.button(format!(
-            "Take back {}",
-            page.effects.last().map_or("", |e| name_of(*e))
-        ));
-        targets.note("undo", ui, &undo);
-        if undo.clicked() {
-            commands.push(Command::Undo);
-        }
-    }
-}
-
-fn bar_ui(ui: &mut egui::Ui, error: f64, floor: f64, largest: f64, color: Color32, width: f32) {
-    let share = ((error / floor).max(1.0).ln() / (largest / floor).ln()).clamp(0.0, 1.0) as f32;
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(width, 12.0), egui::Sense::hover());
-    let mut bar = rect;
-    bar.set_width(3.0 + share * (width - 3.0));
-    ui.painter().rect_filled(bar, 2.0, color);
 }
 
 fn candidates_ui(
@@ -217,6 +156,16 @@ fn card_ui(
                 commands.push(Command::Add(id));
             }
             ui.label(RichText::new(format!("leaves {}", times_noise(candidate.error))).strong());
+            if report.fingerprints.iter().any(|f| f.effect == id) {
+                let chosen = page.look == Look::Fingerprint && page.chosen() == Some(id);
+                let show = ui
+                    .selectable_label(chosen, "Fingerprint")
+                    .on_hover_text("What it would leave, beside what is left");
+                targets.note(format!("fingerprint:{id}"), ui, &show);
+                if show.clicked() {
+                    commands.push(Command::Fingerprint(id));
+                }
+            }
         });
         bar_ui(
             ui,
@@ -253,18 +202,4 @@ fn card_ui(
                 }
             });
     });
-}
-
-fn parameters_ui(report: &StepReport, ui: &mut egui::Ui) {
-    egui::Grid::new("parameters")
-        .num_columns(3)
-        .striped(true)
-        .show(ui, |ui| {
-            for p in &report.step.parameters {
-                ui.label(&p.name).on_hover_text(&p.label);
-                ui.label(with_error(p.value, p.std_error, &p.unit));
-                ui.label(p.effect.map_or("baseline", name_of));
-                ui.end_row();
-            }
-        });
 }

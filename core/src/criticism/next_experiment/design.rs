@@ -5,7 +5,8 @@ use super::candidates::candidates;
 use super::limits::Limits;
 use super::program::{Program, Shape};
 use super::{NextExperiment, Trial, words};
-use crate::criticism::session::Session;
+use crate::criticism::session::{Scored, Session};
+use crate::effect::{Effect, EffectId};
 use crate::measurement::Kind;
 
 /// Samples that are simulated at least; fewer are no experiment.
@@ -226,6 +227,36 @@ impl Design {
         let advised = || round_up(needed.max(shown).max(slow)).min(longest);
         (needed <= longest).then(|| (round_up(needed).min(longest), advised()))
     }
+}
+
+/// What could stand in the place of an effect, fitted.
+pub(in crate::criticism) struct Rival {
+    /// Index of the effect in the model.
+    pub place: usize,
+    /// What stands there instead.
+    pub effect: EffectId,
+    pub model: Scored,
+}
+
+/// One search for each effect of `model` in whose place others could stand.
+pub(in crate::criticism) fn designs(
+    session: &Session,
+    model: &Scored,
+    effects: &[&'static dyn Effect],
+    rivals: &[Rival],
+    limits: Limits,
+) -> Vec<Design> {
+    let class = |(place, own): (usize, &&'static dyn Effect)| {
+        let mut models = vec![Hypothesis::new(session, own.id(), model)];
+        let mut today = 0.0_f64;
+        for rival in rivals.iter().filter(|r| r.place == place) {
+            models.push(Hypothesis::new(session, rival.effect, &rival.model));
+            let beyond = rival.model.score.error.powi(2) - model.score.error.powi(2);
+            today = today.max(beyond.max(0.0).sqrt());
+        }
+        Design::new(session, models, limits, today)
+    };
+    effects.iter().enumerate().filter_map(class).collect()
 }
 
 /// Time in which a program shows once what it does, s.

@@ -11,13 +11,14 @@ mod candidates;
 mod design;
 mod job;
 mod limits;
+mod opening;
 mod program;
 mod words;
 
-pub(super) use bench::Hypothesis;
-pub(super) use design::Design;
+pub(super) use design::{Design, Rival, designs};
 pub use job::ExperimentJob;
 pub use limits::{LimitError, Limits};
+pub use opening::Opening;
 pub use program::{Controller, Program, Sine};
 
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,13 @@ pub struct Trial {
     pub separation: f64,
     /// The program in words.
     pub text: String,
+}
+
+impl Trial {
+    /// The separation with as many digits as count, such as `3.81` or `less than 0.01`.
+    pub fn times_noise(&self) -> String {
+        words::times(self.separation)
+    }
 }
 
 /// The experiment that tells the members of a class apart.
@@ -85,4 +93,15 @@ pub struct NextExperiment {
     pub models: Vec<FittedModel>,
     /// In words with numbers.
     pub text: String,
+}
+
+impl NextExperiment {
+    /// The proposal beside the others.
+    pub fn trial(&self) -> Trial {
+        Trial {
+            program: self.program.clone(),
+            separation: self.separation,
+            text: self.program.words(&self.input_unit, &self.output_unit),
+        }
+    }
 }

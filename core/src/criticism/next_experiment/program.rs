@@ -122,10 +122,16 @@ impl Program {
                 let hysteresis = with(*hysteresis, output);
                 let mut text = match gains.as_slice() {
                     [gain] => format!("a relay with gain {}", with(*gain, input)),
+                    [first, second] => format!(
+                        "a relay with gains {} and {} in turn, {} s each",
+                        short(*first),
+                        with(*second, input),
+                        short(*hold)
+                    ),
                     _ => format!(
-                        "a relay whose gain changes every {} s: {}",
-                        short(*hold),
-                        list(gains, input)
+                        "a relay with gains {} in turn, {} s each",
+                        list(gains, input),
+                        short(*hold)
                     ),
                 };
                 if *asymmetry != 0.0 {

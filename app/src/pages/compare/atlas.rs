@@ -1,0 +1,149 @@
+//! Where the model fails: the residual over every axis, as small pictures.
+
+use egui_plot::{HLine, Line, Plot, Span};
+use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
+
+use super::Compare;
+use crate::pages::chart::{axes, caption_ui};
+use crate::theme;
+
+/// Least width of a picture, and its height, points.
+const WIDTH: f32 = 260.0;
+const HEIGHT: f32 = 150.0;
+
+/// Width of the labels of y.
+const AXIS_WIDTH: f32 = 44.0;
+
+pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
+    let (Some(report), Some(measurement)) = (page.report(), &page.measurement) else {
+        return;
+    };
+    let mut curves = vec![("this model", theme::RESIDUAL), ("noise", theme::NOISE)];
+    let before = page.report_before().filter(|_| page.before);
+    if before.is_some() {
+        curves.insert(0, ("the step before", theme::MODEL));
+    }
+    caption_ui(ui, "Size of the residual, in units of the noise", &curves);
+    let finding = report.step.findings.get(page.finding);
+    let many = measurement.outputs.len() > 1;
+    // Where the findings are comes first.
+    let mut profiles: Vec<&Profile> = report.atlas.iter().collect();
+    profiles.sort_by_key(|p| {
+        let mut findings = report.step.findings.iter();
+        findings
+            .position(|f| f.axis == p.axis)
+            .unwrap_or(usize::MAX)
+    });
+    grid_ui(&profiles, ui, |profile, ui| {
+        let name = measurement
+            .outputs
+            .get(profile.output)
+            .map_or("", |c| &c.name);
+        let title = if many {
+            format!("{name} over {}", words(&profile.axis))
+        } else {
+            format!("over {}", words(&profile.axis))
+        };
+        ui.label(title);
+        let earlier = before.and_then(|b| twin(b, profile));
+        picture_ui(profile, earlier, finding, ui);
+    });
+}
+
+/// Draws each profile in a cell of a grid that fits the width.
+pub(super) fn grid_ui(
+    profiles: &[&Profile],
+    ui: &mut egui::Ui,
+    mut cell: impl FnMut(&Profile, &mut egui::Ui),
+) {
+    let columns = ((ui.available_width() / WIDTH) as usize).clamp(1, 3);
+    for row in profiles.chunks(columns) {
+        ui.columns(columns, |cells| {
+            for (ui, profile) in cells.iter_mut().zip(row) {
+                cell(profile, ui);
+            }
+        });
+    }
+}
+
+/// The profile of another step over the same axis.
+fn twin<'a>(report: &'a StepReport, profile: &Profile) -> Option<&'a Profile> {
+    let mut all = report.atlas.iter();
+    all.find(|p| p.output == profile.output && p.axis == profile.axis)
+}
+
+/// Name of an axis in words.
+pub(super) fn words(axis: &str) -> String {
+    axis.replace('_', " ")
+}
+
+/// Label of an axis with its unit.
+pub(super) fn axis_label(profile: &Profile) -> String {
+    if profile.unit == "1" {
+        words(&profile.axis)
+    } else {
+        format!("{} [{}]", words(&profile.axis), profile.unit)
+    }
+}
+
+/// Share of an axis within which bins are one point: a sampled axis has only so many values.
+const CLOSE: f64 = 0.01;
+
+/// A point in the middle of each bin, with the mean of those that are in the same place.
+pub(super) fn points(profile: &Profile, value: impl Fn(&ProfileBin) -> f64) -> Vec<[f64; 2]> {
+    let range = match (profile.bins.first(), profile.bins.last()) {
+        (Some(first), Some(last)) => last.to - first.from,
+        _ => 0.0,
+    };
+    // Place, sum and number of the bins there.
+    let mut places: Vec<(f64, f64, f64)> = Vec::new();
+    for bin in &profile.bins {
+        let middle = f64::midpoint(bin.from, bin.to);
+        match places.last_mut() {
+            Some(last) if middle - last.0 < CLOSE * range => {
+                last.1 += value(bin);
+                last.2 += 1.0;
+            }
+            _ => places.push((middle, value(bin), 1.0)),
+        }
+    }
+    places.into_iter().map(|(x, sum, n)| [x, sum / n]).collect()
+}
+
+/// A small plot that stays where it is.
+pub(super) fn small(id: impl egui::AsIdSalt, x: String, y: &'static str) -> Plot<'static> {
+    axes(Plot::new(id), x, y, AXIS_WIDTH)
+        .height(HEIGHT)
+        .allow_scroll(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+}
+
+fn picture_ui(
+    profile: &Profile,
+    before: Option<&Profile>,
+    finding: Option<&Finding>,
+    ui: &mut egui::Ui,
+) {
+    let id = ("atlas", profile.output, profile.axis.clone());
+    let region = finding.filter(|f| f.axis == profile.axis && f.from < f.to);
+    small(id, axis_label(profile), "rms")
+        .include_y(0.0)
+        .show(ui, |plot| {
+            if let Some(f) = region {
+                let color = theme::SHADE.gamma_multiply(0.2);
+                plot.add(Span::new("", f.from..=f.to).fill(color).border_width(0.0));
+            }
+            if let Some(before) = before {
+                let line = Line::new("the step before", points(before, |b| b.rms));
+                plot.line(line.color(theme::MODEL).width(1.5));
+            }
+            plot.line(
+                Line::new("this model", points(profile, |b| b.rms))
+                    .color(theme::RESIDUAL)
+                    .width(2.0),
+            );
+            plot.hline(HLine::new("noise", 1.0).color(theme::NOISE).width(1.5));
+        });
+}

@@ -1,0 +1,213 @@
+//! What these data cannot tell apart, and the experiment that can.
+
+use hysteron_core::criticism::{Limits, NextExperiment, Opening, Program, Trial};
+use hysteron_core::measurement::Kind;
+
+use super::{Command, Compare, name_of};
+use crate::hook::Targets;
+use crate::pages;
+use crate::theme;
+
+/// Width of the widest bar, points.
+const BAR: f32 = 90.0;
+
+/// The card of one class.
+pub(super) fn ui(
+    page: &Compare,
+    index: usize,
+    proposal: &NextExperiment,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    let names: Vec<&str> = proposal.class.iter().map(|id| name_of(*id)).collect();
+    egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        let title = match names.len() {
+            2 => "These two cannot be told apart with this record",
+            _ => "These cannot be told apart with this record",
+        };
+        ui.strong(title);
+        ui.label(names.join(" or "));
+        if proposal.sufficient {
+            ui.add_space(4.0);
+            ui.strong("Try this experiment");
+        }
+        ui.label(&proposal.text);
+        opening_ui(index, proposal, ui, targets, commands);
+        trials_ui(index, proposal, ui);
+        limits_ui(page, index, proposal, ui, targets, commands);
+    });
+}
+
+/// One row for each model: its loop under the relay at each gain.
+fn opening_ui(
+    index: usize,
+    proposal: &NextExperiment,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    if !proposal.sufficient {
+        return;
+    }
+    let Program::Relay { gains, .. } = &proposal.program else {
+        let save = ui
+            .button("Save the input as CSV")
+            .on_hover_text("Time and input, sample by sample, to be played at the rig");
+        targets.note(format!("experiment:{index}:save"), ui, &save);
+        if save.clicked() {
+            commands.push(Command::SaveInput(index));
+        }
+        return;
+    };
+    for (k, model) in proposal.models.iter().enumerate() {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(format!("If it is {}:", name_of(model.effect)));
+            for (j, gain) in gains.iter().enumerate() {
+                let Some(opening) = proposal.opening(model, *gain) else {
+                    continue;
+                };
+                let (place, command) = match opening {
+                    Opening::Loop(input) => (
+                        "Explore",
+                        vec![
+                            pages::Command::SetLoop(input),
+                            pages::Command::Go("explore"),
+                        ],
+                    ),
+                    Opening::Drive(run) => {
+                        let run = serde_json::to_value(*run).unwrap_or_default();
+                        (
+                            "Backlash",
+                            vec![
+                                pages::Command::Set("backlash", "run", run),
+                                pages::Command::Go("backlash"),
+                            ],
+                        )
+                    }
+                };
+                let unit = if proposal.input_unit == "1" {
+                    String::new()
+                } else {
+                    format!(" {}", proposal.input_unit)
+                };
+                let open = ui.button(format!("{place} with gain {gain}{unit}"));
+                targets.note(format!("experiment:{index}:open:{k}:{j}"), ui, &open);
+                if open.clicked() {
+                    commands.push(Command::Desk(command));
+                }
+            }
+        });
+    }
+}
+
+/// How well each kind of experiment would do, as bars.
+fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::Ui) {
+    let trials: Vec<Trial> = std::iter::once(proposal.trial())
+        .chain(proposal.others.iter().cloned())
+        .collect();
+    let most = trials.iter().map(|t| t.separation).fold(1.0, f64::max);
+    egui::CollapsingHeader::new("What other experiments would tell")
+        .id_salt(("trials", index))
+        .show(ui, |ui| {
+            ui.small("What the wrong one would leave, in units of the noise.");
+            for trial in &trials {
+                ui.horizontal(|ui| {
+                    // Below the noise nothing is seen, far above it all is: a logarithmic bar from 0.01.
+                    let floor = 0.01_f64;
+                    let share = (trial.separation / floor).max(1.0).ln() / (most / floor).ln();
+                    let (rect, _) =
+                        ui.allocate_exact_size(egui::vec2(BAR, 12.0), egui::Sense::hover());
+                    let mut bar = rect;
+                    bar.set_width(2.0 + share as f32 * (BAR - 2.0));
+                    ui.painter().rect_filled(bar, 2.0, theme::RESIDUAL);
+                    ui.label(trial.times_noise());
+                });
+                ui.label(&trial.text);
+            }
+        });
+}
+
+fn limits_ui(
+    page: &Compare,
+    index: usize,
+    proposal: &NextExperiment,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    let drive = page
+        .measurement
+        .as_ref()
+        .is_none_or(|m| m.kind == Kind::Drive);
+    egui::CollapsingHeader::new("Limits of the experiment")
+        .id_salt(("limits", index))
+        .show(ui, |ui| {
+            let mut limits = page.limits.unwrap_or(proposal.limits);
+            egui::Grid::new(("limits", index))
+                .num_columns(2)
+                .show(ui, |ui| rows_ui(&mut limits, proposal, drive, ui));
+            if Some(limits) != page.limits && limits != proposal.limits {
+                commands.push(Command::Limit(limits));
+            }
+            if page.search.is_some() {
+                ui.label("Looking for the experiment ...");
+                return;
+            }
+            let again = ui.add_enabled(
+                limits != proposal.limits,
+                egui::Button::new("Look within these limits"),
+            );
+            targets.note(format!("experiment:{index}:again"), ui, &again);
+            if again.clicked() {
+                commands.push(Command::Search(index, limits));
+            }
+        });
+}
+
+fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut egui::Ui) {
+    let plain = |unit: &str| {
+        if unit == "1" {
+            String::new()
+        } else {
+            format!(" {unit}")
+        }
+    };
+    let mut row = |name: &str, value: &mut f64, unit: &str| {
+        let label = ui.label(name);
+        let speed = 0.01 * value.abs().max(1e-9);
+        let drag = egui::DragValue::new(value)
+            .speed(speed)
+            .range(1e-9..=1e9)
+            .max_decimals(6)
+            .suffix(plain(unit));
+        ui.add(drag).labelled_by(label.id);
+        ui.end_row();
+    };
+    row("Largest input", &mut limits.input, &proposal.input_unit);
+    row("Longest record", &mut limits.duration, "s");
+    row("Sampling time", &mut limits.step, "s");
+    let name = if drive {
+        "Largest speed"
+    } else {
+        "Largest output"
+    };
+    if let Some(speed) = &mut limits.speed {
+        row(name, speed, &proposal.output_unit);
+    }
+    if let Some(travel) = &mut limits.travel {
+        row(
+            "Longest travel",
+            travel,
+            proposal.output_unit.trim_end_matches("/s"),
+        );
+    }
+    if drive && limits.travel.is_none() {
+        ui.label("Longest travel");
+        if ui.small_button("Set a limit").clicked() {
+            limits.travel = Some(proposal.travel.max(1e-6));
+        }
+        ui.end_row();
+    }
+}

@@ -1,0 +1,150 @@
+//! What an effect would leave if it were what is missing, beside what is left.
+
+use egui_plot::{Line, LineStyle, Plot};
+use hysteron_core::criticism::{Fingerprint, Profile, StepReport};
+use hysteron_core::measurement::Measurement;
+
+use super::atlas::{axis_label, grid_ui, points, small, words};
+use super::{Command, Compare, name_of};
+use crate::hook::Targets;
+use crate::pages::chart::{axes, caption_ui};
+use crate::theme;
+
+/// Height of a plot over time, and width of its labels, points.
+const HEIGHT: f32 = 170.0;
+const AXIS_WIDTH: f32 = 78.0;
+
+/// Likeness from which a fingerprint is the same at a glance, and from which it resembles.
+const SAME: f64 = 0.9;
+const ALIKE: f64 = 0.5;
+
+pub(super) fn ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    let (Some(report), Some(measurement)) = (page.report(), &page.measurement) else {
+        return;
+    };
+    let Some(chosen) = page.chosen() else {
+        ui.label("No effect was tried on top of this model.");
+        return;
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Effect:");
+        for print in &report.fingerprints {
+            let id = print.effect;
+            let label = format!("{} {:.2}", name_of(id), print.likeness);
+            let button = ui.selectable_label(id == chosen, label);
+            targets.note(format!("print:{id}"), ui, &button);
+            if button.clicked() {
+                commands.push(Command::Fingerprint(id));
+            }
+        }
+    });
+    let Some(print) = report.fingerprints.iter().find(|f| f.effect == chosen) else {
+        return;
+    };
+    ui.label(sentence(print));
+    let name = format!("what {} would leave", name_of(chosen));
+    caption_ui(
+        ui,
+        "Residual",
+        &[("what is left", theme::RESIDUAL), (&name, theme::INPUT)],
+    );
+    time_ui(measurement, report, print, ui);
+    ui.label("The mean over each axis, in units of the noise");
+    let profiles: Vec<&Profile> = print.profiles.iter().collect();
+    grid_ui(&profiles, ui, |profile, ui| {
+        let output = measurement.outputs.get(profile.output);
+        let output = output.map_or("", |c| c.name.as_str());
+        ui.label(format!("{output} over {}", words(&profile.axis)));
+        profile_ui(report, profile, ui);
+    });
+}
+
+/// How alike, in words.
+fn sentence(print: &Fingerprint) -> String {
+    let name = name_of(print.effect);
+    let likeness = print.likeness;
+    if likeness >= SAME {
+        format!("What is left looks like {name}: likeness {likeness:.2}, where 1 is the same.")
+    } else if likeness >= ALIKE {
+        format!(
+            "{name} explains a part of what is left: likeness {likeness:.2}, where 1 is the same."
+        )
+    } else {
+        format!(
+            "What is left does not look like {name}: likeness {likeness:.2}, where 1 is the same."
+        )
+    }
+}
+
+/// The stretch of the strongest finding, over each other for each output.
+fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, ui: &mut egui::Ui) {
+    for (index, series) in print.would_leave.iter().enumerate() {
+        let (Some(output), Some(modelled)) = (
+            measurement.outputs.get(index),
+            report.replay.channels.get(index),
+        ) else {
+            continue;
+        };
+        let times = measurement.time.iter().skip(print.from);
+        let left = output
+            .values
+            .iter()
+            .zip(&modelled.modelled)
+            .skip(print.from);
+        let would: Vec<[f64; 2]> = times.clone().zip(series).map(|(t, v)| [*t, *v]).collect();
+        let left: Vec<[f64; 2]> = times
+            .zip(left)
+            .take(series.len())
+            .map(|(t, (y, m))| [*t, y - m])
+            .collect();
+        let label = if output.unit == "1" {
+            output.name.clone()
+        } else {
+            format!("{} [{}]", output.name, output.unit)
+        };
+        axes(
+            Plot::new(("fingerprint", print.effect.as_str(), index)),
+            "time [s]",
+            label,
+            AXIS_WIDTH,
+        )
+        .height(HEIGHT)
+        .allow_scroll(false)
+        .show(ui, |plot| {
+            plot.line(
+                Line::new("what is left", left)
+                    .color(theme::RESIDUAL)
+                    .width(1.5),
+            );
+            plot.line(
+                Line::new("what it would leave", would)
+                    .color(theme::INPUT)
+                    .style(LineStyle::dashed_loose())
+                    .width(2.0),
+            );
+        });
+    }
+}
+
+fn profile_ui(report: &StepReport, profile: &Profile, ui: &mut egui::Ui) {
+    let mut all = report.atlas.iter();
+    let left = all.find(|p| p.output == profile.output && p.axis == profile.axis);
+    let id = ("print", profile.output, profile.axis.clone());
+    small(id, axis_label(profile), "mean").show(ui, |plot| {
+        if let Some(left) = left {
+            let line = Line::new("what is left", points(left, |b| b.mean));
+            plot.line(line.color(theme::RESIDUAL).width(2.0));
+        }
+        plot.line(
+            Line::new("what it would leave", points(profile, |b| b.mean))
+                .color(theme::INPUT)
+                .style(LineStyle::dashed_loose())
+                .width(2.0),
+        );
+    });
+}

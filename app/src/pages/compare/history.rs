@@ -1,0 +1,102 @@
+//! The way from the baseline to the model on screen, back and forth; and proposals that are looked for again.
+
+use hysteron_core::criticism::{Limits, StepReport};
+use hysteron_core::effect::EffectId;
+
+use super::Compare;
+use crate::jobs::{Job, News};
+use crate::tasks::ExperimentTask;
+
+impl Compare {
+    /// Every effect that was added, those that were taken back last.
+    pub(super) fn way(&self) -> Vec<EffectId> {
+        let shown = self.shown.as_deref().unwrap_or_default();
+        // While a job runs, the way is that of the model on screen.
+        let effects = if self.job.is_some() && shown != self.effects {
+            return shown.to_vec();
+        } else {
+            &self.effects
+        };
+        [effects.as_slice(), &self.undone].concat()
+    }
+
+    /// Shows the model with these effects; what comes behind them on the way stays at hand.
+    pub(super) fn go_to(&mut self, ctx: &egui::Context, effects: Vec<EffectId>) {
+        let way = [self.effects.as_slice(), &self.undone].concat();
+        self.undone = way
+            .strip_prefix(effects.as_slice())
+            .map_or_else(Vec::new, <[EffectId]>::to_vec);
+        self.effects = effects;
+        self.start(ctx);
+    }
+
+    /// Shows the model with so many effects of the way.
+    pub(super) fn step_to(&mut self, ctx: &egui::Context, count: usize) {
+        let mut way = [self.effects.as_slice(), &self.undone].concat();
+        way.truncate(count);
+        self.go_to(ctx, way);
+    }
+
+    /// The step before the one on screen.
+    pub(super) fn report_before(&self) -> Option<&StepReport> {
+        let (_, before) = self.shown.as_ref()?.split_last()?;
+        self.reports.get(before)
+    }
+
+    /// The effect whose fingerprint is shown.
+    pub(super) fn chosen(&self) -> Option<EffectId> {
+        let report = self.report()?;
+        let known = |id: &EffectId| report.fingerprints.iter().any(|f| f.effect == *id);
+        let first = report.fingerprints.first().map(|f| f.effect);
+        self.fingerprint
+            .filter(known)
+            .or(report.suggestion.filter(known))
+            .or(first)
+    }
+
+    /// Looks for a proposal again, within these limits.
+    pub(super) fn search_again(&mut self, ctx: &egui::Context, index: usize, limits: Limits) {
+        let (Some(measurement), Some(effects)) = (&self.measurement, &self.shown) else {
+            return;
+        };
+        let verdict = self.report().and_then(|r| r.verdict.as_ref());
+        let Some(proposal) = verdict.and_then(|v| v.experiments.get(index)) else {
+            return;
+        };
+        let task = ExperimentTask {
+            measurement: Box::new((**measurement).clone()),
+            model: self.model.clone(),
+            models: proposal.models.clone(),
+            limits,
+            today: proposal.today,
+        };
+        self.search = Some((effects.clone(), index, Job::run(ctx, task)));
+    }
+
+    /// Takes what a search has found.
+    pub(super) fn take_search(&mut self) {
+        let Some((effects, index, job)) = &mut self.search else {
+            return;
+        };
+        let (effects, index) = (effects.clone(), *index);
+        for news in job.news() {
+            match news {
+                News::Report(found) => {
+                    self.search = None;
+                    let report = self.reports.get_mut(&effects);
+                    if let Some(verdict) = report.and_then(|r| r.verdict.as_mut()) {
+                        verdict.replace_experiment(index, *found);
+                    }
+                    self.limits = None;
+                    return;
+                }
+                News::Failed(text) => {
+                    self.search = None;
+                    self.message = Some(text);
+                    return;
+                }
+                News::Progress(..) => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! How the error fell, step by step: back to any of them, and forth again.
+
+use egui::Color32;
+use hysteron_core::criticism::StepReport;
+
+use super::{Command, Compare, name_of, times_noise};
+use crate::hook::Targets;
+use crate::theme;
+
+/// Width of the widest bar, in points.
+pub(super) const BAR_WIDTH: f32 = 150.0;
+
+/// Width of a narrow one, of the names beside the bars, and of these with the numbers and gaps.
+const LEAST_BAR: f32 = 50.0;
+const WATERFALL_LABEL: f32 = 140.0;
+const WATERFALL_TEXT: f32 = 230.0;
+
+/// The error from the baseline to the noise floor. A click on a step goes back to it.
+pub(super) fn ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    ui.strong("Error, in units of the noise");
+    let way = page.way();
+    let at = page.shown.as_ref().map_or(0, Vec::len);
+    let steps: Vec<(String, &StepReport)> = (0..=way.len())
+        .filter_map(|n| {
+            let report = page.reports.get(&way[..n])?;
+            let first = if page.model_file.is_some() {
+                "Your model"
+            } else {
+                "Baseline"
+            };
+            let label = n
+                .checked_sub(1)
+                .map_or(first.to_owned(), |i| format!("+ {}", name_of(way[i])));
+            Some((label, report))
+        })
+        .collect();
+    let largest = steps.iter().map(|(_, r)| r.step.error).fold(2.0, f64::max);
+    let floor = steps.first().map_or(1.0, |(_, r)| r.noise_floor);
+    let width = (ui.available_width() - WATERFALL_TEXT).clamp(LEAST_BAR, BAR_WIDTH);
+    egui::Grid::new("waterfall").num_columns(3).show(ui, |ui| {
+        for (n, (label, report)) in steps.iter().enumerate() {
+            let row = ui
+                .allocate_ui_with_layout(
+                    egui::vec2(WATERFALL_LABEL, 22.0),
+                    egui::Layout::left_to_right(egui::Align::Center),
+                    |ui| {
+                        ui.set_width(WATERFALL_LABEL);
+                        ui.add(egui::Button::selectable(n == at, label.as_str()).truncate())
+                    },
+                )
+                .inner
+                .on_hover_text("Show this step");
+            targets.note(format!("step:{n}"), ui, &row);
+            if row.clicked() && page.job.is_none() && n != at {
+                commands.push(Command::Step(n));
+            }
+            // What was taken back is still there, but fainter.
+            let strength = if n > at { 0.4 } else { 1.0 };
+            ui.label(times_noise(report.step.error));
+            let color = theme::MODEL.gamma_multiply(strength);
+            bar_ui(ui, report.step.error, floor, largest, color, width);
+            ui.end_row();
+        }
+        ui.label("   Noise floor");
+        ui.label(times_noise(floor));
+        bar_ui(ui, floor, floor, largest, theme::NOISE, width);
+        ui.end_row();
+    });
+    ui.small("Bars on a logarithmic scale. Click a step to see it.");
+    if page.job.is_some() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        if let Some(last) = page.effects.last() {
+            let undo = ui.button(format!("Take back {}", name_of(*last)));
+            targets.note("undo", ui, &undo);
+            if undo.clicked() {
+                commands.push(Command::Undo);
+            }
+        }
+        if let Some(next) = way.get(page.effects.len()) {
+            let redo = ui.button(format!("{} again", name_of(*next)));
+            targets.note("redo", ui, &redo);
+            if redo.clicked() {
+                commands.push(Command::Redo);
+            }
+        }
+    });
+}
+
+pub(super) fn bar_ui(
+    ui: &mut egui::Ui,
+    error: f64,
+    floor: f64,
+    largest: f64,
+    color: Color32,
+    width: f32,
+) {
+    let share = ((error / floor).max(1.0).ln() / (largest / floor).ln()).clamp(0.0, 1.0) as f32;
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(width, 12.0), egui::Sense::hover());
+    let mut bar = rect;
+    bar.set_width(3.0 + share * (width - 3.0));
+    ui.painter().rect_filled(bar, 2.0, color);
+}

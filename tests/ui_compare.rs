@@ -1,0 +1,104 @@
+//! What one sees of a model's failure, and what to do next where a record cannot decide.
+
+#[path = "support/ui.rs"]
+mod ui;
+
+use egui_kittest::kittest::Queryable as _;
+use ui::{App, NARROW, WIDE, app, click, finish, picture, state};
+
+/// Compare with a measurement of the tests, after the first fit.
+fn opened(file: &str, size: [f32; 2]) -> App {
+    let mut harness = app("compare", size);
+    let path = format!("{}/../tests/data/{file}.csv", env!("CARGO_MANIFEST_DIR"));
+    let bytes = std::fs::read(path).expect("a file of the tests");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open(&ctx, file, &bytes);
+    finish(&mut harness);
+    harness
+}
+
+/// Presses what may stand below the fold.
+fn press(harness: &mut App, label: &str) {
+    harness.get_by_label(label).click_accesskit();
+    finish(harness);
+}
+
+#[test]
+fn what_cannot_be_told_apart_comes_with_an_experiment_that_opens_in_explore() {
+    let mut harness = opened("drive-05", WIDE);
+    press(&mut harness, "Add Gain asymmetry");
+    harness.get_by_label("These two cannot be told apart with this record");
+    harness.get_by_label("Gain asymmetry or Constant load");
+    harness.get_by_label("Try this experiment");
+    harness.get_by_label_contains("this record cannot tell which");
+    picture(&mut harness, "compare_next_experiment");
+    click(&mut harness, "Look");
+    click(&mut harness, "Light");
+    picture(&mut harness, "compare_next_experiment_light");
+    press(&mut harness, "Limits of the experiment");
+    press(&mut harness, "What other experiments would tell");
+    harness.get_by_label_contains("Largest input");
+    press(&mut harness, "Limits of the experiment");
+    // Either explanation with either gain: what one would see.
+    let asymmetric = |harness: &mut App, index: usize| {
+        let buttons: Vec<_> = harness
+            .get_all_by_label_contains("Explore with gain")
+            .collect();
+        assert_eq!(buttons.len(), 4, "two models, two gains");
+        buttons[index].click_accesskit();
+        finish(harness);
+        let state = state(harness);
+        assert_eq!(state["page"], "explore", "{state}");
+        state["explore"]["loop"]["relay"].clone()
+    };
+    let relay = asymmetric(&mut harness, 1);
+    let number = |relay: &serde_json::Value, name: &str| relay[name].as_f64().expect("a number");
+    assert!(
+        (number(&relay, "asymmetry") - 0.06).abs() < 0.005,
+        "{relay}"
+    );
+    assert_eq!(number(&relay, "bias"), 0.0);
+    click(&mut harness, "Compare");
+    let relay = asymmetric(&mut harness, 3);
+    assert!(number(&relay, "bias").abs() > 0.01, "{relay}");
+    assert_eq!(number(&relay, "asymmetry"), 0.0);
+}
+
+#[test]
+fn the_way_goes_back_and_forth_and_shows_the_step_before() {
+    let mut harness = opened("drive-02", WIDE);
+    let error = |harness: &App| state(harness)["error"].as_f64().expect("an error");
+    let before = error(&harness);
+    click(&mut harness, "Where it fails");
+    picture(&mut harness, "compare_places");
+    click(&mut harness, "Fingerprints");
+    assert_eq!(
+        state(&harness)["compare"]["fingerprint"],
+        "coulomb_friction"
+    );
+    harness.get_by_label_contains("What is left looks like Coulomb friction");
+    picture(&mut harness, "compare_fingerprint");
+    press(&mut harness, "Add Coulomb friction");
+    let after = error(&harness);
+    assert!(after < 1.2 && before > 2.0);
+    click(&mut harness, "Where it fails");
+    press(&mut harness, "Beside the step before");
+    picture(&mut harness, "compare_before_and_after");
+    click(&mut harness, "Take back Coulomb friction");
+    assert_eq!(error(&harness), before);
+    click(&mut harness, "Coulomb friction again");
+    assert_eq!(error(&harness), after, "forth again, without a new fit");
+    click(&mut harness, "Baseline");
+    assert_eq!(error(&harness), before);
+    click(&mut harness, "+ Coulomb friction");
+    assert_eq!(error(&harness), after);
+}
+
+#[test]
+fn a_narrow_window_shows_the_next_experiment_too() {
+    let mut harness = opened("drive-05", NARROW);
+    press(&mut harness, "Add Gain asymmetry");
+    harness.get_by_label("Try this experiment").scroll_to_me();
+    finish(&mut harness);
+    picture(&mut harness, "compare_next_experiment_narrow");
+}
