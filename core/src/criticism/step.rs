@@ -485,6 +485,12 @@ impl StepJob {
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
+        // Effects are compared on a part of a long record: their errors are put in proportion to all of it.
+        let share = whole.score.error / model.score.error;
+        let mut candidates = self.candidates(model, suggestion);
+        for candidate in candidates.iter_mut().filter(|_| share.is_finite()) {
+            candidate.error *= share;
+        }
         Some(StepReport {
             missing: if unknown {
                 missing_parts(&self.session, &whole)
@@ -497,7 +503,7 @@ impl StepJob {
                 error_fit: whole.score.error_fit,
                 parameters,
                 findings,
-                candidates: self.candidates(model, suggestion),
+                candidates,
             },
             noise_floor: NOISE_FLOOR,
             replay: self.session.replay(&whole.fit),
