@@ -482,8 +482,13 @@ impl StepJob {
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
-        let findings = self.session.findings(&whole);
         let tried: Vec<(EffectId, &Scored)> = self.tried.iter().map(|(e, s)| (e.id(), s)).collect();
+        // Effects are compared on a part of a long record: their errors are put in proportion to all of it.
+        let share = whole.score.error / model.score.error;
+        let mut candidates = self.candidates(model, suggestion);
+        for candidate in candidates.iter_mut().filter(|_| share.is_finite()) {
+            candidate.error *= share;
+        }
         Some(StepReport {
             fingerprints: fingerprints(&self.session, model, &tried, &findings),
             missing: if unknown {
@@ -497,7 +502,7 @@ impl StepJob {
                 error_fit: whole.score.error_fit,
                 parameters,
                 findings,
-                candidates: self.candidates(model, suggestion),
+                candidates,
             },
             noise_floor: NOISE_FLOOR,
             replay: self.session.replay(&whole.fit),
