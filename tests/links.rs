@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable as _;
 use hysteron::{HysteronApp, link};
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use ui::{WIDE, app, click, finish, picture, state, type_over};
+use ui::{WIDE, app, click, finish, picture, show, state, type_over};
 
 /// Opens a link in an app of its own and gives the link to what is there then.
 fn through(text: &str) -> Result<String, String> {
@@ -49,12 +49,7 @@ fn what_was_set_by_hand_comes_back_in_another_window() {
     let copied = state(&here)["link"].as_str().expect("a link").to_owned();
     assert!(copied.len() < 200, "{copied}");
     let mut there = app("compare", WIDE);
-    let ctx = there.ctx.clone();
-    there
-        .state_mut()
-        .open_link(&ctx, &copied)
-        .expect("a link of ours");
-    finish(&mut there);
+    show(&mut there, &copied);
     for key in [
         "page",
         "link",
@@ -70,10 +65,8 @@ fn what_was_set_by_hand_comes_back_in_another_window() {
 #[test]
 fn a_link_diagnoses_a_measurement_with_its_effects() {
     let mut there = app("explore", WIDE);
-    let ctx = there.ctx.clone();
     let text = "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02";
-    there.state_mut().open_link(&ctx, text).expect("a link");
-    finish(&mut there);
+    show(&mut there, text);
     let shown = state(&there);
     assert_eq!(shown["file"], "drive-02");
     assert!(shown["error"].as_f64().expect("an error") < 1.2, "{shown}");
@@ -85,8 +78,7 @@ fn a_link_opens_a_measured_drifting_test_and_back() {
     let mut there = app("explore", WIDE);
     let ctx = there.ctx.clone();
     let text = "v1;backlash;backlash.file=drive-10;backlash.paused=1.5";
-    there.state_mut().open_link(&ctx, text).expect("a link");
-    finish(&mut there);
+    show(&mut there, text);
     assert_eq!(state(&there)["file"], "drive-10");
     assert_eq!(state(&there)["clock"], 1.5);
     assert_eq!(state(&there)["link"], text);

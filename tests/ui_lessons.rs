@@ -5,7 +5,7 @@ mod ui;
 
 use egui_kittest::kittest::Queryable as _;
 use hysteron::lessons;
-use ui::{App, WIDE, app, finish, picture, state};
+use ui::{App, WIDE, app, finish, picture, show, state};
 
 /// Opens a lesson from the list.
 fn open(id: &str) -> App {
@@ -84,13 +84,11 @@ fn the_relay_and_its_hysteresis() {
         (period / (2.0 * 3.0_f64.ln()) - 1.0).abs() < 1e-9,
         "{period}"
     );
-    let ctx = harness.ctx.clone();
     let still = format!(
         "{};explore.paused=3",
         state(&harness)["link"].as_str().expect("a link")
     );
-    harness.state_mut().open_link(&ctx, &still).expect("a link");
-    finish(&mut harness);
+    show(&mut harness, &still);
     picture(&mut harness, "lesson_relay");
     answer(&mut harness, "0.5");
     assert!(!solved(&harness, "relay"));
@@ -150,10 +148,8 @@ fn more_hysteresis_less_ultimate_gain() {
     assert!((said(&harness) - 4.758).abs() < 0.001);
     answer(&mut harness, "4.758");
     assert!(!solved(&harness, "ultimate"));
-    let ctx = harness.ctx.clone();
     let link = "v1;tune;loop.relay.hysteresis=0.3;tune.step=ultimate;lesson=ultimate";
-    harness.state_mut().open_link(&ctx, link).expect("a link");
-    finish(&mut harness);
+    show(&mut harness, link);
     let gain = said(&harness).to_string();
     answer(&mut harness, &gain);
     assert!(solved(&harness, "ultimate"), "{gain}");
@@ -214,11 +210,9 @@ fn why_does_it_drift() {
     check(&mut harness);
     assert!(!solved(&harness, "drift"), "this one drifts against");
     // The slider for the delay goes to 2 ms: what it reaches there must solve the question.
-    let ctx = harness.ctx.clone();
     let link = "v1;backlash;backlash.run.drive.motor.coulomb=0.03;backlash.run.drive.motor.viscous=0;\
                 backlash.run.command.relay.relay.delay=0.0015;lesson=drift";
-    harness.state_mut().open_link(&ctx, link).expect("a link");
-    finish(&mut harness);
+    show(&mut harness, link);
     assert_eq!(state(&harness)["direction"], "with");
     check(&mut harness);
     assert!(solved(&harness, "drift"));

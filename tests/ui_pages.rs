@@ -1,7 +1,7 @@
 //! The pages, as a user sees and works them: pictures of fixed size, and the way from a file to the answer.
 
 #[path = "support/drive_rig.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, clippy::large_types_passed_by_value)]
 mod drive_rig;
 #[path = "support/random.rs"]
 #[allow(dead_code)]

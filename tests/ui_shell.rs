@@ -6,7 +6,7 @@ mod ui;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::HysteronApp;
-use ui::{App, NARROW, WIDE, app, click, finish, picture, state, type_over};
+use ui::{App, NARROW, WIDE, app, click, finish, picture, show, state, type_over};
 
 fn press(harness: &mut App, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
@@ -35,13 +35,7 @@ fn the_first_minute_shows_a_running_loop_a_question_and_three_doors() {
     harness.get_by_label_contains("It oscillates: period 4.788 s");
     harness.get_by_label("Pause").click();
     harness.step();
-    let ctx = harness.ctx.clone();
-    let still = harness
-        .state_mut()
-        .open_link(&ctx, "v1;start;start.paused=20");
-    still.expect("a place to stand still");
-    harness.step();
-    harness.step();
+    show(&mut harness, "v1;start;start.paused=20");
     picture(&mut harness, "start");
     for (door, page) in [
         ("Open Explore", "explore"),
@@ -78,13 +72,7 @@ fn every_page_stands_in_a_phone_s_window_and_is_reached_by_its_menu() {
         assert_eq!(state(&harness)["page"], "tune");
     }
     let mut harness = app("start", NARROW);
-    let ctx = harness.ctx.clone();
-    let still = harness
-        .state_mut()
-        .open_link(&ctx, "v1;start;start.paused=20");
-    still.expect("a place to stand still");
-    harness.step();
-    harness.step();
+    show(&mut harness, "v1;start;start.paused=20");
     picture(&mut harness, "start_narrow");
 }
 
@@ -188,10 +176,8 @@ fn a_pasted_link_is_opened() {
 #[test]
 fn a_slider_is_reset_by_a_double_click() {
     let mut harness = app("explore", WIDE);
-    let ctx = harness.ctx.clone();
     let link = "v1;explore;explore.paused=0;loop.relay.hysteresis=0.5";
-    harness.state_mut().open_link(&ctx, link).expect("a link");
-    finish(&mut harness);
+    show(&mut harness, link);
     assert!((hysteresis(&harness) - 0.5).abs() < 1e-12);
     let at = harness
         .get_by_role_and_label(egui::accesskit::Role::Slider, "hysteresis ε")
@@ -230,8 +216,7 @@ fn each_look_draws_every_page() {
         picture(&mut harness, &format!("explore_{name}"));
         for page in HysteronApp::default().page_ids() {
             let link = format!("v1;{page}");
-            harness.state_mut().open_link(&ctx, &link).expect("a page");
-            finish(&mut harness);
+            show(&mut harness, &link);
             assert_eq!(state(&harness)["page"], page);
         }
     }
@@ -243,10 +228,8 @@ fn the_app_opens_as_it_was_left() {
     finish(&mut harness);
     click(&mut harness, "5 Rule");
     click(&mut harness, "Ziegler-Nichols PI");
-    let ctx = harness.ctx.clone();
     let link = "v1;explore;explore.margin=true;loop.relay.gain=2";
-    harness.state_mut().open_link(&ctx, link).expect("a link");
-    finish(&mut harness);
+    show(&mut harness, link);
     let kept = harness.state().kept();
 
     let mut later = app("start", WIDE);

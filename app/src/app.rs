@@ -23,7 +23,8 @@ pub struct HysteronApp {
     untouched: Document,
     /// What was set before; never what was computed.
     history: Undoer<Document>,
-    look: Look,
+    /// How the app looks; as the system does until someone has chosen.
+    look: Option<Look>,
     /// Whether the sheet with the keys is open.
     sheet: bool,
     notice: Option<Notice>,
@@ -43,7 +44,7 @@ impl Default for HysteronApp {
             front: 0,
             desk,
             history: Undoer::default(),
-            look: Look::default(),
+            look: None,
             sheet: false,
             notice: None,
             said: channel(),
@@ -113,10 +114,8 @@ impl HysteronApp {
     pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
         if self.frame == 0 {
             theme::apply(ui.ctx());
-            if ui.ctx().system_theme() == Some(egui::Theme::Light) && self.look == Look::default() {
-                self.look = Look::Light;
-            }
-            self.look.apply(ui.ctx());
+            let look = self.look.unwrap_or_else(|| Look::of_system(ui.ctx()));
+            self.set_look(ui.ctx(), look);
         }
         self.frame += 1;
         self.desk.targets.clear();
@@ -193,7 +192,7 @@ impl HysteronApp {
                     self.save(ctx, file, "Table", "text/csv;charset=utf-8", table.csv());
                 }
             }
-            Command::NextLook => self.set_look(ctx, self.look.next()),
+            Command::NextLook => self.set_look(ctx, self.look().next()),
             Command::SetLook(look) => self.set_look(ctx, look),
             Command::Sheet => self.sheet = !self.sheet,
             Command::Close => {
@@ -283,8 +282,12 @@ impl HysteronApp {
     }
 
     fn set_look(&mut self, ctx: &egui::Context, look: Look) {
-        self.look = look;
+        self.look = Some(look);
         look.apply(ctx);
+    }
+
+    fn look(&self) -> Look {
+        self.look.unwrap_or_default()
     }
 
     fn go(&mut self, id: &str) {
@@ -310,7 +313,7 @@ impl HysteronApp {
         state["frame"] = self.frame.into();
         state["studied"] = self.desk.study.lesson.clone().into();
         state["solved"] = serde_json::json!(self.desk.study.solved);
-        state["look"] = self.look.name().into();
+        state["look"] = self.look().name().into();
         state["link"] = self.link().into();
         state["notice"] = self.notice.as_ref().map(Notice::text).into();
         state["targets"] = self.desk.targets.to_json();
@@ -329,7 +332,7 @@ impl HysteronApp {
                 self.history.has_undo(present),
                 self.history.has_redo(present),
             ],
-            look: self.look,
+            look: self.look(),
         };
         bar.ui(ui, &mut self.desk);
     }
@@ -415,7 +418,7 @@ impl HysteronApp {
         let mut app = Self::default();
         let kept = |key| context.storage.and_then(|s| s.get_string(key));
         if let Some(look) = kept(KEPT_LOOK).as_deref().and_then(Look::named) {
-            app.look = look;
+            app.look = Some(look);
         }
         if let Some(solved) = kept(KEPT_SOLVED) {
             app.desk.study.solved = solved.split_whitespace().map(str::to_owned).collect();
@@ -446,7 +449,7 @@ impl eframe::App for HysteronApp {
         storage.set_string(KEPT, self.kept());
         let solved: Vec<&str> = self.desk.study.solved.iter().map(String::as_str).collect();
         storage.set_string(KEPT_SOLVED, solved.join(" "));
-        storage.set_string(KEPT_LOOK, self.look.name().to_owned());
+        storage.set_string(KEPT_LOOK, self.look().name().to_owned());
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

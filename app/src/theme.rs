@@ -51,6 +51,14 @@ impl Look {
         Self::ALL.into_iter().find(|l| l.name() == name)
     }
 
+    /// That of the rest of the desktop.
+    pub fn of_system(ctx: &egui::Context) -> Self {
+        match ctx.system_theme() {
+            Some(egui::Theme::Light) => Self::Light,
+            _ => Self::Dark,
+        }
+    }
+
     /// The next one.
     pub fn next(self) -> Self {
         match self {

@@ -68,6 +68,14 @@ pub fn click(harness: &mut App, label: &str) {
     finish(harness);
 }
 
+/// Opens a link and waits until what it shows is there.
+pub fn show(harness: &mut App, link: &str) {
+    let ctx = harness.ctx.clone();
+    let opened = harness.state_mut().open_link(&ctx, link);
+    assert_eq!(opened, Ok(()), "{link}");
+    finish(harness);
+}
+
 /// Types a text in place of what stands in the field with this label.
 pub fn type_over(harness: &mut App, label: &str, text: &str) {
     harness.get_by_label(label).focus();

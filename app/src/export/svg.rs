@@ -82,14 +82,7 @@ impl Svg {
             Shape::LineSegment { points, stroke: s } => {
                 self.path(points, false, "fill=\"none\"", &stroke(*s));
             }
-            Shape::Path(p) => {
-                self.path(
-                    &p.points,
-                    p.closed,
-                    &paint("fill", p.fill),
-                    &path_stroke(&p.stroke),
-                );
-            }
+            Shape::Path(p) => self.filled(&p.points, p.closed, p.fill, &p.stroke),
             Shape::Band(b) => {
                 let upper = b.points.iter().map(|p| Pos2::new(p.x, p.y.min));
                 let lower = b.points.iter().rev().map(|p| Pos2::new(p.x, p.y.max));
@@ -106,22 +99,10 @@ impl Svg {
             Shape::Text(t) => self.text(t),
             Shape::Mesh(mesh) => self.mesh(mesh),
             Shape::QuadraticBezier(b) => {
-                let points = b.flatten(None);
-                self.path(
-                    &points,
-                    b.closed,
-                    &paint("fill", b.fill),
-                    &path_stroke(&b.stroke),
-                );
+                self.filled(&b.flatten(None), b.closed, b.fill, &b.stroke);
             }
             Shape::CubicBezier(b) => {
-                let points = b.flatten(None);
-                self.path(
-                    &points,
-                    b.closed,
-                    &paint("fill", b.fill),
-                    &path_stroke(&b.stroke),
-                );
+                self.filled(&b.flatten(None), b.closed, b.fill, &b.stroke);
             }
         }
     }
@@ -140,6 +121,10 @@ impl Svg {
             d.push('Z');
         }
         self.tag(&format!("path d=\"{d}\""), &format!("{fill} {stroke}"));
+    }
+
+    fn filled(&mut self, points: &[Pos2], closed: bool, fill: Color32, stroke: &PathStroke) {
+        self.path(points, closed, &paint("fill", fill), &path_stroke(stroke));
     }
 
     /// Triangles of one colour each; a mesh with a texture is a picture of pixels.

@@ -8,6 +8,7 @@ mod controls;
 mod explore;
 mod lessons;
 mod maps;
+mod playback;
 mod start;
 mod tune;
 

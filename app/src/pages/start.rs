@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::controls::slider;
 use super::explore::{TABLES, plots, tables};
+use super::playback::Playback;
 use super::{Command, Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
@@ -54,21 +55,11 @@ const MORE: [(&str, &str); 3] = [
 ];
 
 /// The page.
+#[derive(Default)]
 pub struct Start {
-    playing: bool,
-    clock: f64,
+    playback: Playback,
     /// The last loop and what it does.
     finished: Option<(ExploreInput, Result<ExploreData, String>)>,
-}
-
-impl Default for Start {
-    fn default() -> Self {
-        Self {
-            playing: true,
-            clock: 0.0,
-            finished: None,
-        }
-    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -100,7 +91,7 @@ impl View for Start {
     }
 
     fn toggle_play(&mut self) {
-        self.playing = !self.playing;
+        self.playback.toggle();
     }
 
     fn table_names(&self) -> Vec<&'static str> {
@@ -113,7 +104,7 @@ impl View for Start {
 
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(Settings {
-            paused: (!self.playing).then_some(self.clock),
+            paused: self.playback.paused(),
         })
     }
 
@@ -124,8 +115,7 @@ impl View for Start {
         _desk: &Desk,
     ) -> Result<(), String> {
         let Settings { paused } = parsed(settings)?;
-        self.playing = paused.is_none();
-        self.clock = paused.unwrap_or(self.clock).max(0.0);
+        self.playback.set(paused);
         Ok(())
     }
 
@@ -133,8 +123,8 @@ impl View for Start {
         serde_json::json!({
             "busy": false,
             "answer": self.data().map(|d| d.text.clone()),
-            "clock": self.clock,
-            "playing": self.playing,
+            "clock": self.playback.clock,
+            "playing": self.playback.playing,
         })
     }
 }
@@ -165,14 +155,7 @@ impl Start {
             .exact
             .or(data.simulated)
             .map_or(0.1 * end, |c| c.period);
-        if self.playing {
-            let seconds = f64::from(ui.input(|i| i.stable_dt).min(0.1));
-            self.clock += seconds * PERIODS_PER_SECOND * period;
-            ui.ctx().request_repaint();
-        }
-        if self.clock > end {
-            self.clock = 0.0;
-        }
+        self.playback.advance(ui, PERIODS_PER_SECOND * period, end);
     }
 
     fn loop_ui(&mut self, ui: &mut egui::Ui, relay: &mut Relay) {
@@ -183,12 +166,12 @@ impl Start {
             Some(Ok(data)) => {
                 ui.strong(&data.text);
                 if ui.available_width() < NARROW {
-                    plots::time_ui(ui, relay, data, self.clock, 200.0);
+                    plots::time_ui(ui, relay, data, self.playback.clock, 200.0);
                 } else {
                     let height = (0.42 * ui.ctx().content_rect().height()).max(160.0);
                     ui.columns(2, |columns| {
-                        plots::time_ui(&mut columns[0], relay, data, self.clock, height);
-                        plots::phase_ui(&mut columns[1], data, self.clock, height);
+                        plots::time_ui(&mut columns[0], relay, data, self.playback.clock, height);
+                        plots::phase_ui(&mut columns[1], data, self.playback.clock, height);
                     });
                 }
             }
@@ -209,9 +192,9 @@ impl Start {
                 "hysteresis ε",
             )
             .on_hover_text("How far the output must pass zero before the relay switches");
-            let label = if self.playing { "Pause" } else { "Play" };
+            let label = self.playback.label();
             if ui.button(label).clicked() {
-                self.toggle_play();
+                self.playback.toggle();
             }
         });
     }

@@ -31,7 +31,7 @@ const BODY_ITERATIONS: usize = 2;
 /// Damping above which no step is tried any more.
 const MAX_DAMPING: f64 = 1e9;
 
-/// Growth of the damping after a step that did not lower the cost; it doubles with every further one.
+/// Growth of the damping after a step that did not lower the cost.
 const DAMPING_GROWTH: f64 = 6.0;
 
 /// A fit ends when it stalls for the second time; damping with which it goes on after the first.
@@ -151,14 +151,13 @@ impl Fit {
             matrix[(*j, *j)] += weight;
             gradient[*j] += weight * (value - self.values[*j]);
         }
-        let (mut lowered, mut growth) = (false, DAMPING_GROWTH);
+        let (mut lowered, mut shortened) = (false, false);
         while self.damping < MAX_DAMPING {
             let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
             else {
                 self.damping *= 10.0;
                 continue;
             };
-            let shortened = growth > DAMPING_GROWTH;
             if shortened
                 && share * self.hoped_fall(data, &gradient, &windows, &values, &starts)
                     < COST_TOLERANCE * present
@@ -175,8 +174,8 @@ impl Fit {
                 lowered = fall > COST_TOLERANCE;
                 break;
             }
-            self.damping *= growth;
-            growth *= 2.0;
+            self.damping *= DAMPING_GROWTH;
+            shortened = true;
         }
         self.information = reduced(&matrix, &gradient, &windows, data, p).0;
         for (j, _, tolerance) in &priors {

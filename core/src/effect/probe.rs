@@ -406,9 +406,9 @@ impl Probe {
         self.input.iter().fold(0.0, |m: f64, u| m.max(u.abs()))
     }
 
-    /// Torque that `load` would put on the motor, moved as measured.
+    /// Torque that `load` would put on the motor, moved as measured, where the windows are.
     pub fn load_torque(&self, load: &Load) -> Vec<f64> {
-        load_torque(load, &self.position, self.scales.step)
+        load_torque(load, &self.position, self.scales.step, &self.spans)
     }
 
     /// Natural frequencies that a load may have, rad/s: from a few periods in the record to a few

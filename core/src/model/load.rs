@@ -75,7 +75,12 @@ pub(super) struct Follower<'m> {
     pub motion: Motion,
     pub mode: Mode,
     steps: u32,
+    /// Sample up to which it has followed.
+    sample: usize,
 }
+
+/// Samples after which a load has forgotten how it began: it is pushed along many times in them.
+const WARM_UP: usize = 1500;
 
 /// Most steps in an interval of a follower.
 const MAX_FOLLOWER_STEPS: f64 = 32.0;
@@ -99,12 +104,35 @@ impl<'m> Follower<'m> {
             },
             mode: Mode::Stick,
             steps: steps as u32,
+            sample: 0,
         }
+    }
+
+    /// Follows up to a sample, not before the last one asked for; `h` tells the time from a sample to the
+    /// next. A long way is cut short: the load then begins as if it had gone with the body.
+    pub fn reach(&mut self, position: &[f64], sample: usize, h: impl Fn(usize) -> f64) {
+        if sample > self.sample + WARM_UP {
+            self.sample = sample - WARM_UP;
+            let (from, to) = (position[self.sample], position[self.sample + 1]);
+            let v = (to - from) / h(self.sample);
+            (self.motion.x, self.motion.v) = (from, v);
+            self.mode = Mode::of(v);
+        }
+        while self.sample < sample {
+            self.step(position, h(self.sample));
+        }
+    }
+
+    /// Moves on to the next sample, `h` seconds later; mean torque or force on the load.
+    fn step(&mut self, position: &[f64], h: f64) -> f64 {
+        let torque = self.advance(position, self.sample, h);
+        self.sample += 1;
+        torque
     }
 
     /// Moves the body along `position` from sample `i` to the next one in `h` seconds, on a parabola
     /// bent like the samples around; mean torque or force on the load.
-    pub fn advance(&mut self, position: &[f64], i: usize, h: f64) -> f64 {
+    fn advance(&mut self, position: &[f64], i: usize, h: f64) -> f64 {
         let at = |j: usize| position[j.min(position.len() - 1)];
         let (from, to) = (at(i), at(i + 1));
         let before = if i == 0 { from } else { at(i - 1) };
@@ -142,13 +170,22 @@ impl<'m> Follower<'m> {
     }
 }
 
-/// Torque or force that a load with `coupling` would put on a body which is moved as measured:
-/// `position` at equal steps of `h` seconds, the load at rest in the middle of the gap at first.
-pub fn load_torque(load: &Load, position: &[f64], h: f64) -> Vec<f64> {
-    let mut follower = Follower::new(load, position.first().copied().unwrap_or(0.0), h);
-    let mut torque: Vec<f64> = (1..position.len())
-        .map(|i| follower.advance(position, i - 1, h))
-        .collect();
-    torque.push(torque.last().copied().unwrap_or(0.0));
+/// Torque or force that `load` would put on a body which is moved as measured: `position` at equal steps of
+/// `h` seconds. It is found at the samples of `spans` (first and end, ascending) and is 0 elsewhere.
+pub fn load_torque(load: &Load, position: &[f64], h: f64, spans: &[(usize, usize)]) -> Vec<f64> {
+    let mut torque = vec![0.0; position.len()];
+    let Some(first) = position.first() else {
+        return torque;
+    };
+    let mut follower = Follower::new(load, *first, h);
+    for (from, to) in spans {
+        let Some(part) = torque.get_mut(*from..*to) else {
+            continue;
+        };
+        follower.reach(position, *from, |_| h);
+        for value in part {
+            *value = follower.step(position, h);
+        }
+    }
     torque
 }

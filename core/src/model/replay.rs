@@ -137,7 +137,6 @@ impl Excitation {
             .contact()
             .zip(self.steady.as_ref())
             .map(|(contact, steady)| Bristle::new(contact, steady, &model.friction));
-        let mut followed = 0;
         let mut now = 0;
         for (from, end) in &self.runs {
             if now < *from {
@@ -152,10 +151,9 @@ impl Excitation {
                 if let Some(start) = next.next_if(|s| s.sample == i) {
                     state = state.restarted(start.position, start.velocity);
                     if let Some(follower) = &mut follower {
-                        for k in followed..i {
-                            follower.advance(&self.position, k, self.time[k + 1] - self.time[k]);
-                        }
-                        followed = i;
+                        follower.reach(&self.position, i, |k| {
+                            self.step.unwrap_or_else(|| self.time[k + 1] - self.time[k])
+                        });
                         state = state.with_load(follower, self.position[i]);
                     }
                     if let Some(bristle) = &mut bristle {

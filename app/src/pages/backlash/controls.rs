@@ -24,7 +24,7 @@ impl Backlash {
         self.relay_ui(ui);
         egui::CollapsingHeader::new("Design a drifting test").show(ui, |ui| {
             if self.design.ui(ui, &mut self.input) {
-                self.clock = 0.0;
+                self.playback.clock = 0.0;
             }
         });
         self.gap_ui(ui);
@@ -50,7 +50,7 @@ impl Backlash {
                     self.figure = (!chosen).then_some(figure.number);
                     if !chosen {
                         self.input = figure.input;
-                        self.clock = 0.0;
+                        self.playback.clock = 0.0;
                     }
                 }
             }
@@ -222,22 +222,22 @@ impl Backlash {
     pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         let narrow = ui.available_width() < NARROW_PLAYBACK;
         ui.horizontal(|ui| {
-            let label = if self.playing { "Pause" } else { "Play" };
+            let label = self.playback.label();
             let button = ui.button(label);
             targets.note("gap:play", ui, &button);
             if button.clicked() {
-                self.playing = !self.playing;
+                self.playback.toggle();
             }
             if ui
                 .button("Step")
                 .on_hover_text("To the next event")
                 .clicked()
             {
-                self.playing = false;
+                self.playback.playing = false;
                 self.step_to_next_event();
             }
             if ui.button("From the start").clicked() {
-                self.clock = 0.0;
+                self.playback.clock = 0.0;
             }
             if !narrow {
                 self.speed_ui(ui);
@@ -255,7 +255,7 @@ impl Backlash {
                 .suffix(" x"),
         )
         .on_hover_text("Speed of the playback, times real time");
-        ui.label(format!("t = {:.4} s", self.clock));
+        ui.label(format!("t = {:.4} s", self.playback.clock));
     }
 
     fn step_to_next_event(&mut self) {
@@ -263,7 +263,7 @@ impl Backlash {
             return;
         };
         let run = &scene.run;
-        let after = self.clock + 1e-9;
+        let after = self.playback.clock + 1e-9;
         // A measurement has no events: it goes from sample to sample.
         let next = if run.events.is_empty() {
             let next = run.time.partition_point(|t| *t <= after);
@@ -273,7 +273,7 @@ impl Backlash {
             run.events.get(next).map(|e| e.time)
         };
         if let Some(time) = next {
-            self.clock = time;
+            self.playback.clock = time;
         }
     }
 }

@@ -12,6 +12,7 @@ mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 
+use super::playback::Playback;
 use super::{Desk, View};
 pub use settings::is_built_in;
 
@@ -47,9 +48,8 @@ pub struct Backlash {
     /// Number of the figure whose claim is checked.
     figure: Option<u32>,
     design: Design,
-    playing: bool,
-    /// The time that is shown, s, and seconds of the drive in a second.
-    clock: f64,
+    playback: Playback,
+    /// Seconds of the drive in a second.
     speed: f64,
     /// The simulation that is under way, and for what.
     simulation: Option<(DriveInput, DriveJob)>,
@@ -71,8 +71,7 @@ impl Default for Backlash {
             input: drifting_test(),
             figure: None,
             design: Design::default(),
-            playing: true,
-            clock: 0.0,
+            playback: Playback::default(),
             speed: 0.1,
             simulation: None,
             worked: 0.0,
@@ -144,7 +143,7 @@ impl Backlash {
         let task = GapTask::File(name.to_owned(), text);
         self.estimation = Some((None, Job::run(ctx, task)));
         self.file = Some(name.to_owned());
-        self.clock = 0.0;
+        self.playback.clock = 0.0;
         self.message = None;
     }
 
@@ -221,14 +220,7 @@ impl Backlash {
             return;
         };
         let end = scene.duration();
-        if self.playing {
-            let seconds = f64::from(ui.input(|i| i.stable_dt).min(0.1));
-            self.clock += seconds * self.speed;
-            ui.ctx().request_repaint();
-        }
-        if self.clock > end {
-            self.clock = 0.0;
-        }
+        self.playback.advance(ui, self.speed, end);
     }
 
     fn relay(&self) -> Option<VelocityRelay> {
@@ -288,12 +280,12 @@ impl Backlash {
             let Some(scene) = &self.scene else {
                 return;
             };
-            picture::ui(ui, scene, self.clock, PICTURE);
+            picture::ui(ui, scene, self.playback.clock, PICTURE);
             let height = (0.5 * ui.available_height() - 34.0).max(120.0);
-            plots::time_ui(ui, scene, self.clock, height);
+            plots::time_ui(ui, scene, self.playback.clock, height);
             ui.columns(2, |columns| {
-                plots::phase_ui(&mut columns[0], scene, self.clock, height);
-                plots::map_ui(&mut columns[1], scene, self.clock, height);
+                plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
+                plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
             });
         });
     }
@@ -304,10 +296,10 @@ impl Backlash {
                 self.answer_ui(ui);
                 self.playback_ui(ui, targets);
                 if let Some(scene) = &self.scene {
-                    picture::ui(ui, scene, self.clock, PICTURE);
-                    plots::time_ui(ui, scene, self.clock, 220.0);
-                    plots::phase_ui(ui, scene, self.clock, 240.0);
-                    plots::map_ui(ui, scene, self.clock, 240.0);
+                    picture::ui(ui, scene, self.playback.clock, PICTURE);
+                    plots::time_ui(ui, scene, self.playback.clock, 220.0);
+                    plots::phase_ui(ui, scene, self.playback.clock, 240.0);
+                    plots::map_ui(ui, scene, self.playback.clock, 240.0);
                 }
                 self.side_ui(ui, targets);
             });
@@ -352,7 +344,7 @@ impl View for Backlash {
     }
 
     fn toggle_play(&mut self) {
-        self.playing = !self.playing;
+        self.playback.toggle();
     }
 
     fn hint(&self) -> Option<(&'static str, &'static str)> {
@@ -415,9 +407,9 @@ impl View for Backlash {
             "gap_estimated": estimate.and_then(|e| e.gap),
             "direction": simulated.zip(self.relay()).and_then(|(s, r)| s.summary.direction(&r)),
             "motor_coulomb": self.input.drive.motor.coulomb,
-            "clock": self.clock,
+            "clock": self.playback.clock,
             "times_real_time": simulated.map(|_| self.input.duration / self.worked),
-            "playing": self.playing,
+            "playing": self.playback.playing,
         })
     }
 }

@@ -44,7 +44,7 @@ impl Backlash {
             expected_gap: self.design.gap,
             largest_torque: self.design.torque,
             speed: self.speed,
-            paused: (!self.playing).then_some(self.clock),
+            paused: self.playback.paused(),
             file: self.file.clone(),
         }
     }
@@ -67,16 +67,13 @@ impl Backlash {
         self.design.gap = settings.expected_gap;
         self.design.torque = settings.largest_torque;
         self.speed = settings.speed;
-        self.playing = settings.paused.is_none();
         self.message = None;
         if let Some(built_in) = file {
             self.open_bytes(ctx, built_in.id, &built_in.csv());
         } else if settings.file.is_none() && self.file.is_some() {
             self.close();
         }
-        if let Some(clock) = settings.paused {
-            self.clock = clock.max(0.0);
-        }
+        self.playback.set(settings.paused);
         Ok(())
     }
 }

@@ -92,7 +92,7 @@ impl Backlash {
             ] {
                 if ui.button(name).clicked() {
                     self.figure = None;
-                    self.clock = 0.0;
+                    self.playback.clock = 0.0;
                     self.input = drifting_test();
                     self.input.drive.motor.coulomb = friction;
                     self.input.drive.motor.viscous = 0.0;

@@ -39,7 +39,7 @@ impl Explore {
                     self.figure = (!chosen).then_some(figure.number);
                     if !chosen {
                         self.input = figure.input;
-                        self.clock = 0.0;
+                        self.playback.clock = 0.0;
                     }
                 }
             }
@@ -92,12 +92,12 @@ impl Explore {
 
     fn playback_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
-            let label = if self.playing { "Pause" } else { "Play" };
+            let label = self.playback.label();
             if ui.button(label).clicked() {
-                self.playing = !self.playing;
+                self.playback.toggle();
             }
             if ui.button("From the start").clicked() {
-                self.clock = 0.0;
+                self.playback.clock = 0.0;
             }
             ui.checkbox(&mut self.nyquist.margin, "phase-margin point S");
         });

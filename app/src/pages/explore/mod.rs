@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks, figures};
 
+use super::playback::Playback;
 use super::{Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
@@ -30,15 +31,14 @@ const NARROW: f32 = 700.0;
 const REMEMBERED: usize = 31;
 
 /// The page: what is set, and what follows from it.
+#[derive(Default)]
 pub struct Explore {
     input: ExploreInput,
     editor: PlantEditor,
     nyquist: Nyquist,
     /// Number of the figure whose claim is checked.
     figure: Option<u32>,
-    /// Whether the simulation is played back, and the time it has reached, s.
-    playing: bool,
-    clock: f64,
+    playback: Playback,
     /// Where the line can be taken hold of, for tests.
     line_at: Option<egui::Pos2>,
     finished: Option<Finished>,
@@ -51,22 +51,6 @@ struct Finished {
     input: ExploreInput,
     figure: Option<u32>,
     data: Result<(ExploreData, Vec<Check>), String>,
-}
-
-impl Default for Explore {
-    fn default() -> Self {
-        Self {
-            input: ExploreInput::default(),
-            editor: PlantEditor::default(),
-            nyquist: Nyquist::default(),
-            figure: None,
-            playing: true,
-            clock: 0.0,
-            line_at: None,
-            finished: None,
-            took: VecDeque::new(),
-        }
-    }
 }
 
 impl View for Explore {
@@ -97,7 +81,7 @@ impl View for Explore {
     }
 
     fn toggle_play(&mut self) {
-        self.playing = !self.playing;
+        self.playback.toggle();
     }
 
     fn hint(&self) -> Option<(&'static str, &'static str)> {
@@ -196,14 +180,7 @@ impl Explore {
             .exact
             .or(data.simulated)
             .map_or(0.1 * end, |c| c.period);
-        let seconds = f64::from(ui.input(|i| i.stable_dt).min(0.1));
-        if self.playing {
-            self.clock += seconds * PERIODS_PER_SECOND * period;
-            ui.ctx().request_repaint();
-        }
-        if self.clock > end {
-            self.clock = 0.0;
-        }
+        self.playback.advance(ui, PERIODS_PER_SECOND * period, end);
     }
 
     fn wide_ui(&mut self, ui: &mut egui::Ui) {
@@ -274,13 +251,13 @@ impl Explore {
             return;
         };
         let relay = &mut self.input.relay;
-        let amplitude = plots::swing_at(data, self.clock);
+        let amplitude = plots::swing_at(data, self.playback.clock);
         self.line_at = Some(self.nyquist.ui(ui, relay, data, amplitude, height));
     }
 
     fn phase_ui(&self, ui: &mut egui::Ui, height: f32) {
         if let Some((data, _)) = self.data() {
-            plots::phase_ui(ui, data, self.clock, height);
+            plots::phase_ui(ui, data, self.playback.clock, height);
         }
     }
 
@@ -288,7 +265,7 @@ impl Explore {
         let Some((data, _)) = self.data() else {
             return;
         };
-        plots::time_ui(ui, &self.input.relay, data, self.clock, height);
+        plots::time_ui(ui, &self.input.relay, data, self.playback.clock, height);
     }
 }
 

@@ -21,7 +21,7 @@ impl Explore {
         Settings {
             figure: self.figure,
             margin: self.nyquist.margin,
-            paused: (!self.playing).then_some(self.clock),
+            paused: self.playback.paused(),
         }
     }
 
@@ -33,10 +33,7 @@ impl Explore {
         }
         self.figure = settings.figure;
         self.nyquist.margin = settings.margin;
-        self.playing = settings.paused.is_none();
-        if let Some(clock) = settings.paused {
-            self.clock = clock.max(0.0);
-        }
+        self.playback.set(settings.paused);
         Ok(())
     }
 }
