@@ -278,6 +278,11 @@ fn a_page_is_saved_as_a_picture_of_lines_and_words() {
     ] {
         assert!(svg.contains(part), "{part}");
     }
+    // A word in a row of several is as wide as itself.
+    let words = svg.lines().find(|l| l.contains(">limit cycle<"));
+    let width = words.and_then(|l| l.split("textLength=\"").nth(1)?.split('"').next());
+    let width: f32 = width.expect("a width").parse().expect("a number");
+    assert!((40.0..100.0).contains(&width), "{width}");
     let long = svg.lines().filter(|l| l.matches('L').count() > 500).count();
     assert!(long >= 2, "the curves are there: {long}");
     assert!(!svg.contains("NaN"));

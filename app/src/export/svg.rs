@@ -166,6 +166,9 @@ impl Svg {
                 continue;
             };
             let at = row.pos + first.pos.to_vec2();
+            // The row itself also has the space before its first word.
+            let last = row.glyphs.last().unwrap_or(first);
+            let width = last.pos.x + last.advance_width - first.pos.x;
             let turn = if text.angle == 0.0 {
                 String::new()
             } else {
@@ -180,7 +183,7 @@ impl Svg {
                 at.x,
                 at.y,
                 format.font_id.size,
-                row.size.x,
+                width,
                 paint("fill", color),
                 escaped(&words)
             );
