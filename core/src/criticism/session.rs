@@ -9,8 +9,9 @@ use super::locate::locate;
 use super::score::{Score, score};
 use super::select::is_noise;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
+use crate::backlash::estimate_gap;
 use crate::effect::{
-    self, Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales,
+    self, Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales, SeenGap,
 };
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::user_model::{Status, UserModel};
@@ -43,6 +44,8 @@ pub(super) struct Session {
     pub scout: Data,
     pub scales: Scales,
     motion: Motion,
+    /// The gap that a drifting test shows.
+    gap: Option<SeenGap>,
     input_unit: String,
     /// Quantity, name and unit of each output.
     pub outputs: Vec<(Quantity, String, String)>,
@@ -75,6 +78,7 @@ impl Session {
             full: (compared.used() < data.used()).then_some(data),
             data: compared,
             motion: measurement.motion(),
+            gap: seen_gap(measurement),
             input_unit: measurement.input.unit.clone(),
             outputs: measurement
                 .outputs
@@ -177,6 +181,7 @@ impl Session {
             outputs: &outputs,
             spans: &data.spans(),
             body: (model.inertia, model.viscous),
+            gap: self.gap,
         })
     }
 
@@ -337,6 +342,19 @@ impl Session {
             window_starts: self.whole().windows.clone(),
         }
     }
+}
+
+/// The gap that the motor's columns give away by themselves, if they are those of a drifting test.
+fn seen_gap(measurement: &Measurement) -> Option<SeenGap> {
+    if measurement.kind != Kind::Drive {
+        return None;
+    }
+    let estimate = estimate_gap(measurement).ok()?;
+    let load = estimate.load.map(|load| (load.viscous, load.dry));
+    estimate.gap.map(|gap| SeenGap {
+        half_gap: 0.5 * gap,
+        load_friction: load,
+    })
 }
 
 /// A product of powers of units, such as `N m s^2/rad`.

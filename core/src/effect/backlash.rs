@@ -3,7 +3,7 @@
 //! The contact is a stiff spring with damping that pushes and cannot pull; the rigid play with
 //! momentum-conserving impact, equations (10) and (11) of the paper, is its limit for large stiffness.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, SeenGap};
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
 
@@ -29,6 +29,9 @@ const DAMPING_RATIO: f64 = 0.3;
 /// Gaps that are tried with every friction and stiffness, and combinations that are followed.
 const REFINED: usize = 5;
 const BEST: usize = 3;
+
+/// Share of the unexplained force that may be left by a gap seen in the record for no other to be tried.
+const WELL_SEEN: f64 = 0.2;
 
 fn gap_shares() -> impl Iterator<Item = f64> {
     std::iter::successors(Some(SMALLEST_GAP), |share| {
@@ -86,6 +89,24 @@ fn best(mut trials: Vec<Trial>, count: usize) -> Vec<Trial> {
     trials.sort_by(|a, b| a.left.total_cmp(&b.left));
     trials.truncate(count);
     trials
+}
+
+/// The best starting points about a gap that was seen: only its contact is to be found.
+fn about(probe: &Probe, gap: SeenGap) -> Vec<Trial> {
+    let scales = &probe.scales;
+    let friction = match gap.load_friction {
+        Some((viscous, dry)) => vec![(
+            viscous * scales.step,
+            dry * scales.inertia.abs() / scales.force,
+        )],
+        None => LOAD_FRICTION.to_vec(),
+    };
+    let trials = friction
+        .into_iter()
+        .flat_map(|friction| STIFFNESS.map(|k| (friction, k)))
+        .filter_map(|(friction, k)| Trial::new(probe, gap.half_gap, friction, k))
+        .collect();
+    best(trials, BEST)
 }
 
 impl Effect for Backlash {
@@ -159,6 +180,10 @@ impl Effect for Backlash {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let seen = probe.gap().map_or_else(Vec::new, |gap| about(probe, gap));
+        if seen.first().is_some_and(|trial| trial.left < WELL_SEEN) {
+            return seen.iter().map(Trial::values).collect();
+        }
         let scanned = gap_shares()
             .filter_map(|share| {
                 let half_gap = share * probe.scales.travel;

@@ -71,6 +71,7 @@ pub struct Probe {
     known: Vec<Known>,
     base_left: f64,
     inverse_inertia: f64,
+    gap: Option<SeenGap>,
 }
 
 /// Products of the base answers of a window with each other and with its error, and of that with itself.
@@ -109,6 +110,15 @@ pub struct ProbeOutput {
     pub noise: f64,
 }
 
+/// A gap that shows in the record itself, before any fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenGap {
+    /// Half of the gap, rad or m.
+    pub half_gap: f64,
+    /// Viscous friction (1/s) and dry friction (rad/s^2 or m/s^2) of the load over its inertia, where they show.
+    pub load_friction: Option<(f64, f64)>,
+}
+
 /// What a [`Probe`] is made from.
 pub struct ProbeInput<'a> {
     /// Drive or process.
@@ -129,6 +139,8 @@ pub struct ProbeInput<'a> {
     pub spans: &'a [(usize, usize)],
     /// Inertia and viscous friction of the present model.
     pub body: (f64, f64),
+    /// The gap that was seen, if any.
+    pub gap: Option<SeenGap>,
 }
 
 /// Outcome of a regression on force signatures.
@@ -175,6 +187,7 @@ impl Probe {
             known: Vec::new(),
             base_left: f64::NAN,
             inverse_inertia: 1.0 / inertia,
+            gap: input.gap,
         };
         let mut lengths: Vec<usize> = probe.spans.iter().map(|(a, b)| b - a).collect();
         lengths.sort_unstable();
@@ -404,6 +417,11 @@ impl Probe {
     /// Largest commanded input.
     pub fn largest_input(&self) -> f64 {
         self.input.iter().fold(0.0, |m: f64, u| m.max(u.abs()))
+    }
+
+    /// The gap that shows in the record before any fit, if there is one.
+    pub fn gap(&self) -> Option<SeenGap> {
+        self.gap
     }
 
     /// Torque that `load` would put on the motor, moved as measured, where the windows are.
