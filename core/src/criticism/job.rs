@@ -237,7 +237,8 @@ impl DiagnosisJob {
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended => {
-                self.job = Some(StepJob::from_fit(session, model, self.limits));
+                let job = StepJob::from_fit(session, model, self.limits);
+                self.job = Some(job.following(&self.diagnosis.steps));
             }
             (verdict, _) => {
                 self.diagnosis.verdict = verdict.unwrap_or_else(|| {
@@ -276,7 +277,8 @@ impl DiagnosisJob {
         let detour = self.detours.remove(0);
         self.diagnosis.steps = detour.steps;
         self.bold = detour.bold;
-        self.job = Some(StepJob::from_fit(session, detour.model, self.limits));
+        let job = StepJob::from_fit(session, detour.model, self.limits);
+        self.job = Some(job.following(&self.diagnosis.steps));
         None
     }
 

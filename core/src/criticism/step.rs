@@ -57,6 +57,8 @@ pub struct StepJob {
     contradicted: Vec<Contradiction>,
     /// The model with an effect replaced by a part of it that does as well.
     simpler: Option<Scored>,
+    /// Effects in the order in which earlier steps found them.
+    earlier: Vec<EffectId>,
 }
 
 /// Whether two effects are the same or one contains the other.
@@ -125,6 +127,7 @@ impl StepJob {
             classes: Vec::new(),
             contradicted: Vec::new(),
             simpler: None,
+            earlier: Vec::new(),
         }
     }
 
@@ -135,6 +138,19 @@ impl StepJob {
         job.model = Some(model);
         job.stage = job.try_stage();
         job
+    }
+
+    /// The same after `steps`: what takes the place of an effect is told where that was.
+    #[must_use]
+    pub(super) fn following(mut self, steps: &[Step]) -> Self {
+        self.earlier = steps.iter().flat_map(|s| &s.effects).copied().collect();
+        self
+    }
+
+    /// Where in the order of finding an effect stands, or one that it contains or that contains it.
+    fn found(&self, effect: &'static dyn Effect) -> usize {
+        let related = |id: &EffectId| self.session.find(*id).is_some_and(|e| nested(e, effect));
+        self.earlier.iter().position(related).unwrap_or(usize::MAX)
     }
 
     /// Effects that could be added: not in the model, nor contained in one that is.
@@ -459,7 +475,10 @@ impl StepJob {
         let findings = self.session.findings(&whole);
         let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
             let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
+            let mut places: Vec<usize> = places.collect();
+            places.sort_by_key(|k| self.found(self.wanted[*k]));
             let (added, classes): (Vec<_>, Vec<_>) = places
+                .into_iter()
                 .map(|k| {
                     (
                         self.wanted[k],
