@@ -1,19 +1,17 @@
 //! Hidden effects are found, nothing is found where nothing is, what cannot be told apart is said so.
 
+#[path = "support/diagnosis.rs"]
+mod diagnosis;
 #[path = "support/rig.rs"]
 mod rig;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
+use diagnosis::{classes, finish};
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::measurement::{Measurement, import_csv};
 use rig::Rig;
 
 fn diagnose(measurement: &Measurement) -> Diagnosis {
-    let mut job = DiagnosisJob::new(measurement).unwrap();
-    loop {
-        if let Progress::Done(diagnosis) = job.advance() {
-            return diagnosis;
-        }
-    }
+    finish(DiagnosisJob::new(measurement).unwrap())
 }
 
 /// Checks the classes found, in any order, and main parameters to 5 %.
@@ -24,12 +22,7 @@ fn check(
     parameters: &[(&str, &str, f64)],
 ) {
     let d = diagnose(measurement);
-    let mut found: Vec<Vec<&str>> = d
-        .verdict
-        .missing
-        .iter()
-        .map(|class| class.iter().map(|e| e.as_str()).collect())
-        .collect();
+    let mut found = classes(&d);
     let mut wanted: Vec<Vec<&str>> = missing.iter().map(|class| class.to_vec()).collect();
     found.sort();
     wanted.sort();

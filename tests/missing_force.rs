@@ -1,14 +1,9 @@
 //! Where no effect of the library explains the rest, what is missing is estimated without a model.
 
-#[path = "support/drive_rig.rs"]
-#[allow(dead_code)]
-mod drive_rig;
-#[path = "support/random.rs"]
-#[allow(dead_code)]
-mod random;
+mod support;
 
-use drive_rig::{DriveRig, Excitation, Stranger};
 use hysteron_core::criticism::{DiagnosisJob, MissingPart, Progress, StepReport};
+use support::drive_rig::{DriveRig, Excitation, Stranger};
 
 /// The last model of a diagnosis that must end with `unknown`.
 fn unknown(excitation: Excitation, stranger: Stranger) -> StepReport {

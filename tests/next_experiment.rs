@@ -6,42 +6,24 @@
     reason = "definitions of rigs are plain values"
 )]
 
-#[path = "support/drive_rig.rs"]
-#[allow(dead_code)]
-mod drive_rig;
-#[path = "support/process_rig.rs"]
-#[allow(dead_code)]
-mod process_rig;
-#[path = "support/random.rs"]
-#[allow(dead_code)]
-mod random;
+mod support;
 
-use drive_rig::{DriveRig, SAMPLING, relay};
 use hysteron_core::criticism::{
     CriticismError, Diagnosis, DiagnosisJob, ExperimentJob, Limits, NextExperiment, Program,
     Progress,
 };
 use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
-use process_rig::ProcessRig;
+use support::diagnosis::{classes, finish};
+use support::drive_rig::{self, DriveRig, SAMPLING, relay};
+use support::process_rig::{self, ProcessRig};
+use support::proposed::Proposed;
 
 /// These two act alike where the input has two opposite levels.
 const OFFSET: [&str; 2] = ["gain_asymmetry", "constant_load"];
 
 fn diagnose(measurement: &Measurement, limits: Limits) -> Diagnosis {
-    let mut job = DiagnosisJob::new(measurement).unwrap().within(limits);
-    loop {
-        if let Progress::Done(diagnosis) = job.advance() {
-            return diagnosis;
-        }
-    }
-}
-
-fn classes(diagnosis: &Diagnosis) -> Vec<Vec<&str>> {
-    let missing = diagnosis.verdict.missing.iter();
-    missing
-        .map(|class| class.iter().map(|e| e.as_str()).collect())
-        .collect()
+    finish(DiagnosisJob::new(measurement).unwrap().within(limits))
 }
 
 /// The only proposal, after a check that the record cannot tell the class.
@@ -59,56 +41,40 @@ fn proposal(measurement: &Measurement, limits: Limits, class: &[&str]) -> NextEx
     proposal.clone()
 }
 
-/// What a person at the rig sets.
-fn on_the_drive(rig: DriveRig, proposal: &NextExperiment) -> DriveRig {
-    let excitation = match &proposal.program {
-        Program::Relay {
-            gains,
-            hold,
-            hysteresis,
-            ..
-        } => drive_rig::Excitation::TwoGains {
-            gains: gains.as_slice().try_into().expect("two gains"),
-            hold: *hold,
-            hysteresis: *hysteresis,
-        },
-        Program::Levels { levels, hold } => drive_rig::Excitation::Levels {
-            levels: levels.as_slice().try_into().expect("sixteen levels"),
-            hold: *hold,
-        },
-        Program::Multisine { .. } => panic!("no sines at this rig: {}", proposal.text),
-    };
-    DriveRig {
-        seed: rig.seed + 1000,
-        excitation,
-        samples: (proposal.duration / SAMPLING).round() as usize,
-        ..rig
+/// A rig at which a person can carry out what is proposed.
+trait Bench: Copy {
+    fn measure(&self) -> Measurement;
+    /// The same rig, with other noise.
+    fn set(self, proposal: &NextExperiment) -> Self;
+}
+
+impl Bench for DriveRig {
+    fn measure(&self) -> Measurement {
+        self.measure()
+    }
+
+    fn set(self, proposal: &NextExperiment) -> Self {
+        Self {
+            seed: self.seed + 1000,
+            excitation: drive_rig::Excitation::Proposed(Proposed::of(proposal)),
+            samples: (proposal.duration / SAMPLING).round() as usize,
+            ..self
+        }
     }
 }
 
-fn on_the_process(rig: ProcessRig, proposal: &NextExperiment) -> ProcessRig {
-    let excitation = match &proposal.program {
-        Program::Relay {
-            gains,
-            hold,
-            hysteresis,
-            ..
-        } => process_rig::Excitation::TwoGains {
-            gains: gains.as_slice().try_into().expect("two gains"),
-            hold: *hold,
-            hysteresis: *hysteresis,
-        },
-        Program::Levels { levels, hold } => process_rig::Excitation::Levels {
-            levels: levels.as_slice().try_into().expect("sixteen levels"),
-            hold: *hold,
-        },
-        Program::Multisine { .. } => panic!("no sines at this rig: {}", proposal.text),
-    };
-    ProcessRig {
-        seed: rig.seed + 1000,
-        excitation,
-        samples: (proposal.duration / process_rig::SAMPLING).round() as usize,
-        ..rig
+impl Bench for ProcessRig {
+    fn measure(&self) -> Measurement {
+        self.measure()
+    }
+
+    fn set(self, proposal: &NextExperiment) -> Self {
+        Self {
+            seed: self.seed + 1000,
+            excitation: process_rig::Excitation::Proposed(Proposed::of(proposal)),
+            samples: (proposal.duration / process_rig::SAMPLING).round() as usize,
+            ..self
+        }
     }
 }
 
@@ -125,7 +91,8 @@ fn check_truth(measurement: &Measurement, truth: &str, value: f64) {
     assert!((found / value - 1.0).abs() < 0.05, "{found} for {value}");
 }
 
-fn check_drive(rig: DriveRig, class: &[&str], truth: &str, value: f64) {
+/// The record of `rig` cannot tell the class; the proposed one tells the truth.
+fn check(rig: impl Bench, class: &[&str], truth: &str, value: f64) {
     let record = rig.measure();
     let proposal = proposal(&record, Limits::of(&record), class);
     assert!(proposal.sufficient, "{}", proposal.text);
@@ -134,19 +101,7 @@ fn check_drive(rig: DriveRig, class: &[&str], truth: &str, value: f64) {
         "{}",
         proposal.text
     );
-    check_truth(&on_the_drive(rig, &proposal).measure(), truth, value);
-}
-
-fn check_process(rig: ProcessRig, class: &[&str], truth: &str, value: f64) {
-    let record = rig.measure();
-    let proposal = proposal(&record, Limits::of(&record), class);
-    assert!(proposal.sufficient, "{}", proposal.text);
-    assert!(
-        proposal.separation > 5.0 * proposal.today,
-        "{}",
-        proposal.text
-    );
-    check_truth(&on_the_process(rig, &proposal).measure(), truth, value);
+    check_truth(&rig.set(&proposal).measure(), truth, value);
 }
 
 #[test]
@@ -157,7 +112,7 @@ fn gain_asymmetry_of_a_drive_is_told_from_a_constant_load() {
         excitation: relay(0.0),
         ..DriveRig::default()
     };
-    check_drive(rig, &OFFSET, "gain_asymmetry", 0.06);
+    check(rig, &OFFSET, "gain_asymmetry", 0.06);
 }
 
 #[test]
@@ -168,7 +123,7 @@ fn a_constant_load_on_a_drive_is_told_from_gain_asymmetry() {
         excitation: relay(0.0),
         ..DriveRig::default()
     };
-    check_drive(rig, &OFFSET, "constant_load", 0.03);
+    check(rig, &OFFSET, "constant_load", 0.03);
 }
 
 const BINARY: process_rig::Excitation = process_rig::Excitation::Binary { level: 1.0 };
@@ -181,7 +136,7 @@ fn gain_asymmetry_of_a_process_is_told_from_a_constant_load() {
         excitation: BINARY,
         ..ProcessRig::default()
     };
-    check_process(rig, &OFFSET, "gain_asymmetry", 0.1);
+    check(rig, &OFFSET, "gain_asymmetry", 0.1);
 }
 
 #[test]
@@ -192,7 +147,7 @@ fn a_constant_load_on_a_process_is_told_from_gain_asymmetry() {
         excitation: BINARY,
         ..ProcessRig::default()
     };
-    check_process(rig, &OFFSET, "constant_load", 0.1);
+    check(rig, &OFFSET, "constant_load", 0.1);
 }
 
 /// A lag before a linear process and one behind it commute: no input can tell them.

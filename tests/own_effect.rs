@@ -1,26 +1,17 @@
 //! An effect that the user writes as a formula behaves like any other.
 
-#[path = "support/drive_rig.rs"]
-#[allow(dead_code)]
-mod drive_rig;
-#[path = "support/random.rs"]
-#[allow(dead_code)]
-mod random;
+mod support;
 
-use drive_rig::{DriveRig, Excitation, Stranger};
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::effect::{EffectId, Formula, registry};
 use hysteron_core::measurement::{Kind, Measurement};
 use hysteron_core::user_model::UserModel;
 use proptest::prelude::*;
+use support::diagnosis::{classes, finish};
+use support::drive_rig::{DriveRig, Excitation, Stranger};
 
 fn diagnose(measurement: &Measurement, model: &UserModel) -> Diagnosis {
-    let mut job = DiagnosisJob::with_model(measurement, model).unwrap();
-    loop {
-        if let Progress::Done(diagnosis) = job.advance() {
-            return diagnosis;
-        }
-    }
+    finish(DiagnosisJob::with_model(measurement, model).unwrap())
 }
 
 fn with_candidate(text: &str) -> UserModel {
@@ -78,12 +69,7 @@ fn a_formula_of_what_the_library_has_is_found_like_it() {
         ..DriveRig::default()
     };
     let d = diagnose(&rig.measure(), &with_candidate("own_drag: -q*v*abs(v)"));
-    let names: Vec<Vec<&str>> = d
-        .verdict
-        .missing
-        .iter()
-        .map(|c| c.iter().map(|e| e.as_str()).collect())
-        .collect();
+    let names = classes(&d);
     assert_eq!(
         names,
         [["quadratic_drag", "own_drag"]],

@@ -7,17 +7,12 @@
     reason = "the core does not print; a skipped test says so"
 )]
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
-use hysteron_core::measurement::{Measurement, import_csv};
+#[path = "support/diagnosis.rs"]
+mod diagnosis;
 
-fn diagnose(measurement: &Measurement) -> Diagnosis {
-    let mut job = DiagnosisJob::new(measurement).unwrap();
-    loop {
-        if let Progress::Done(diagnosis) = job.advance() {
-            return diagnosis;
-        }
-    }
-}
+use diagnosis::{classes, finish};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::measurement::import_csv;
 
 /// EMPS, a ball-screw drive of a prismatic joint in a closed position loop, position measured only:
 /// Janot, Gautier and Brunot, "Data set and reference models of EMPS", 2019. They identified, by least squares
@@ -33,13 +28,8 @@ fn the_positioning_system_has_dry_friction_and_an_offset() {
         return;
     };
     let measurement = import_csv("emps", &bytes, None).unwrap();
-    let d = diagnose(&measurement);
-    let found: Vec<Vec<&str>> = d
-        .verdict
-        .missing
-        .iter()
-        .map(|class| class.iter().map(|e| e.as_str()).collect())
-        .collect();
+    let d = finish(DiagnosisJob::new(&measurement).unwrap());
+    let found = classes(&d);
     assert_eq!(found.len(), 2, "{}", d.verdict.text);
     assert!(found[0].contains(&"coulomb_friction"), "{}", d.verdict.text);
     assert!(found[1].contains(&"constant_load"), "{}", d.verdict.text);

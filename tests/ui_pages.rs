@@ -3,6 +3,9 @@
 #[path = "support/drive_rig.rs"]
 #[allow(dead_code, clippy::large_types_passed_by_value)]
 mod drive_rig;
+#[path = "support/proposed.rs"]
+#[allow(dead_code)]
+mod proposed;
 #[path = "support/random.rs"]
 #[allow(dead_code)]
 mod random;

@@ -1,7 +1,11 @@
 //! What a user knows of a model takes part in the diagnosis, and a file that says it wrongly gets one clear
 //! sentence.
 
-use hysteron_core::criticism::{CriticismError, Diagnosis, DiagnosisJob, Progress};
+#[path = "support/diagnosis.rs"]
+mod diagnosis;
+
+use diagnosis::{classes, finish};
+use hysteron_core::criticism::{CriticismError, Diagnosis, DiagnosisJob};
 use hysteron_core::measurement::{Kind, Measurement, import_csv};
 use hysteron_core::user_model::{MAX_BYTES, Status, UserModel};
 use proptest::prelude::*;
@@ -13,12 +17,7 @@ fn measured(name: &str) -> Measurement {
 
 fn diagnose(measurement: &Measurement, model: &str) -> Diagnosis {
     let model = UserModel::from_toml(model).unwrap();
-    let mut job = DiagnosisJob::with_model(measurement, &model).unwrap();
-    loop {
-        if let Progress::Done(diagnosis) = job.advance() {
-            return diagnosis;
-        }
-    }
+    finish(DiagnosisJob::with_model(measurement, &model).unwrap())
 }
 
 /// Value and standard error of a parameter of the last model.
@@ -28,13 +27,6 @@ fn parameter(d: &Diagnosis, symbol: &str) -> (f64, f64) {
     (p.value, p.std_error)
 }
 
-fn missing(d: &Diagnosis) -> Vec<Vec<&str>> {
-    let classes = d.verdict.missing.iter();
-    classes
-        .map(|c| c.iter().map(|e| e.as_str()).collect())
-        .collect()
-}
-
 #[test]
 fn an_effect_that_the_model_has_is_not_missing() {
     // drive-12 has Coulomb friction 0.05 and a dead time of 0.6 ms.
@@ -42,7 +34,7 @@ fn an_effect_that_the_model_has_is_not_missing() {
         &measured("drive-12"),
         "kind = \"drive\"\n[[effects]]\nid = \"coulomb_friction\"\n",
     );
-    assert_eq!(missing(&d), [["input_delay"]], "{}", d.verdict.text);
+    assert_eq!(classes(&d), [["input_delay"]], "{}", d.verdict.text);
     assert!(d.verdict.complete);
     assert_eq!(
         d.steps[0].effects.last().unwrap().as_str(),
@@ -59,7 +51,7 @@ fn an_effect_that_the_data_do_not_show_stays_and_is_named() {
     );
     let last = d.steps.last().unwrap();
     assert!(last.effects.iter().any(|e| e.as_str() == "load_ramp"));
-    assert_eq!(missing(&d), [["input_delay"]], "{}", d.verdict.text);
+    assert_eq!(classes(&d), [["input_delay"]], "{}", d.verdict.text);
     assert!(
         d.verdict
             .text
@@ -75,7 +67,7 @@ fn a_value_fixed_wrongly_is_kept_and_said() {
         "kind = \"drive\"\n[parameters]\nJ1 = 1.1e-3\n",
     );
     assert_eq!(parameter(&d, "J1"), (1.1e-3, 0.0), "never changed");
-    assert!(!d.verdict.complete && missing(&d).is_empty());
+    assert!(!d.verdict.complete && classes(&d).is_empty());
     let [c] = d.verdict.contradicted.as_slice() else {
         panic!("one contradiction: {}", d.verdict.text);
     };
@@ -92,7 +84,7 @@ fn a_value_fixed_rightly_disturbs_nothing() {
         &measured("drive-02"),
         "kind = \"drive\"\n[parameters]\nJ1 = { value = 8.8e-4, unit = \"kg m^2\", status = \"fixed\" }\n",
     );
-    assert_eq!(missing(&d), [["coulomb_friction"]], "{}", d.verdict.text);
+    assert_eq!(classes(&d), [["coulomb_friction"]], "{}", d.verdict.text);
     assert!(d.verdict.complete && d.verdict.contradicted.is_empty());
     assert_eq!(parameter(&d, "J1"), (8.8e-4, 0.0));
 }

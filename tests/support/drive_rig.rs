@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 
 use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
 
+use super::proposed::Proposed;
 use super::random::Random;
 
 /// Resolution of the encoder unless said otherwise, rad.
@@ -41,14 +42,8 @@ pub enum Excitation {
     Multisine { amplitude: f64 },
     /// Levels of growing size and both signs up to this torque (N m), with pauses between.
     Staircase { top: f64 },
-    /// Relay without asymmetry whose gain changes to and fro, each holding so many seconds.
-    TwoGains {
-        gains: [f64; 2],
-        hold: f64,
-        hysteresis: f64,
-    },
-    /// These levels in turn, over and over, each for so many seconds.
-    Levels { levels: [f64; 16], hold: f64 },
+    /// What a proposed experiment asks for.
+    Proposed(Proposed),
     /// A position loop closed over the encoder: moves within plus or minus `reach` rad, one in each `period` s
     /// with a dwell after it; stiffness in N m/rad and damping in N m s/rad of the controller.
     Servo {
@@ -549,20 +544,7 @@ impl Controller {
                     gain * (1.0 + asymmetry)
                 }
             }
-            Excitation::TwoGains {
-                gains,
-                hold,
-                hysteresis,
-            } => {
-                if velocity.abs() > hysteresis {
-                    self.high = velocity > 0.0;
-                }
-                let gain = gains[usize::from((t + 1e-9) % (2.0 * hold) >= hold)];
-                if self.high { -gain } else { gain }
-            }
-            Excitation::Levels { levels, hold } => {
-                levels[((t + 1e-9) / hold) as usize % levels.len()]
-            }
+            Excitation::Proposed(proposed) => proposed.input(t, velocity, &mut self.high),
             Excitation::Multisine { amplitude } => self
                 .sines
                 .iter()

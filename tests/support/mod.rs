@@ -12,9 +12,11 @@
 #![allow(dead_code, reason = "each test uses a part of the rigs")]
 
 pub mod case;
+pub mod diagnosis;
 pub mod drive_cases;
 pub mod drive_rig;
 pub mod process_cases;
 pub mod process_rig;
+pub mod proposed;
 pub mod random;
 pub mod score;

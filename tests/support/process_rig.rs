@@ -5,6 +5,7 @@
 
 use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
 
+use super::proposed::Proposed;
 use super::random::Random;
 
 /// Sampling time of the controller and the record, s.
@@ -22,14 +23,8 @@ pub enum Excitation {
     Staircase { top: f64 },
     /// Two levels, held for random multiples of 3 s.
     Binary { level: f64 },
-    /// Relay whose gain changes to and fro, each holding so many seconds.
-    TwoGains {
-        gains: [f64; 2],
-        hold: f64,
-        hysteresis: f64,
-    },
-    /// These levels in turn, over and over, each for so many seconds.
-    Levels { levels: [f64; 16], hold: f64 },
+    /// What a proposed experiment asks for.
+    Proposed(Proposed),
 }
 
 /// Physics that no library of the project knows.
@@ -243,20 +238,7 @@ impl Controller {
                 }
                 if self.high { -gain } else { gain }
             }
-            Excitation::TwoGains {
-                gains,
-                hold,
-                hysteresis,
-            } => {
-                if y.abs() > hysteresis {
-                    self.high = y > 0.0;
-                }
-                let gain = gains[usize::from((t + 1e-9) % (2.0 * hold) >= hold)];
-                if self.high { -gain } else { gain }
-            }
-            Excitation::Levels { levels, hold } => {
-                levels[((t + 1e-9) / hold) as usize % levels.len()]
-            }
+            Excitation::Proposed(proposed) => proposed.input(t, y, &mut self.high),
             Excitation::Staircase { top } => {
                 const SHARES: [f64; 8] = [0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0];
                 top * SHARES[(t / 24.0) as usize % SHARES.len()]

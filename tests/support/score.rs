@@ -5,11 +5,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, Step};
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Step};
 use hysteron_core::measurement::Measurement;
 use serde::Serialize;
 
 use super::case::{Case, Hidden, Truth};
+use super::diagnosis::{classes, finish};
 
 /// A final error within this factor of the noise floor counts as reaching it.
 pub const NEAR_FLOOR: f64 = 1.2;
@@ -56,12 +57,8 @@ pub struct Outcome {
 
 /// Diagnoses one measurement.
 pub fn diagnose(measurement: &Measurement) -> Result<Diagnosis, String> {
-    let mut job = DiagnosisJob::new(measurement).map_err(|e| e.to_string())?;
-    loop {
-        if let Progress::Done(diagnosis) = job.advance() {
-            return Ok(diagnosis);
-        }
-    }
+    let job = DiagnosisJob::new(measurement).map_err(|e| e.to_string())?;
+    Ok(finish(job))
 }
 
 /// Runs the cases on all processors; the order of the outcomes is that of the cases.
@@ -118,11 +115,7 @@ fn judge(seed: u64, case: &Case, diagnosis: Result<Diagnosis, String>, seconds: 
         }
     };
     let (verdict, floor) = (&diagnosis.verdict, diagnosis.noise_floor);
-    let found: Vec<Vec<&str>> = verdict
-        .missing
-        .iter()
-        .map(|class| class.iter().map(|e| e.as_str()).collect())
-        .collect();
+    let found = classes(&diagnosis);
     outcome.found = words(&found);
     (outcome.complete, outcome.unknown) = (verdict.complete, verdict.unknown);
     outcome.error_before = diagnosis

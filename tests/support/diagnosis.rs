@@ -1,0 +1,20 @@
+//! A diagnosis from its begin to its end, and what it found.
+
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
+
+/// Runs a diagnosis to its end.
+pub fn finish(mut job: DiagnosisJob) -> Diagnosis {
+    loop {
+        if let Progress::Done(diagnosis) = job.advance() {
+            return diagnosis;
+        }
+    }
+}
+
+/// The classes of missing effects, in the order found.
+pub fn classes(diagnosis: &Diagnosis) -> Vec<Vec<&str>> {
+    let missing = diagnosis.verdict.missing.iter();
+    missing
+        .map(|class| class.iter().map(|e| e.as_str()).collect())
+        .collect()
+}
