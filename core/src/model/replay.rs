@@ -325,11 +325,11 @@ impl<'e> Bristle<'e> {
             position,
             travelled,
         } = self.steady;
-        // The contact forgets over its displacement, which is longest at the highest level.
+        // The contact forgets over its displacement, which is longest at the highest level; a fast body may move
+        // farther in the last interval alone.
         let since = travelled[sample] - FORGOTTEN * self.friction.presliding;
-        let from = self
-            .sample
-            .max(travelled[..sample].partition_point(|way| *way < since));
+        let forgotten = travelled[..sample].partition_point(|way| *way < since);
+        let from = self.sample.max(forgotten.saturating_sub(1));
         for i in from + 1..=sample {
             let moved = position[i] - position[i - 1];
             if moved != 0.0 {
