@@ -26,6 +26,9 @@ const DETOURS_PER_STEP: usize = 2;
 /// Effects that are tried on where none helps beyond chance by itself: two that only show together.
 const BOLD_DETOURS: usize = 2;
 
+/// Share of the error there was without it that a bold detour may leave after its second effect.
+const BOLD_GAIN: f64 = 0.5;
+
 /// Share by which a detour must lower the error to be the better way.
 const DETOUR_GAIN: f64 = 0.97;
 
@@ -106,6 +109,15 @@ struct Detour {
     bold: bool,
 }
 
+/// Where a way came to.
+struct End {
+    diagnosis: Diagnosis,
+    /// Report on its last model.
+    last: Option<StepReport>,
+    /// What in that explains less than it leaves, and the model without it.
+    imitation: Option<(EffectId, Scored)>,
+}
+
 /// From the baseline to the verdict: adds what helps, removes what is not needed, until nothing does.
 pub struct DiagnosisJob {
     job: Option<StepJob>,
@@ -115,10 +127,14 @@ pub struct DiagnosisJob {
     /// Ways not taken yet.
     detours: Vec<Detour>,
     detours_taken: usize,
+    /// What in the last model explains less than it leaves, and the model without it.
+    imitation: Option<(EffectId, Scored)>,
+    /// Effects that were taken out in the end because of that.
+    barred: Vec<EffectId>,
     /// Whether the present way began with an effect that was not seen clearly.
     bold: bool,
-    /// The best that came to an end without explaining everything, and the report on its last model.
-    unfinished: Option<(Diagnosis, Option<StepReport>)>,
+    /// The best that came to an end without explaining everything.
+    unfinished: Option<End>,
     /// Report on the baseline, without its curves.
     first: Option<StepReport>,
     /// Report on the last model.
@@ -158,6 +174,8 @@ impl DiagnosisJob {
             },
             detours: Vec::new(),
             detours_taken: 0,
+            imitation: None,
+            barred: Vec::new(),
             bold: false,
             unfinished: None,
             first: None,
@@ -217,7 +235,8 @@ impl DiagnosisJob {
                 bold: false,
             }));
         }
-        if !self.bold && report.verdict.as_ref().is_some_and(|v| !v.complete) {
+        let ways = !self.bold && self.barred.is_empty();
+        if ways && report.verdict.as_ref().is_some_and(|v| !v.complete) {
             let steps = &self.diagnosis.steps;
             let noted = job.faint(BOLD_DETOURS).into_iter();
             self.detours.extend(noted.map(|model| Detour {
@@ -226,6 +245,7 @@ impl DiagnosisJob {
                 bold: true,
             }));
         }
+        self.imitation = job.imitation();
         let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
         let verdict = report.verdict.clone();
@@ -236,9 +256,10 @@ impl DiagnosisJob {
         }
         self.last = Some(report);
         match (verdict, next) {
-            (_, Some(model)) if !ended => {
+            (_, Some(model)) if !ended && !self.falls_short(&model) => {
                 let job = StepJob::from_fit(session, model, self.limits);
-                self.job = Some(job.following(&self.diagnosis.steps));
+                let job = job.following(&self.diagnosis.steps);
+                self.job = Some(job.barring(&self.barred));
             }
             (verdict, _) => {
                 self.diagnosis.verdict = verdict.unwrap_or_else(|| {
@@ -255,30 +276,55 @@ impl DiagnosisJob {
         }
     }
 
+    /// Whether a bold way goes on with a model that explains little more than what came to an end before: two
+    /// effects that only show together leave next to nothing.
+    fn falls_short(&self, next: &Scored) -> bool {
+        let before = self.unfinished.as_ref().filter(|_| self.bold);
+        let error = before
+            .and_then(|end| end.diagnosis.steps.last())
+            .map(|s| s.error);
+        error.is_some_and(|error| next.score.error > BOLD_GAIN * error)
+    }
+
     /// Takes the diagnosis that came to an end, or another way if there is one and this one explains too
     /// little.
     fn end_of_way(&mut self, session: Session) -> Option<Diagnosis> {
         let error = |d: &Diagnosis| d.steps.last().map_or(f64::INFINITY, |s| s.error);
-        let better = self
-            .unfinished
-            .take()
-            .filter(|other| self.bold || DETOUR_GAIN * error(&other.0) <= error(&self.diagnosis));
+        let better = self.unfinished.take().filter(|other| {
+            self.bold || DETOUR_GAIN * error(&other.diagnosis) <= error(&self.diagnosis)
+        });
+        let here = End {
+            diagnosis: self.diagnosis.clone(),
+            last: self.last.take(),
+            imitation: self.imitation.take(),
+        };
         let best = match better {
             Some(other) if !self.diagnosis.verdict.complete => other,
-            _ => (self.diagnosis.clone(), self.last.take()),
+            _ => here,
         };
-        let settled = best.0.verdict.complete || trifling(&best.0, &session);
-        if settled || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
-            (self.diagnosis, self.last) = best;
-            return Some(self.diagnosis.clone());
-        }
-        self.unfinished = Some(best);
-        self.detours_taken += 1;
-        let detour = self.detours.remove(0);
-        self.diagnosis.steps = detour.steps;
-        self.bold = detour.bold;
-        let job = StepJob::from_fit(session, detour.model, self.limits);
-        self.job = Some(job.following(&self.diagnosis.steps));
+        let settled = best.diagnosis.verdict.complete || trifling(&best.diagnosis, &session);
+        let next = if settled || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
+            (self.diagnosis, self.last) = (best.diagnosis, best.last);
+            let steps = self.diagnosis.steps.len();
+            let Some((effect, without)) = best.imitation.filter(|_| !settled && steps < MAX_STEPS)
+            else {
+                return Some(self.diagnosis.clone());
+            };
+            self.barred.push(effect);
+            self.detours.clear();
+            self.bold = false;
+            without
+        } else {
+            self.unfinished = Some(best);
+            self.detours_taken += 1;
+            let detour = self.detours.remove(0);
+            self.diagnosis.steps = detour.steps;
+            self.bold = detour.bold;
+            detour.model
+        };
+        let job = StepJob::from_fit(session, next, self.limits);
+        let job = job.following(&self.diagnosis.steps);
+        self.job = Some(job.barring(&self.barred));
         None
     }
 

@@ -40,7 +40,7 @@ const SMALL_ERROR: f64 = 3.0;
 /// Share of the held-back blocks that may be more than noise, and share of the error there that may be
 /// left, where a model explains all the rest.
 const ODD_STRETCHES: f64 = 0.35;
-const STRETCH_SHARE: f64 = 0.01;
+const STRETCH_SHARE: f64 = 0.02;
 
 /// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
 fn statistic(before: &Score, after: &Score) -> f64 {
@@ -86,6 +86,12 @@ pub(super) fn matters(before: &Score, after: &Score, first: &Score) -> bool {
     gain > SMALL_SHARE * first.error
 }
 
+/// Whether the step from `before` to `after` explains more than it leaves beyond the noise.
+pub(super) fn outweighs(before: &Score, after: &Score) -> bool {
+    let explained = before.error.powi(2) - after.error.powi(2);
+    explained > after.error.powi(2) - 1.0
+}
+
 /// Whether what is left looks like noise in itself.
 pub(super) fn is_plain_noise(score: &Score) -> bool {
     score.error < SURE_NOISE_ERROR
@@ -105,14 +111,17 @@ pub(super) fn is_trifle(error: f64, first: &Score) -> bool {
     (error.powi(2) - 1.0).max(0.0).sqrt() < SMALL_SHARE * first.error
 }
 
-/// Whether the held-back blocks are noise but for a few, and these are explained to a hundredth of what
-/// was there: where dry friction lets go depends on less than an encoder sees.
+/// Whether the held-back blocks are noise, or a trifle more, but for a few, and these are explained to two hundredths of
+/// what was there: where dry friction lets go depends on less than an encoder sees.
 fn is_noise_but_for_stretches(score: &Score, first: &Score) -> bool {
     if score.held_blocks.len() != first.held_blocks.len() {
         return false;
     }
     let pairs = || score.held_blocks.iter().zip(&first.held_blocks);
-    let noisy = |m: &f64| *m < NOISE_ERROR * NOISE_ERROR;
+    let noisy = |m: &f64| {
+        *m < NOISE_ERROR * NOISE_ERROR
+            || (*m < SMALL_ERROR * SMALL_ERROR && is_trifle(m.sqrt(), first))
+    };
     let odd = pairs().filter(|(m, _)| !noisy(m)).count();
     let explained = |(m, f): (&f64, &f64)| noisy(m) || *m < STRETCH_SHARE * STRETCH_SHARE * f;
     odd as f64 <= ODD_STRETCHES * score.held_blocks.len() as f64 && pairs().all(explained)

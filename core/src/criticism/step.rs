@@ -7,9 +7,11 @@ use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::{Piece, Race, one_by_one};
 use super::score::Score;
 use super::search::Search;
-use super::select::{delta_bic, fall, helps, is_noise, is_plain_noise, matters, same, suffices};
+use super::select::{
+    delta_bic, fall, helps, is_noise, is_plain_noise, matters, outweighs, same, suffices,
+};
 use super::session::{Scored, Session};
-use super::verdict::{Class, add_experiments, add_idle, add_rest, verdict};
+use super::verdict::{Class, add_experiments, add_idle, add_imitations, add_rest, verdict};
 use super::{
     Candidate, Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport,
 };
@@ -59,6 +61,8 @@ pub struct StepJob {
     simpler: Option<Scored>,
     /// Effects in the order in which earlier steps found them.
     earlier: Vec<EffectId>,
+    /// Effects that are not added any more: they explained less than they left.
+    barred: Vec<EffectId>,
 }
 
 /// Whether two effects are the same or one contains the other.
@@ -128,6 +132,7 @@ impl StepJob {
             contradicted: Vec::new(),
             simpler: None,
             earlier: Vec::new(),
+            barred: Vec::new(),
         }
     }
 
@@ -145,6 +150,15 @@ impl StepJob {
     pub(super) fn following(mut self, steps: &[Step]) -> Self {
         self.earlier = steps.iter().flat_map(|s| &s.effects).copied().collect();
         self
+    }
+
+    /// The same without these effects among those that may be added.
+    #[must_use]
+    pub(super) fn barring(self, barred: &[EffectId]) -> Self {
+        Self {
+            barred: barred.to_vec(),
+            ..self
+        }
     }
 
     /// Where in the order of finding an effect stands, or one that it contains or that contains it.
@@ -404,7 +418,8 @@ impl StepJob {
         let helping = || {
             self.tried
                 .iter()
-                .filter(|(e, s)| !(settled && widens(*e)) && helps_clearly(model, s, first))
+                .filter(|(e, _)| !(settled && widens(*e)) && !self.barred.contains(&e.id()))
+                .filter(|(_, s)| helps_clearly(model, s, first))
         };
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
@@ -495,7 +510,8 @@ impl StepJob {
                 self.contradicted.clone(),
             );
             let first = self.session.first(&whole).error;
-            add_rest(&mut verdict, whole.score.error, first, &findings);
+            add_rest(&mut verdict, &whole.score, first, &findings);
+            add_imitations(&mut verdict, &self.barred);
             add_idle(&mut verdict, &self.idle(model).0);
             add_experiments(&mut verdict, &self.experiments);
             verdict
@@ -605,6 +621,23 @@ impl StepJob {
             suggested.or_else(|| self.simpler.clone())
         });
         (self.session, next)
+    }
+
+    /// In a last model that leaves more than noise, the effect that explains least, if that is less than what is
+    /// left, and the model without it: it may as well imitate a part of what no effect explains.
+    pub(super) fn imitation(&self) -> Option<(EffectId, Scored)> {
+        let model = self.model.as_ref()?;
+        if is_noise(&model.score, self.session.first(model)) || !self.contradicted.is_empty() {
+            return None;
+        }
+        self.wanted
+            .iter()
+            .zip(&self.without)
+            .filter(|(e, without)| {
+                !self.session.knowledge.has(e.id()) && !outweighs(&without.score, &model.score)
+            })
+            .min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))
+            .map(|(e, without)| (e.id(), without.clone()))
     }
 
     /// Models with an effect that lowers the error much, though not beyond chance while the rest is as

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::score::Score;
+use super::select::is_plain_noise;
 use super::session::Scored;
 use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId};
@@ -94,9 +96,20 @@ fn contradiction(
     }
 }
 
-/// Says of a verdict that is not complete how much is left of what was there `first`, and where it lies.
-pub(super) fn add_rest(verdict: &mut Verdict, error: f64, first: f64, findings: &[Finding]) {
-    if verdict.complete || !verdict.contradicted.is_empty() {
+/// Says how much is left of what was there at `first` where that is more than plain noise, and, of a verdict that
+/// is not complete, where it lies.
+pub(super) fn add_rest(verdict: &mut Verdict, score: &Score, first: f64, findings: &[Finding]) {
+    if !verdict.contradicted.is_empty() || is_plain_noise(score) {
+        return;
+    }
+    let error = score.error;
+    if verdict.complete {
+        let share = 100.0 * error / first;
+        let _ = write!(
+            verdict.text,
+            " That is, but for short stretches or a trifle: the error is {error:.2} times the noise, {share:.2} % of what \
+             it was at first."
+        );
         return;
     }
     let _ = write!(verdict.text, " The error is {error:.2} times the noise");
@@ -109,6 +122,22 @@ pub(super) fn add_rest(verdict: &mut Verdict, error: f64, first: f64, findings: 
     if let Some(strongest) = findings.first() {
         let _ = write!(verdict.text, " {}", strongest.text);
     }
+}
+
+/// Says which effects lower the error but explain less than they leave.
+pub(super) fn add_imitations(verdict: &mut Verdict, imitations: &[EffectId]) {
+    if imitations.is_empty() || verdict.complete {
+        return;
+    }
+    let names: Vec<&str> = imitations
+        .iter()
+        .map(|id| effect::find(*id).map_or(id.as_str(), |e| e.name()))
+        .collect();
+    let _ = write!(
+        verdict.text,
+        " Not named, since it would explain less than it leaves and may only imitate what is missing: {}.",
+        names.join(", ")
+    );
 }
 
 /// Says which effects of the user's model the data do not need.
