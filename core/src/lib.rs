@@ -22,6 +22,7 @@
 //! | [`backlash`] | how wide is the hidden gap? |
 //! | [`effect`] | which physics can be added? |
 //! | [`user_model`] | what does the user know of the model? |
+//! | [`rig`] | what would a bench measure, by other physics? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 //! | [`report`] | what was found, on one page |
 #![warn(missing_docs)]
@@ -39,6 +40,7 @@ pub mod model;
 pub mod plant;
 pub mod relay;
 pub mod report;
+pub mod rig;
 pub mod scenario;
 pub mod simulate;
 pub mod tuning;
