@@ -205,7 +205,9 @@ fn number_ui(number: &Compared, ui: &mut egui::Ui) {
         None => ui.label("not in your model"),
     };
     let error = number.error();
-    ui.label(error.map_or_else(String::new, |e| format!("{:+.1} %", 100.0 * e)));
+    // 0.0 rather than -0.0.
+    let percent = error.map(|e| (1000.0 * e).round() / 10.0 + 0.0);
+    ui.label(percent.map_or_else(String::new, |p| format!("{p:+.1} %")));
     ui.label(format!("{:.0} %", 100.0 * number.mark));
 }
 

@@ -17,6 +17,9 @@ use crate::tasks::MysteryTask;
 use crate::theme;
 use made::Product;
 
+/// Width below which everything stands in one column, points.
+const NARROW: f32 = 700.0;
+
 /// The page. What is chosen and the word are no settings: a link of this page tells neither.
 #[derive(Default)]
 pub struct Bench {
@@ -75,14 +78,31 @@ impl Bench {
         theme::answer_ui(ui, "Which effect is hidden?");
         ui.label("The bench hides physics in a drive and measures it. The truth travels with the record, sealed with your word: find it, then reveal it.");
         ui.add_space(6.0);
+        if ui.available_width() < NARROW {
+            self.teacher_ui(ui, desk);
+            self.record_ui(ui, desk);
+        } else {
+            ui.columns_const(|[left, right]| {
+                self.teacher_ui(left, desk);
+                self.record_ui(right, desk);
+            });
+        }
+    }
+
+    /// What to hide, and in what.
+    fn teacher_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.choices_ui(ui, desk);
         ui.add_space(6.0);
         self.make_ui(ui, desk);
+        ui.add_space(6.0);
+    }
+
+    /// What came of it, and what a student does with it.
+    fn record_ui(&self, ui: &mut egui::Ui, desk: &mut Desk) {
         if let Some(made) = &self.made {
-            ui.add_space(6.0);
             made::ui(made, ui, desk);
+            ui.add_space(6.0);
         }
-        ui.add_space(10.0);
         student_ui(ui, desk);
     }
 
