@@ -141,7 +141,7 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
         assert_eq!(state(&harness)["notice"], refused);
         assert_eq!(state(&harness)["link"], before, "{text}");
     }
-    let long = format!("v1;explore;loop.relay.gain={}", "1".repeat(20_000));
+    let long = format!("v1;explore;loop.relay.gain={}", "1".repeat(40_000));
     assert!(through(&long).is_err_and(|e| e.contains("too long")));
     harness.step();
     harness.step();

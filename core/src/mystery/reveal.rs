@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Hidden, MysteryError, Truth, seal};
 use crate::criticism::Parameter;
-use crate::effect::{EffectId, VISCOUS_FRICTION};
+use crate::effect::{EffectId, Motion, VISCOUS_FRICTION, find};
 
 /// Points for the effects and for the numbers; together 100.
 const EFFECT_POINTS: f64 = 70.0;
@@ -61,7 +61,7 @@ pub struct Compared {
     pub truth: f64,
     /// What the model says, in `unit`, with its standard error; `None` where the effect was missed.
     pub found: Option<(f64, f64)>,
-    /// SI unit; empty where the effect was missed.
+    /// SI unit.
     pub unit: String,
     /// Share of the marks for it, 0 to 1.
     pub mark: f64,
@@ -199,7 +199,17 @@ fn compare(effect: Option<EffectId>, symbol: &str, truth: f64, answer: &Answer) 
         symbol: symbol.to_owned(),
         truth,
         found: found.map(|p| (value(p), p.std_error)),
-        unit: found.map_or_else(String::new, |p| p.unit.clone()),
+        unit: found.map_or_else(|| unit(effect, symbol), |p| p.unit.clone()),
         mark,
     }
+}
+
+/// The unit that the library gives a parameter; empty where it does not know it.
+fn unit(effect: Option<EffectId>, symbol: &str) -> String {
+    let parameters = effect.and_then(find).map(|e| e.parameters());
+    let own = parameters.unwrap_or_default().iter();
+    let mut own = own.filter(|p| p.symbol == symbol);
+    own.next().map_or_else(String::new, |p| {
+        p.dimension.unit(Motion::Rotational).to_owned()
+    })
 }

@@ -215,9 +215,16 @@ impl Compare {
                 egui::CentralPanel::default().show(ui, |ui| {
                     egui::ScrollArea::vertical().show(ui, |ui| {
                         self.answer_ui(ui);
+                        // What was asked for stands where it was asked.
+                        let reveals = self.look == Look::Reveal;
+                        if reveals {
+                            reveal::ui(self, ui, targets, &mut commands);
+                        }
                         side::ui(self, ui, targets, &mut commands);
                         self.looks_ui(ui, targets, &mut commands);
-                        self.evidence_ui(ui, 220.0, targets, &mut commands);
+                        if !reveals {
+                            self.evidence_ui(ui, 220.0, targets, &mut commands);
+                        }
                     });
                 });
             } else {

@@ -71,7 +71,23 @@ impl Bench {
         });
         if self.by_hand {
             self.menu_ui(ui);
+        } else {
+            ui.label(self.surprise());
         }
+    }
+
+    /// What the page may choose, in words.
+    fn surprise(&self) -> String {
+        let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
+        let names: Vec<&str> = hideable()
+            .iter()
+            .filter(shown)
+            .map(Hideable::name)
+            .collect();
+        format!(
+            "It may hide: {}. One mystery in five hides nothing, half of them one effect, the others two of different kinds, all between small and large.",
+            names.join(", ")
+        )
     }
 
     /// The menu of effects; those that this experiment shows stand first.

@@ -4,12 +4,15 @@ use egui_plot::Line;
 use hysteron_core::mystery::Mystery;
 
 use crate::export::Table;
-use crate::link::{LONGEST, VERSION};
+use crate::link::VERSION;
 use crate::pages::chart::{caption_ui, curve, envelope, still};
 use crate::pages::{Command, Desk};
 use crate::save::Document;
 use crate::tasks::Made;
 use crate::theme;
+
+/// Longest link that is offered, characters: browsers take more, but not every message does.
+const LONGEST: usize = 16_384;
 
 /// Most points of a curve.
 const MOST_POINTS: usize = 4000;

@@ -83,8 +83,8 @@ impl Bench {
             self.record_ui(ui, desk);
         } else {
             ui.columns_const(|[left, right]| {
-                self.teacher_ui(left, desk);
-                self.record_ui(right, desk);
+                left.vertical(|ui| self.teacher_ui(ui, desk));
+                right.vertical(|ui| self.record_ui(ui, desk));
             });
         }
     }
