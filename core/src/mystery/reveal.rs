@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Hidden, MysteryError, Truth, seal};
 use crate::criticism::Parameter;
-use crate::effect::{EffectId, Motion, VISCOUS_FRICTION, find};
+use crate::effect::{Effect, EffectId, Motion, VISCOUS_FRICTION, find};
 
 /// Points for the effects and for the numbers; together 100.
 const EFFECT_POINTS: f64 = 70.0;
@@ -206,7 +206,7 @@ fn compare(effect: Option<EffectId>, symbol: &str, truth: f64, answer: &Answer) 
 
 /// The unit that the library gives a parameter; empty where it does not know it.
 fn unit(effect: Option<EffectId>, symbol: &str) -> String {
-    let parameters = effect.and_then(find).map(|e| e.parameters());
+    let parameters = effect.and_then(find).map(Effect::parameters);
     let own = parameters.unwrap_or_default().iter();
     let mut own = own.filter(|p| p.symbol == symbol);
     own.next().map_or_else(String::new, |p| {

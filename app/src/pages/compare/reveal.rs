@@ -11,6 +11,9 @@ use crate::jobs::{Job, News};
 use crate::tasks::RevealTask;
 use crate::theme;
 
+/// Width that the table of numbers needs, points; in a narrower window each is a line of its own.
+const TABLE: f32 = 600.0;
+
 /// A sealed truth that came with the measurement, and what was revealed of it.
 #[derive(Default)]
 pub(super) struct Sealed {
@@ -181,6 +184,20 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
     }
     ui.add_space(8.0);
     ui.strong("Numbers");
+    if ui.available_width() < TABLE {
+        for number in &reveal.numbers {
+            let [name, truth, found, error, marks] = cells(number);
+            ui.strong(name);
+            ui.label(format!("Truth {truth}, your model {found}."));
+            let error = if error.is_empty() {
+                error
+            } else {
+                format!("Error {error}. ")
+            };
+            ui.label(format!("{error}Marks {marks}."));
+        }
+        return;
+    }
     egui::Grid::new("truth and model")
         .num_columns(5)
         .striped(true)
@@ -190,25 +207,30 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
             }
             ui.end_row();
             for number in &reveal.numbers {
-                number_ui(number, ui);
+                for cell in cells(number) {
+                    ui.label(cell);
+                }
                 ui.end_row();
             }
         });
 }
 
-fn number_ui(number: &Compared, ui: &mut egui::Ui) {
+/// Name, truth, value of the model, error and marks of a number.
+fn cells(number: &Compared) -> [String; 5] {
     let owner = number.effect.map_or("simplest model", name_of);
-    ui.label(format!("{} ({owner})", number.symbol));
-    ui.label(with_unit(number.truth, &number.unit));
-    match number.found {
-        Some((value, error)) => ui.label(with_error(value, error, &number.unit)),
-        None => ui.label("not in your model"),
-    };
-    let error = number.error();
+    let found = number.found.map_or_else(
+        || "not in your model".to_owned(),
+        |(value, error)| with_error(value, error, &number.unit),
+    );
     // 0.0 rather than -0.0.
-    let percent = error.map(|e| (1000.0 * e).round() / 10.0 + 0.0);
-    ui.label(percent.map_or_else(String::new, |p| format!("{p:+.1} %")));
-    ui.label(format!("{:.0} %", 100.0 * number.mark));
+    let percent = number.error().map(|e| (1000.0 * e).round() / 10.0 + 0.0);
+    [
+        format!("{} ({owner})", number.symbol),
+        with_unit(number.truth, &number.unit),
+        found,
+        percent.map_or_else(String::new, |p| format!("{p:+.1} %")),
+        format!("{:.0} %", 100.0 * number.mark),
+    ]
 }
 
 /// A true value, four digits.
