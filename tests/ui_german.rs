@@ -54,7 +54,7 @@ const PLACES: [&str; 33] = [
 const TALL: [f32; 2] = [1600.0, 2400.0];
 
 /// Texts that are the same in both languages.
-const SAME: [&str; 5] = ["Start", "Motor", "P(jω)", "Name", "Deutsch"];
+const SAME: [&str; 6] = ["Start", "Export", "Motor", "P(jω)", "Name", "Deutsch"];
 
 fn painted(harness: &App) -> BTreeSet<String> {
     let mut texts = BTreeSet::new();

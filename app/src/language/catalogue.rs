@@ -99,7 +99,7 @@ impl Catalogue {
         let (from, to) = (pieces(&english), pieces(&translation));
         let verbatim: Vec<bool> = from
             .iter()
-            .filter_map(|p| p.slot())
+            .filter_map(Raw::slot)
             .map(|s| s == "*")
             .collect();
         if verbatim.is_empty() {
