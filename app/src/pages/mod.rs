@@ -16,6 +16,7 @@ use hysteron_core::explore::ExploreInput;
 
 use crate::export::Table;
 use crate::hook::Targets;
+use crate::language::Language;
 use crate::lessons::Study;
 use crate::theme::Look;
 
@@ -124,6 +125,8 @@ pub enum Command {
     /// Changes how the app looks.
     NextLook,
     SetLook(Look),
+    /// Speaks this language.
+    Speak(Language),
     /// Shows or hides the sheet with the keys.
     Sheet,
     /// Closes what lies over the page.

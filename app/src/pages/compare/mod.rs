@@ -33,6 +33,7 @@ use crate::export::Table;
 use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::language::tr;
 use crate::save::save;
 use crate::tasks::ExperimentTask;
 use answer::{name_of, times_noise};
@@ -246,7 +247,7 @@ impl Compare {
                 (Look::Places, "places", "Where it fails"),
                 (Look::Fingerprint, "fingerprint", "Fingerprints"),
             ] {
-                let tab = ui.selectable_label(self.look == look, title);
+                let tab = ui.selectable_label(self.look == look, tr(title));
                 targets.note(format!("look:{id}"), ui, &tab);
                 if tab.clicked() {
                     commands.push(Command::Look(look));
@@ -256,7 +257,7 @@ impl Compare {
             let can = self.report_before().is_some() && self.look != Look::Fingerprint;
             let toggle = ui.add_enabled(
                 can,
-                egui::Checkbox::new(&mut before, "Beside the step before"),
+                egui::Checkbox::new(&mut before, tr("Beside the step before")),
             );
             targets.note("before", ui, &toggle);
             if toggle.changed() {
