@@ -20,7 +20,6 @@ use hysteron_core::measurement::import_csv;
 /// -3.1648 N. Their offset stands on the side of the motor force: ours, which acts on the body beside the
 /// motor, has the opposite sign.
 #[test]
-#[ignore = "not reached: a periodic force is added besides, since the fit depends on its path through the kinks of friction"]
 fn the_positioning_system_has_dry_friction_and_an_offset() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/real/emps.csv");
     let Ok(bytes) = std::fs::read(folder) else {

@@ -8,6 +8,7 @@ use crate::address;
 use crate::bar::Bar;
 use crate::document::Document;
 use crate::export::{self, Table};
+use crate::language::{self, Language, tr};
 use crate::notice::{self, Notice};
 use crate::pages::{Command, Desk, View, registry};
 use crate::theme::{self, Look};
@@ -25,6 +26,7 @@ pub struct HysteronApp {
     history: Undoer<Document>,
     /// How the app looks; as the system does until someone has chosen.
     look: Option<Look>,
+    language: Language,
     /// Whether the sheet with the keys is open.
     sheet: bool,
     notice: Option<Notice>,
@@ -45,6 +47,7 @@ impl Default for HysteronApp {
             desk,
             history: Undoer::default(),
             look: None,
+            language: Language::English,
             sheet: false,
             notice: None,
             said: channel(),
@@ -61,6 +64,11 @@ impl HysteronApp {
         let mut app = Self::default();
         app.go(id);
         app
+    }
+
+    /// Speaks a language from now on.
+    pub fn speak(&mut self, language: Language) {
+        self.language = language;
     }
 
     /// Ids of all pages, in the order of their tabs.
@@ -118,6 +126,7 @@ impl HysteronApp {
             self.set_look(ui.ctx(), look);
         }
         self.frame += 1;
+        language::speak(self.language);
         self.desk.targets.clear();
         self.take_dropped_files(ui.ctx());
         self.take_pasted_link(ui.ctx());
@@ -194,6 +203,7 @@ impl HysteronApp {
             }
             Command::NextLook => self.set_look(ctx, self.look().next()),
             Command::SetLook(look) => self.set_look(ctx, look),
+            Command::Speak(language) => self.speak(language),
             Command::Sheet => self.sheet = !self.sheet,
             Command::Close => {
                 self.sheet = false;
@@ -323,6 +333,7 @@ impl HysteronApp {
         state["studied"] = self.desk.study.lesson.clone().into();
         state["solved"] = serde_json::json!(self.desk.study.solved);
         state["look"] = self.look().name().into();
+        state["language"] = self.language.code().into();
         state["link"] = self.link().into();
         state["notice"] = self.notice.as_ref().map(Notice::text).into();
         state["targets"] = self.desk.targets.to_json();
@@ -342,6 +353,7 @@ impl HysteronApp {
                 self.history.has_redo(present),
             ],
             look: self.look(),
+            language: self.language,
         };
         bar.ui(ui, &mut self.desk);
     }
@@ -396,8 +408,8 @@ impl HysteronApp {
 /// What to try next.
 fn hint_ui(ui: &mut egui::Ui, sentence: &str, link: &str, desk: &mut Desk) {
     ui.horizontal_wrapped(|ui| {
-        ui.label(sentence);
-        let button = ui.small_button("Try it");
+        ui.label(tr(sentence));
+        let button = ui.small_button(tr("Try it"));
         desk.targets.note("try", ui, &button);
         if button.clicked() {
             desk.commands.push(Command::OpenLink(link.to_owned()));
@@ -410,8 +422,9 @@ fn drop_hint_ui(ctx: &egui::Context) {
         egui::Area::new(egui::Id::unique("drop"))
             .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
             .show(ctx, |ui| {
-                egui::Frame::popup(ui.style())
-                    .show(ui, |ui| ui.heading("Drop the measurement to compare it"));
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.heading(tr("Drop the measurement to compare it"))
+                });
             });
     }
 }
@@ -419,6 +432,7 @@ fn drop_hint_ui(ctx: &egui::Context) {
 /// Keys under which the last session is kept.
 const KEPT: &str = "hysteron";
 const KEPT_LOOK: &str = "hysteron look";
+const KEPT_LANGUAGE: &str = "hysteron language";
 const KEPT_SOLVED: &str = "hysteron lessons";
 
 impl HysteronApp {
@@ -429,6 +443,8 @@ impl HysteronApp {
         if let Some(look) = kept(KEPT_LOOK).as_deref().and_then(Look::named) {
             app.look = Some(look);
         }
+        let language = kept(KEPT_LANGUAGE).and_then(|code| Language::of_locale(&code));
+        app.language = language.unwrap_or_else(Language::of_system);
         if let Some(solved) = kept(KEPT_SOLVED) {
             app.desk.study.solved = solved.split_whitespace().map(str::to_owned).collect();
         }
@@ -458,6 +474,7 @@ impl eframe::App for HysteronApp {
         storage.set_string(KEPT, self.kept());
         let solved: Vec<&str> = self.desk.study.solved.iter().map(String::as_str).collect();
         storage.set_string(KEPT_SOLVED, solved.join(" "));
+        storage.set_string(KEPT_LANGUAGE, self.language.code().to_owned());
         storage.set_string(KEPT_LOOK, self.look().name().to_owned());
     }
 

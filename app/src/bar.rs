@@ -3,6 +3,7 @@
 use egui::Ui;
 
 use crate::hook::Targets;
+use crate::language::{Language, tr};
 use crate::pages::{Command, Desk};
 use crate::theme::Look;
 
@@ -21,6 +22,8 @@ pub struct Bar<'a> {
     pub tables: &'a [&'static str],
     /// The look of the app.
     pub look: Look,
+    /// Its language.
+    pub language: Language,
 }
 
 impl Bar<'_> {
@@ -30,7 +33,7 @@ impl Bar<'_> {
         if ui.available_width() < NARROW {
             ui.horizontal(|ui| {
                 let title = self.pages.get(self.front).map_or("Hysteron", |p| p.1);
-                ui.menu_button(format!("Menu: {title}"), |ui| {
+                ui.menu_button(tr(format!("Menu: {title}")), |ui| {
                     self.pages_ui(ui, targets, commands);
                     ui.separator();
                     self.tools_ui(ui, targets, commands);
@@ -39,7 +42,7 @@ impl Bar<'_> {
             });
         } else {
             ui.horizontal_wrapped(|ui| {
-                ui.heading("Hysteron");
+                ui.heading(tr("Hysteron"));
                 self.pages_ui(ui, targets, commands);
                 ui.separator();
                 self.undo_ui(ui, targets, commands);
@@ -50,7 +53,7 @@ impl Bar<'_> {
 
     fn pages_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
         for (index, (id, title)) in self.pages.iter().enumerate() {
-            let tab = ui.selectable_label(self.front == index, *title);
+            let tab = ui.selectable_label(self.front == index, tr(*title));
             targets.note(format!("page:{id}"), ui, &tab);
             if tab.clicked() {
                 commands.push(Command::Go(id));
@@ -61,7 +64,7 @@ impl Bar<'_> {
     fn undo_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
         let [undo, redo] = self.undo;
         for (name, can, command) in [("Undo", undo, Command::Undo), ("Redo", redo, Command::Redo)] {
-            let button = ui.add_enabled(can, egui::Button::new(name));
+            let button = ui.add_enabled(can, egui::Button::new(tr(name)));
             targets.note(name, ui, &button);
             if button.clicked() {
                 commands.push(command);
@@ -71,16 +74,16 @@ impl Bar<'_> {
 
     fn tools_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
         let copy = ui
-            .button("Copy link")
-            .on_hover_text("A link that shows exactly this page, as it is now");
+            .button(tr("Copy link"))
+            .on_hover_text(tr("A link that shows exactly this page, as it is now"));
         targets.note("copy link", ui, &copy);
         if copy.clicked() {
             commands.push(Command::CopyLink);
             ui.close();
         }
-        ui.menu_button("Export", |ui| {
+        ui.menu_button(tr("Export"), |ui| {
             let mut item = |label: String, command| {
-                if ui.button(label).clicked() {
+                if ui.button(tr(label)).clicked() {
                     commands.push(command);
                     ui.close();
                 }
@@ -91,17 +94,27 @@ impl Bar<'_> {
                 item(format!("Data: {table} (CSV)"), Command::SaveTable(table));
             }
         });
-        ui.menu_button("Look", |ui| {
+        ui.menu_button(tr("Look"), |ui| {
             for look in Look::ALL {
-                if ui.radio(self.look == look, look.name()).clicked() {
+                if ui.radio(self.look == look, tr(look.name())).clicked() {
                     commands.push(Command::SetLook(look));
+                    ui.close();
+                }
+            }
+            ui.separator();
+            for language in Language::ALL {
+                if ui
+                    .radio(self.language == language, language.name())
+                    .clicked()
+                {
+                    commands.push(Command::Speak(language));
                     ui.close();
                 }
             }
         });
         if ui
-            .button("Keys")
-            .on_hover_text("All keys of the keyboard")
+            .button(tr("Keys"))
+            .on_hover_text(tr("All keys of the keyboard"))
             .clicked()
         {
             commands.push(Command::Sheet);

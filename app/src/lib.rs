@@ -11,6 +11,7 @@ pub mod export;
 mod files;
 mod hook;
 mod jobs;
+pub mod language;
 pub mod lessons;
 pub mod link;
 mod notice;

@@ -1,5 +1,7 @@
 //! What the app has to say in passing, at the foot of the window.
 
+use crate::language::tr;
+
 /// Time that a good word stays, s; a refusal stays until it is dismissed.
 const SECONDS: f64 = 3.0;
 
@@ -51,9 +53,9 @@ pub fn ui(ctx: &egui::Context, notice: &mut Option<Notice>) {
         .show(ctx, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_max_width(ctx.content_rect().width().min(560.0) - 32.0);
-                ui.label(&shown.text);
+                ui.label(tr(&shown.text));
                 if shown.until.is_none() {
-                    gone |= ui.button("Dismiss").clicked();
+                    gone |= ui.button(tr("Dismiss")).clicked();
                 }
             });
         });

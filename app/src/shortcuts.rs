@@ -2,6 +2,7 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use crate::language::tr;
 use crate::pages::Command;
 
 /// A key and what it asks for.
@@ -109,7 +110,7 @@ pub fn pressed(ctx: &egui::Context, pages: &[&'static str], commands: &mut Vec<C
 /// The sheet; false when it was closed.
 pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
     let mut open = true;
-    egui::Window::new("Keyboard")
+    egui::Window::new(tr("Keyboard"))
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
@@ -120,8 +121,8 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
                 .striped(true)
                 .show(ui, |ui| {
                     for (key, title) in PAGES.iter().zip(titles) {
-                        ui.strong(key.symbol_or_name());
-                        ui.label(*title);
+                        ui.strong(tr(key.symbol_or_name()));
+                        ui.label(tr(*title));
                         ui.end_row();
                     }
                     for shortcut in &SHORTCUTS {
@@ -133,15 +134,19 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
                                 _ => ctx.format_shortcut(k),
                             })
                             .collect();
-                        ui.strong(names.join("  or  "));
-                        ui.label(shortcut.sentence);
+                        ui.strong(tr(names.join("  or  ")));
+                        ui.label(tr(shortcut.sentence));
                         ui.end_row();
                     }
                 });
             ui.separator();
-            ui.label("Tab goes from control to control, the arrow keys move a slider.");
-            ui.label("A double click on a slider resets it; a click on its number types one.");
-            ui.label("A file is opened by dropping it on the window.");
+            ui.label(tr(
+                "Tab goes from control to control, the arrow keys move a slider.",
+            ));
+            ui.label(tr(
+                "A double click on a slider resets it; a click on its number types one.",
+            ));
+            ui.label(tr("A file is opened by dropping it on the window."));
         });
     open
 }

@@ -1,6 +1,8 @@
 //! How the app starts: a window on a native machine, a canvas on the web.
 
 use crate::HysteronApp;
+#[cfg(target_arch = "wasm32")]
+use crate::language::{self, Language, tr};
 
 /// What to say where no window can be opened.
 #[cfg(not(target_arch = "wasm32"))]
@@ -78,10 +80,11 @@ pub fn run_web() {
         }
         if let Err(error) = started {
             log::error!("the app did not start: {error:?}");
+            language::speak(Language::of_system());
             if let Some(place) = document.get_element_by_id("hysteron-error") {
-                place.set_text_content(Some(
+                place.set_text_content(Some(&tr(
                     "Hysteron needs a browser with WebGL 2, which could not be started here. Try a current Firefox, Chrome, Edge or Safari, and switch hardware acceleration on in its settings.",
-                ));
+                )));
             }
         }
     });

@@ -2,6 +2,8 @@
 
 use egui::Color32;
 
+use crate::language::tr;
+
 /// What was measured.
 pub const MEASURED: Color32 = Color32::from_rgb(0x56, 0xB4, 0xE9);
 /// What the model says.
@@ -116,7 +118,7 @@ pub fn apply(ctx: &egui::Context) {
 
 /// The large answer of a page.
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
-    ui.add(egui::Label::new(egui::RichText::new(text).size(24.0).strong()).wrap());
+    ui.add(egui::Label::new(egui::RichText::new(tr(text)).size(24.0).strong()).wrap());
 }
 
 /// A curve's colour as text: darker on a light ground, where it would be too faint to read.

@@ -1,6 +1,6 @@
 //! Lessons: texts in `assets/lessons/` with live buttons and a question that the app checks.
 //!
-//! A lesson is a file and a line in [`SOURCES`]. Its text is Markdown: `# title`, `## heading`, paragraphs,
+//! A lesson is a file for each language and a line in [`SOURCES`]. Its text is Markdown: `# title`, `## heading`, paragraphs,
 //! `- points`, `**strong**`, `` `formula` ``, and links to states of the app, `[Set ε to 0.5](#v1;explore;...)`.
 //! Lines that begin with a key say the rest:
 //!
@@ -20,25 +20,33 @@ mod question;
 pub use panel::Study;
 use question::Question;
 
+use crate::language::{self, Language};
+
+/// A text in each language of [`Language::ALL`].
+type Texts = [&'static str; Language::ALL.len()];
+
+macro_rules! texts {
+    ($id:literal) => {
+        (
+            $id,
+            [
+                include_str!(concat!("../../../assets/lessons/", $id, ".md")),
+                include_str!(concat!("../../../assets/lessons/german/", $id, ".md")),
+            ],
+        )
+    };
+}
+
 /// The texts, in the order of the course, by their ids.
-const SOURCES: [(&str, &str); 8] = [
-    ("relay", include_str!("../../../assets/lessons/relay.md")),
-    (
-        "oscillation",
-        include_str!("../../../assets/lessons/oscillation.md"),
-    ),
-    ("exact", include_str!("../../../assets/lessons/exact.md")),
-    (
-        "ultimate",
-        include_str!("../../../assets/lessons/ultimate.md"),
-    ),
-    ("tuning", include_str!("../../../assets/lessons/tuning.md")),
-    ("gap", include_str!("../../../assets/lessons/gap.md")),
-    ("drift", include_str!("../../../assets/lessons/drift.md")),
-    (
-        "mystery",
-        include_str!("../../../assets/lessons/mystery.md"),
-    ),
+const SOURCES: [(&str, Texts); 8] = [
+    texts!("relay"),
+    texts!("oscillation"),
+    texts!("exact"),
+    texts!("ultimate"),
+    texts!("tuning"),
+    texts!("gap"),
+    texts!("drift"),
+    texts!("mystery"),
 ];
 
 /// A lesson.
@@ -54,9 +62,17 @@ pub struct Lesson {
     question: Question,
 }
 
-/// All lessons, in the order of the course.
+/// All lessons, in the order of the course, in the language that is spoken.
 pub fn all() -> impl Iterator<Item = Lesson> {
-    SOURCES.iter().map(|(id, source)| Lesson::read(id, source))
+    all_in(language::spoken())
+}
+
+/// All lessons in a language.
+pub fn all_in(language: Language) -> impl Iterator<Item = Lesson> {
+    let place = Language::ALL.iter().position(|l| *l == language);
+    SOURCES
+        .iter()
+        .map(move |(id, texts)| Lesson::read(id, texts[place.unwrap_or(0)]))
 }
 
 /// The lesson of this id.
@@ -93,6 +109,11 @@ impl Lesson {
     /// Links of its live buttons.
     pub fn links(&self) -> impl Iterator<Item = &'static str> {
         self.text.iter().flat_map(|line| markdown::links(line))
+    }
+
+    /// What its question asks for, whatever the language.
+    pub fn asked(&self) -> String {
+        self.question.asked()
     }
 
     /// What is wrong with its text; nothing, if the tests have passed.

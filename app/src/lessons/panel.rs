@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::{Lesson, after, find, markdown};
 use crate::hook::Targets;
+use crate::language::tr;
 use crate::pages::Command;
 use crate::theme;
 
@@ -69,8 +70,8 @@ impl Study {
             .id_salt(lesson.id)
             .show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
-                    ui.label(format!("Lesson, {} minutes", lesson.minutes));
-                    let close = ui.button("Close lesson");
+                    ui.label(tr(format!("Lesson, {} minutes", lesson.minutes)));
+                    let close = ui.button(tr("Close lesson"));
                     targets.note("lesson:close", ui, &close);
                     if close.clicked() {
                         commands.push(Command::Lesson(None));
@@ -93,7 +94,7 @@ impl Study {
         let mut asked = false;
         ui.horizontal_wrapped(|ui| {
             if let Some(answer) = question.answer {
-                let label = ui.label("Your answer");
+                let label = ui.label(tr("Your answer"));
                 let field = egui::TextEdit::singleline(&mut self.typed.1).desired_width(80.0);
                 let field = ui.add(field).labelled_by(label.id);
                 asked |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
@@ -101,19 +102,21 @@ impl Study {
                     ui.label(answer.unit);
                 }
             }
-            asked |= ui.button("Check").clicked();
+            asked |= ui.button(tr("Check")).clicked();
         });
         if asked {
             commands.push(Command::Check);
         }
         if self.missed {
-            ui.colored_label(ui.visuals().warn_fg_color, "Not yet.");
+            ui.colored_label(ui.visuals().warn_fg_color, tr("Not yet."));
             ui.label(question.hint);
         } else if self.solved.contains(lesson.id) {
-            ui.colored_label(theme::readable(ui, theme::NOISE), "Right.");
+            ui.colored_label(theme::readable(ui, theme::NOISE), tr("Right."));
             ui.label(question.right);
             if let Some(next) = after(lesson.id)
-                && ui.button(format!("Next lesson: {}", next.title)).clicked()
+                && ui
+                    .button(tr(format!("Next lesson: {}", next.title)))
+                    .clicked()
             {
                 commands.push(Command::Lesson(Some(next.id.to_owned())));
             }

@@ -28,11 +28,13 @@ pub struct Answer {
 }
 
 /// Something that the app must show, by the path of its state for tests.
+#[derive(Debug)]
 struct Goal {
     path: &'static str,
     wanted: Wanted,
 }
 
+#[derive(Debug)]
 enum Wanted {
     Text(&'static str),
     Range(f64, f64),
@@ -60,6 +62,11 @@ impl Question {
     /// Whether the typed number and the state of the app are what is asked for.
     pub fn solved(&self, typed: &str, state: &Value) -> bool {
         self.answer.is_none_or(|a| a.accepts(typed)) && self.goals.iter().all(|g| g.reached(state))
+    }
+
+    /// What counts as right, in a text.
+    pub fn asked(&self) -> String {
+        format!("{:?} {:?}", self.answer, self.goals)
     }
 
     pub fn faults(&self) -> Vec<String> {

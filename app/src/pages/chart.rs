@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoints, Points, uniform_grid_spacer};
 
+use crate::language::tr;
 use crate::theme;
 
 /// Points between labels of an axis, where they begin to show and where they are full.
@@ -42,15 +43,12 @@ pub fn envelope(time: &[f64], values: &[f64], most: usize) -> Vec<[f64; 2]> {
 
 /// Axes whose labels have as many decimals as they need; that of y at least this wide, so that plots above
 /// each other line up.
-pub fn axes(
-    plot: Plot<'_>,
-    x: impl Into<egui::WidgetText>,
-    y: impl Into<egui::WidgetText>,
-    width: f32,
-) -> Plot<'_> {
+pub fn axes(plot: Plot<'_>, x: impl AsRef<str>, y: impl AsRef<str>, width: f32) -> Plot<'_> {
     let axis = |hints: AxisHints<'static>| hints.label_spacing(LABELS).formatter(label);
-    plot.custom_x_axes(vec![axis(AxisHints::new_x().label(x))])
-        .custom_y_axes(vec![axis(AxisHints::new_y().label(y).min_thickness(width))])
+    plot.custom_x_axes(vec![axis(AxisHints::new_x().label(tr(x)))])
+        .custom_y_axes(vec![axis(
+            AxisHints::new_y().label(tr(y)).min_thickness(width),
+        )])
         .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
         .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
 }
@@ -104,16 +102,18 @@ fn grid(input: &GridInput) -> [f64; 3] {
 /// Names of the curves in their colours, above a plot: they hide nothing.
 pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[(&str, egui::Color32)]) {
     ui.horizontal_wrapped(|ui| {
-        ui.strong(title);
+        ui.strong(tr(title));
         for (name, color) in curves {
             let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 4.0), egui::Sense::hover());
             ui.painter().rect_filled(rect, 1.0, *color);
-            ui.label(*name);
+            ui.label(tr(*name));
         }
     });
 }
 
 /// The place that the playback has reached.
 pub fn dot(name: &'static str, at: [f64; 2]) -> Points<'static> {
-    Points::new(name, vec![at]).color(theme::MODEL).radius(6.0)
+    Points::new(tr(name), vec![at])
+        .color(theme::MODEL)
+        .radius(6.0)
 }

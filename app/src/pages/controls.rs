@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use hysteron_core::figures::Check;
 
+use crate::language::tr;
 use crate::theme;
 
 /// A slider over `value * scale`, reset by a double click. A value from elsewhere (a map, a dragged line, a
@@ -19,7 +20,7 @@ pub fn slider(
     let mut shown = *value * scale;
     let response = ui.add(
         egui::Slider::new(&mut shown, range)
-            .text(label)
+            .text(tr(label))
             .max_decimals(3)
             .clamping(egui::SliderClamping::Edits),
     );
@@ -48,7 +49,7 @@ fn track_double_clicked(ui: &egui::Ui, response: &egui::Response) -> bool {
 
 /// What a figure of the paper claims, and whether it is so with what is set now.
 pub fn claim_ui(ui: &mut egui::Ui, number: u32, title: &str, claim: &str, checks: &[Check]) {
-    ui.strong(format!("Fig. {number}, {title}. {claim}"));
+    ui.strong(tr(format!("Fig. {number}, {title}. {claim}")));
     ui.horizontal_wrapped(|ui| {
         for (i, check) in checks.iter().enumerate() {
             let (mark, color) = if check.holds {
@@ -56,9 +57,9 @@ pub fn claim_ui(ui: &mut egui::Ui, number: u32, title: &str, claim: &str, checks
             } else {
                 ("no:", theme::MODEL)
             };
-            ui.colored_label(color, mark);
+            ui.colored_label(color, tr(mark));
             let end = if i + 1 == checks.len() { "." } else { ";" };
-            ui.label(format!("{}{end}", check.text));
+            ui.label(format!("{}{end}", tr(&check.text)));
         }
     });
 }

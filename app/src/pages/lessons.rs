@@ -1,6 +1,7 @@
 //! What can be learned here: the lessons, in the order of the course.
 
 use super::{Command, Desk, View};
+use crate::language::tr;
 use crate::lessons;
 use crate::theme;
 
@@ -22,7 +23,7 @@ impl View for Lessons {
             egui::ScrollArea::vertical().show(ui, |ui| {
                 ui.add_space(6.0);
                 theme::answer_ui(ui, "What can a relay teach in ten minutes?");
-                ui.label("Each lesson stands beside the app: its buttons set the pages, and its question is checked.");
+                ui.label(tr("Each lesson stands beside the app: its buttons set the pages, and its question is checked."));
                 ui.add_space(8.0);
                 for (index, lesson) in lessons::all().enumerate() {
                     egui::Frame::group(ui.style()).show(ui, |ui| {
@@ -34,9 +35,9 @@ impl View for Lessons {
                             if button.clicked() {
                                 desk.commands.push(Command::Lesson(Some(lesson.id.to_owned())));
                             }
-                            ui.label(format!("{} minutes", lesson.minutes));
+                            ui.label(tr(format!("{} minutes", lesson.minutes)));
                             if desk.study.solved.contains(lesson.id) {
-                                ui.colored_label(theme::readable(ui, theme::NOISE), "solved");
+                                ui.colored_label(theme::readable(ui, theme::NOISE), tr("solved"));
                             }
                         });
                     });

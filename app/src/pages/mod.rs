@@ -17,6 +17,7 @@ use hysteron_core::explore::ExploreInput;
 
 use crate::export::Table;
 use crate::hook::Targets;
+use crate::language::Language;
 use crate::lessons::Study;
 use crate::save::Document;
 use crate::theme::Look;
@@ -138,6 +139,8 @@ pub enum Command {
     /// Changes how the app looks.
     NextLook,
     SetLook(Look),
+    /// Speaks this language.
+    Speak(Language),
     /// Shows or hides the sheet with the keys.
     Sheet,
     /// Closes what lies over the page.

@@ -10,6 +10,7 @@ use super::playback::Playback;
 use super::{Command, Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
+use crate::language::tr;
 use crate::theme;
 
 /// Simulated periods that are played in a second.
@@ -162,10 +163,10 @@ impl Start {
     fn loop_ui(&mut self, ui: &mut egui::Ui, relay: &mut Relay) {
         ui.add_space(6.0);
         theme::answer_ui(ui, "Why does a thermostat never come to rest?");
-        ui.label("A relay switches a process up and down. It acts late, so that the output overshoots both thresholds, for ever: a limit cycle.");
+        ui.label(tr("A relay switches a process up and down. It acts late, so that the output overshoots both thresholds, for ever: a limit cycle."));
         match self.finished.as_ref().map(|(_, data)| data) {
             Some(Ok(data)) => {
-                ui.strong(&data.text);
+                ui.strong(tr(&data.text));
                 if ui.available_width() < NARROW {
                     plots::time_ui(ui, relay, data, self.playback.clock, 200.0);
                 } else {
@@ -177,12 +178,12 @@ impl Start {
                 }
             }
             Some(Err(error)) => {
-                ui.colored_label(ui.visuals().warn_fg_color, error);
+                ui.colored_label(ui.visuals().warn_fg_color, tr(error));
             }
             None => {}
         }
         ui.horizontal_wrapped(|ui| {
-            ui.label("Turn it:");
+            ui.label(tr("Turn it:"));
             let normal = Relay::default().hysteresis;
             slider(
                 ui,
@@ -192,9 +193,11 @@ impl Start {
                 0.0..=1.0,
                 "hysteresis ε",
             )
-            .on_hover_text("How far the output must pass zero before the relay switches");
+            .on_hover_text(tr(
+                "How far the output must pass zero before the relay switches",
+            ));
             let label = self.playback.label();
-            if ui.button(label).clicked() {
+            if ui.button(tr(label)).clicked() {
                 self.playback.toggle();
             }
         });
@@ -215,9 +218,9 @@ fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     }
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
-        ui.label("Or:");
+        ui.label(tr("Or:"));
         for (page, label) in MORE {
-            if ui.button(label).clicked() {
+            if ui.button(tr(label)).clicked() {
                 desk.commands.push(Command::Go(page));
             }
         }
@@ -227,10 +230,10 @@ fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
 fn door_ui(ui: &mut egui::Ui, desk: &mut Desk, door: &Door) {
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.strong(egui::RichText::new(door.question).size(17.0));
-        ui.label(door.story);
+        ui.strong(egui::RichText::new(tr(door.question)).size(17.0));
+        ui.label(tr(door.story));
         let size = egui::vec2(ui.available_width().min(220.0), 36.0);
-        let button = ui.add_sized(size, egui::Button::new(door.button));
+        let button = ui.add_sized(size, egui::Button::new(tr(door.button)));
         desk.targets
             .note(format!("door:{}", door.page), ui, &button);
         if button.clicked() {

@@ -7,21 +7,13 @@ use super::seal::{Keys, SALT};
 use super::{Hideable, Mystery, MysteryError, Truth, hideable};
 use crate::effect::EffectId;
 use crate::measurement::{Channel, Measurement, Quantity};
-use crate::rig::{self, DriveRig, ENCODER, Excitation, Random, carried_over};
+use crate::rig::{self, DriveRig, ENCODER, Excitation, Random};
 
 /// Most effects that are hidden.
 const MOST_EFFECTS: usize = 3;
 
-/// Time after which the drifting relay turns round, s, and its record, in samples.
-const FLIP: f64 = 1.5;
-const DRIFTING_SAMPLES: usize = 25_000;
-/// Samples of the others.
+/// Length of the record.
 const SAMPLES: usize = 8000;
-
-/// Travel that a drifting test must reach, rad, and samples after which that is looked at. It is the same
-/// whatever is hidden: the relay of the record must not tell.
-const TRAVEL: f64 = 0.012;
-const TRIAL: usize = 8000;
 
 /// Shares of mysteries without and with one effect, where the bench chooses; the others have two.
 const NONE: f64 = 0.2;
@@ -33,8 +25,6 @@ const ONE: f64 = 0.5;
 pub enum Experiment {
     /// A relay on the velocity, a little asymmetric.
     Relay,
-    /// A relay whose asymmetry turns round, so that the motor drifts to and fro.
-    Drifting,
     /// A sum of sines.
     #[default]
     Sines,
@@ -44,12 +34,11 @@ pub enum Experiment {
 
 impl Experiment {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Sines, Self::Relay, Self::Drifting, Self::Stairs];
+    pub const ALL: [Self; 3] = [Self::Sines, Self::Relay, Self::Stairs];
 
     fn excitation(self) -> Excitation {
         match self {
             Self::Relay => rig::relay(0.1),
-            Self::Drifting => rig::drifting(FLIP),
             Self::Sines => Excitation::Multisine { amplitude: 0.08 },
             Self::Stairs => Excitation::Staircase { top: 0.3 },
         }
@@ -114,13 +103,6 @@ pub fn make(request: &Request) -> Result<Mystery, MysteryError> {
         .into_iter()
         .map(|(effect, value)| effect.hide(value, &mut rig, &mut random))
         .collect::<Result<_, _>>()?;
-    if request.experiment == Experiment::Drifting {
-        rig.samples = DRIFTING_SAMPLES;
-        rig = carried_over(&rig, TRAVEL, FLIP, |rig| DriveRig {
-            samples: TRIAL,
-            ..rig
-        });
-    }
     let truth = Truth {
         hidden,
         baseline: vec![

@@ -5,6 +5,7 @@ use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 use super::Backlash;
 use super::scene::MILLI;
 use crate::hook::Targets;
+use crate::language::tr;
 use crate::pages::controls::slider;
 
 /// Width below which the playback stands in two rows, points.
@@ -22,14 +23,14 @@ impl Backlash {
         self.files_ui(ui, targets);
         ui.separator();
         self.relay_ui(ui);
-        egui::CollapsingHeader::new("Design a drifting test").show(ui, |ui| {
+        egui::CollapsingHeader::new(tr("Design a drifting test")).show(ui, |ui| {
             if self.design.ui(ui, &mut self.input) {
                 self.playback.clock = 0.0;
             }
         });
         self.gap_ui(ui);
         self.masses_ui(ui);
-        ui.small("Double-click a slider to reset it.");
+        ui.small(tr("Double-click a slider to reset it."));
         if self.input != before {
             self.message = None;
         }
@@ -38,12 +39,12 @@ impl Backlash {
     /// The paper's figures, one click each.
     fn figures_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("Paper:");
+            ui.label(tr("Paper:"));
             for figure in figures() {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
-                    .add(egui::Button::new(format!("Fig. {}", figure.number)).selected(chosen))
-                    .on_hover_text(format!("{}: {}", figure.title, figure.claim));
+                    .add(egui::Button::new(tr(format!("Fig. {}", figure.number))).selected(chosen))
+                    .on_hover_text(tr(format!("{}: {}", figure.title, figure.claim)));
                 targets.note(format!("gap:figure-{}", figure.number), ui, &button);
                 if button.clicked() {
                     self.scene = None;
@@ -58,7 +59,7 @@ impl Backlash {
     }
 
     fn relay_ui(&mut self, ui: &mut egui::Ui) {
-        ui.strong("Relay on the motor's velocity");
+        ui.strong(tr("Relay on the motor's velocity"));
         let normal = drifting_test();
         let (Command::Relay(relay), Command::Relay(usual)) =
             (&mut self.input.command, normal.command)
@@ -74,7 +75,7 @@ impl Backlash {
             0.05..=2.0,
             "gain k [N m]",
         )
-        .on_hover_text("How strongly the relay pushes");
+        .on_hover_text(tr("How strongly the relay pushes"));
         slider(
             ui,
             &mut r.asymmetry,
@@ -83,7 +84,7 @@ impl Backlash {
             -0.6..=0.6,
             "asymmetry a",
         )
-        .on_hover_text("How much stronger it pushes up than down");
+        .on_hover_text(tr("How much stronger it pushes up than down"));
         slider(
             ui,
             &mut r.hysteresis,
@@ -92,9 +93,9 @@ impl Backlash {
             0.05..=8.0,
             "hysteresis ε [rad/s]",
         )
-        .on_hover_text("Speed at which the relay turns the push round");
+        .on_hover_text(tr("Speed at which the relay turns the push round"));
         slider(ui, &mut r.delay, 0.0, 1e3, 0.0..=2.0, "delay [ms]")
-            .on_hover_text("How late the push follows the switch");
+            .on_hover_text(tr("How late the push follows the switch"));
         let mut flip = relay.flip.unwrap_or(0.0);
         let before = flip;
         slider(
@@ -105,9 +106,9 @@ impl Backlash {
             0.0..=5.0,
             "turn round every [s]",
         )
-        .on_hover_text(
+        .on_hover_text(tr(
             "The asymmetry changes its sign, so that the drift turns round; 0 for never",
-        );
+        ));
         if flip != before {
             relay.flip = (flip > 0.0).then_some(flip.max(0.01));
         }
@@ -122,7 +123,7 @@ impl Backlash {
     }
 
     fn gap_ui(&mut self, ui: &mut egui::Ui) {
-        ui.strong("Gap and contact");
+        ui.strong(tr("Gap and contact"));
         let normal = drifting_test().drive;
         let drive = &mut self.input.drive;
         slider(
@@ -135,10 +136,10 @@ impl Backlash {
         );
         ui.horizontal(|ui| {
             let rigid = matches!(drive.contact, Contact::Rigid { .. });
-            if ui.radio(rigid, "rigid").clicked() && !rigid {
+            if ui.radio(rigid, tr("rigid")).clicked() && !rigid {
                 drive.contact = normal.contact;
             }
-            if ui.radio(!rigid, "compliant").clicked() && rigid {
+            if ui.radio(!rigid, tr("compliant")).clicked() && rigid {
                 drive.contact = Contact::Compliant {
                     stiffness: STIFFNESS,
                     damping: DAMPING,
@@ -147,8 +148,9 @@ impl Backlash {
         });
         match &mut drive.contact {
             Contact::Rigid { restitution } => {
-                slider(ui, restitution, 1.0, 1.0, 0.0..=1.0, "restitution")
-                    .on_hover_text("Share of the speed with which they part after an impact");
+                slider(ui, restitution, 1.0, 1.0, 0.0..=1.0, "restitution").on_hover_text(tr(
+                    "Share of the speed with which they part after an impact",
+                ));
             }
             Contact::Compliant { stiffness, damping } => {
                 slider(
@@ -170,9 +172,9 @@ impl Backlash {
             0.0..=0.2,
             "adhesion, upper [N m]",
         )
-        .on_hover_text(
+        .on_hover_text(tr(
             "Pull that the upper contact withstands before it parts (adhesive side effect)",
-        );
+        ));
         slider(
             ui,
             &mut drive.adhesion.lower,
@@ -190,7 +192,7 @@ impl Backlash {
             ("Motor", &mut drive.motor, normal.motor),
             ("Load", &mut drive.load, normal.load),
         ] {
-            ui.strong(name);
+            ui.strong(tr(name));
             slider(
                 ui,
                 &mut body.inertia,
@@ -223,20 +225,20 @@ impl Backlash {
         let narrow = ui.available_width() < NARROW_PLAYBACK;
         ui.horizontal(|ui| {
             let label = self.playback.label();
-            let button = ui.button(label);
+            let button = ui.button(tr(label));
             targets.note("gap:play", ui, &button);
             if button.clicked() {
                 self.playback.toggle();
             }
             if ui
-                .button("Step")
-                .on_hover_text("To the next event")
+                .button(tr("Step"))
+                .on_hover_text(tr("To the next event"))
                 .clicked()
             {
                 self.playback.playing = false;
                 self.step_to_next_event();
             }
-            if ui.button("From the start").clicked() {
+            if ui.button(tr("From the start")).clicked() {
                 self.playback.clock = 0.0;
             }
             if !narrow {
@@ -254,7 +256,7 @@ impl Backlash {
                 .logarithmic(true)
                 .suffix(" x"),
         )
-        .on_hover_text("Speed of the playback, times real time");
+        .on_hover_text(tr("Speed of the playback, times real time"));
         ui.label(format!("t = {:.4} s", self.playback.clock));
     }
 

@@ -3,6 +3,7 @@
 use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
 
 use super::scene::MILLI;
+use crate::language::tr;
 
 /// What is asked for, and the last proposal.
 pub struct Design {
@@ -31,18 +32,18 @@ impl Design {
         let mut shown = MILLI * self.gap;
         let gap = egui::Slider::new(&mut shown, 0.5..=100.0)
             .logarithmic(true)
-            .text("expected gap [mrad]");
+            .text(tr("expected gap [mrad]"));
         if ui.add(gap).changed() {
             self.gap = shown / MILLI;
         }
         let torque = egui::Slider::new(&mut self.torque, 0.01..=5.0)
             .logarithmic(true)
-            .text("largest torque [N m]");
+            .text(tr("largest torque [N m]"));
         ui.add(torque);
         let mut changed = false;
-        let button = ui.button("Propose a drifting test").on_hover_text(
+        let button = ui.button(tr("Propose a drifting test")).on_hover_text(tr(
             "For inertia, friction and delay as set on this page, each known only roughly",
-        );
+        ));
         if button.clicked() {
             let rough = RoughDrive {
                 motor: input.drive.motor,
@@ -67,7 +68,7 @@ impl Design {
         match &self.proposal {
             Some(Ok(test)) => proposal_ui(ui, test),
             Some(Err(error)) => {
-                ui.colored_label(ui.visuals().warn_fg_color, error);
+                ui.colored_label(ui.visuals().warn_fg_color, tr(error));
             }
             None => {}
         }
@@ -77,7 +78,7 @@ impl Design {
 
 fn proposal_ui(ui: &mut egui::Ui, test: &DriftingTest) {
     let relay = test.relay.relay;
-    ui.label(format!(
+    ui.label(tr(format!(
         "k = {:.3} N m, a = {:.2}, ε = {:.3} rad/s, {:.2} ms of added delay, turned round every {:.1} s, sampled every {:.2} ms or faster.",
         relay.gain,
         relay.asymmetry,
@@ -85,14 +86,14 @@ fn proposal_ui(ui: &mut egui::Ui, test: &DriftingTest) {
         1e3 * test.added_delay,
         test.relay.flip.unwrap_or(0.0),
         1e3 * test.relay.sampling.unwrap_or(0.0),
-    ));
-    ui.label(format!(
+    )));
+    ui.label(tr(format!(
         "The cycle swings over {:.2} mrad in {:.2} ms and crosses the gap in {:.1} s at most.",
         MILLI * test.cycle.swing,
         1e3 * test.cycle.period,
         test.traverse
-    ));
+    )));
     for warning in &test.warnings {
-        ui.colored_label(ui.visuals().warn_fg_color, warning);
+        ui.colored_label(ui.visuals().warn_fg_color, tr(warning));
     }
 }

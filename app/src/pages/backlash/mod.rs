@@ -21,6 +21,7 @@ use crate::export::Table;
 use crate::files::Files;
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::language::tr;
 use crate::pages::controls::claim_ui;
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
@@ -233,8 +234,8 @@ impl Backlash {
     fn answer_ui(&mut self, ui: &mut egui::Ui) {
         if let Some(message) = self.message.clone() {
             ui.horizontal_wrapped(|ui| {
-                ui.colored_label(ui.visuals().warn_fg_color, message);
-                if ui.small_button("Dismiss").clicked() {
+                ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+                if ui.small_button(tr("Dismiss")).clicked() {
                     self.message = None;
                 }
             });
@@ -253,7 +254,7 @@ impl Backlash {
         };
         theme::answer_ui(ui, &scene.answer());
         if let Some(why) = scene.refusal() {
-            ui.label(why);
+            ui.label(tr(why));
         }
         match (self.figure, &scene.shown) {
             (Some(number), Shown::Simulated(simulated)) => {
@@ -262,7 +263,7 @@ impl Backlash {
                 }
             }
             _ => {
-                ui.label(&scene.lesson);
+                ui.label(tr(&scene.lesson));
             }
         }
     }

@@ -4,6 +4,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2}
 
 use super::plots::{CONTACT, LOAD};
 use super::scene::Scene;
+use crate::language::tr;
 use crate::theme;
 
 /// Share of the width that the gap takes at least.
@@ -31,7 +32,7 @@ pub fn ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let (top, bottom) = (rect.top() + 6.0, rect.bottom() - 34.0);
     let text = |at: Pos2, text: &str| {
         let font = FontId::proportional(13.0);
-        painter.text(at, Align2::CENTER_CENTER, text, font, Color32::BLACK);
+        painter.text(at, Align2::CENTER_CENTER, tr(text), font, Color32::BLACK);
     };
 
     // The load: a yoke whose walls stand a half gap and the peg away from its middle.

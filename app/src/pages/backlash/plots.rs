@@ -4,6 +4,7 @@ use egui::{Align2, Color32, Ui};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, Points, Polygon, Text, VLine};
 
 use super::scene::Scene;
+use crate::language::tr;
 use crate::pages::chart::{caption_ui, curve, dot, still};
 use crate::theme;
 
@@ -36,36 +37,36 @@ pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         for [from, to] in scene.engagements() {
             let corners = vec![[from, low], [to, low], [to, high], [from, high]];
             plot.polygon(
-                Polygon::new("motor pushes load", corners)
+                Polygon::new(tr("motor pushes load"), corners)
                     .fill_color(CONTACT.gamma_multiply(0.22))
                     .stroke((0.0, CONTACT)),
             );
         }
         plot.line(
-            Line::new("load x2", curve(&scene.load))
+            Line::new(tr("load x2"), curve(&scene.load))
                 .color(LOAD)
                 .width(2.5),
         );
         plot.line(
-            Line::new("motor x1", curve(&scene.motor))
+            Line::new(tr("motor x1"), curve(&scene.motor))
                 .color(theme::MEASURED)
                 .width(1.5),
         );
         for ends in &signature {
             plot.line(
-                Line::new("gap found by the motor", ends.to_vec())
+                Line::new(tr("gap found by the motor"), ends.to_vec())
                     .color(ESTIMATED)
                     .style(LineStyle::dashed_loose())
                     .width(2.0),
             );
             plot.points(
-                Points::new("gap found by the motor", ends.to_vec())
+                Points::new(tr("gap found by the motor"), ends.to_vec())
                     .color(ESTIMATED)
                     .shape(MarkerShape::Diamond)
                     .radius(6.0),
             );
         }
-        plot.vline(VLine::new("now", clock).color(theme::INPUT).width(1.0));
+        plot.vline(VLine::new(tr("now"), clock).color(theme::INPUT).width(1.0));
     });
 }
 
@@ -90,19 +91,19 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     )
     .show(ui, |plot| {
         plot.line(
-            Line::new("last periods", curve(&points))
+            Line::new(tr("last periods"), curve(&points))
                 .color(theme::MEASURED)
                 .width(1.5),
         );
         if let Some(orbit) = &orbit {
             plot.line(
-                Line::new("closed form", curve(&orbit.curve))
+                Line::new(tr("closed form"), curve(&orbit.curve))
                     .color(theme::INPUT)
                     .style(LineStyle::dashed_dense())
                     .width(2.0),
             );
             plot.points(
-                Points::new("characteristic points", orbit.corners.clone())
+                Points::new(tr("characteristic points"), orbit.corners.clone())
                     .color(theme::INPUT)
                     .radius(4.0),
             );
@@ -160,8 +161,8 @@ fn labels(corners: &[[f64; 2]]) -> Vec<(PlotPoint, String)> {
 /// Load over motor position.
 pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     if scene.map.is_empty() {
-        ui.strong("Backlash map");
-        ui.label("The load was not measured: there is no map.");
+        ui.strong(tr("Backlash map"));
+        ui.label(tr("The load was not measured: there is no map."));
         return;
     }
     let mut curves = vec![("x2 over x1", LOAD)];
@@ -173,7 +174,7 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let load = scene.load_range;
     still("map", "motor x1 [mrad]", "load x2 [mrad]", height).show(ui, |plot| {
         plot.points(
-            Points::new("x2 over x1", curve(&scene.map))
+            Points::new(tr("x2 over x1"), curve(&scene.map))
                 .color(LOAD)
                 .radius(1.2),
         );
@@ -187,7 +188,7 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                 ];
                 let edge = ends.map(|x| [x, x - side * beta]).to_vec();
                 plot.line(
-                    Line::new("ends of the gap", edge)
+                    Line::new(tr("ends of the gap"), edge)
                         .color(CONTACT)
                         .style(LineStyle::dashed_dense()),
                 );

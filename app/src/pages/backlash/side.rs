@@ -8,6 +8,7 @@ use super::built_in::BUILT_IN;
 use super::scene::MILLI;
 use crate::files::MEASUREMENT;
 use crate::hook::Targets;
+use crate::language::tr;
 
 /// Crossings that are listed.
 const LISTED: usize = 12;
@@ -34,9 +35,9 @@ impl Backlash {
     /// What is open, and the way back.
     fn measurement_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         let name = self.scene.as_ref().and_then(|s| s.file());
-        ui.strong(name.unwrap_or("Reading ..."));
+        ui.strong(tr(name.unwrap_or("Reading ...")));
         if let Some(verdict) = self.scene.as_ref().and_then(|s| s.verdict()) {
-            ui.label(verdict);
+            ui.label(tr(verdict));
         }
         if self.estimation.is_some() {
             ui.spinner();
@@ -44,7 +45,7 @@ impl Backlash {
         if let Some(Ok(estimate)) = self.scene.as_ref().and_then(|s| s.estimate.as_ref()) {
             traverses_ui(ui, estimate);
         }
-        let back = ui.button("Back to the simulation");
+        let back = ui.button(tr("Back to the simulation"));
         targets.note("gap:back", ui, &back);
         if back.clicked() {
             self.close();
@@ -54,21 +55,23 @@ impl Backlash {
     }
 
     pub(super) fn files_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
-        ui.strong("Measured drifting tests");
+        ui.strong(tr("Measured drifting tests"));
         let mut chosen = None;
         ui.horizontal_wrapped(|ui| {
             for built_in in &BUILT_IN {
                 let button = ui
-                    .button(format!("Open {}", built_in.id))
-                    .on_hover_text(built_in.story);
+                    .button(tr(format!("Open {}", built_in.id)))
+                    .on_hover_text(tr(built_in.story));
                 targets.note(format!("gap:{}", built_in.id), ui, &button);
                 if button.clicked() {
                     chosen = Some(built_in);
                 }
             }
             if ui
-                .button("Open a file ...")
-                .on_hover_text("Or drop it on this window: t [s],u [N m],x1 [rad],v1 [rad/s]")
+                .button(tr("Open a file ..."))
+                .on_hover_text(tr(
+                    "Or drop it on this window: t [s],u [N m],x1 [rad],v1 [rad/s]",
+                ))
                 .clicked()
             {
                 self.files.open_dialog(ui.ctx(), MEASUREMENT);
@@ -82,15 +85,15 @@ impl Backlash {
     /// The direction of drift, with one effect at a time.
     pub(super) fn lesson_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("Drift by:").on_hover_text(
+            ui.label(tr("Drift by:")).on_hover_text(tr(
                 "Which way does it drift? The direction tells which effect is there",
-            );
+            ));
             for (name, friction, delay) in [
                 ("friction alone", LESSON_FRICTION, 0.0),
                 ("delay alone", 0.0, LESSON_DELAY),
                 ("neither", 0.0, 0.0),
             ] {
-                if ui.button(name).clicked() {
+                if ui.button(tr(name)).clicked() {
                     self.figure = None;
                     self.playback.clock = 0.0;
                     self.input = drifting_test();
@@ -115,7 +118,7 @@ fn traverses_ui(ui: &mut egui::Ui, estimate: &GapEstimate) {
         .num_columns(3)
         .show(ui, |ui| {
             for title in ["left at [s]", "reached at [s]", "gap [mrad]"] {
-                ui.strong(title);
+                ui.strong(tr(title));
             }
             ui.end_row();
             for t in estimate.traverses.iter().take(LISTED) {

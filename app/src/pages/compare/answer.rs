@@ -5,14 +5,15 @@ use hysteron_core::effect::{self, Effect, EffectId};
 use hysteron_core::user_model::UserModel;
 
 use super::{Command, Compare};
+use crate::language::tr;
 use crate::theme;
 
 impl Compare {
     pub(super) fn message_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         if let Some(message) = &self.message {
             ui.horizontal_wrapped(|ui| {
-                ui.colored_label(ui.visuals().warn_fg_color, message);
-                if ui.small_button("Dismiss").clicked() {
+                ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+                if ui.small_button(tr("Dismiss")).clicked() {
                     commands.push(Command::Dismiss);
                 }
             });
@@ -35,9 +36,9 @@ impl Compare {
             return;
         };
         for (index, finding) in report.step.findings.iter().enumerate().take(3) {
-            let row = ui.selectable_label(self.finding == index, &finding.text);
+            let row = ui.selectable_label(self.finding == index, tr(&finding.text));
             if row
-                .on_hover_text("Click to shade it in the plots")
+                .on_hover_text(tr("Click to shade it in the plots"))
                 .clicked()
             {
                 commands.push(Command::Shade(index));

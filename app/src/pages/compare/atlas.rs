@@ -4,6 +4,7 @@ use egui_plot::{HLine, Line, Plot, Span};
 use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
 
 use super::Compare;
+use crate::language::tr;
 use crate::pages::chart::{axes, caption_ui};
 use crate::theme;
 
@@ -44,7 +45,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
         } else {
             format!("over {}", words(&profile.axis))
         };
-        ui.label(title);
+        ui.label(tr(title));
         let earlier = before.and_then(|b| twin(b, profile));
         picture_ui(profile, earlier, finding, ui);
     });
@@ -136,14 +137,14 @@ fn picture_ui(
                 plot.add(Span::new("", f.from..=f.to).fill(color).border_width(0.0));
             }
             if let Some(before) = before {
-                let line = Line::new("the step before", points(before, |b| b.rms));
+                let line = Line::new(tr("the step before"), points(before, |b| b.rms));
                 plot.line(line.color(theme::MODEL).width(1.5));
             }
             plot.line(
-                Line::new("this model", points(profile, |b| b.rms))
+                Line::new(tr("this model"), points(profile, |b| b.rms))
                     .color(theme::RESIDUAL)
                     .width(2.0),
             );
-            plot.hline(HLine::new("noise", 1.0).color(theme::NOISE).width(1.5));
+            plot.hline(HLine::new(tr("noise"), 1.0).color(theme::NOISE).width(1.5));
         });
 }

@@ -5,6 +5,7 @@ use hysteron_core::measurement::Kind;
 
 use super::{Command, Compare, name_of};
 use crate::hook::Targets;
+use crate::language::tr;
 use crate::pages;
 use crate::theme;
 
@@ -27,13 +28,13 @@ pub(super) fn ui(
             2 => "These two cannot be told apart with this record",
             _ => "These cannot be told apart with this record",
         };
-        ui.strong(title);
-        ui.label(names.join(" or "));
+        ui.strong(tr(title));
+        ui.label(tr(names.join(" or ")));
         if proposal.sufficient {
             ui.add_space(4.0);
-            ui.strong("Try this experiment");
+            ui.strong(tr("Try this experiment"));
         }
-        ui.label(&proposal.text);
+        ui.label(tr(&proposal.text));
         opening_ui(index, proposal, ui, targets, commands);
         trials_ui(index, proposal, ui);
         limits_ui(page, index, proposal, ui, targets, commands);
@@ -52,9 +53,9 @@ fn opening_ui(
         return;
     }
     let Program::Relay { gains, .. } = &proposal.program else {
-        let save = ui
-            .button("Save the input as CSV")
-            .on_hover_text("Time and input, sample by sample, to be played at the rig");
+        let save = ui.button(tr("Save the input as CSV")).on_hover_text(tr(
+            "Time and input, sample by sample, to be played at the rig",
+        ));
         targets.note(format!("experiment:{index}:save"), ui, &save);
         if save.clicked() {
             commands.push(Command::SaveInput(index));
@@ -63,7 +64,7 @@ fn opening_ui(
     };
     for (k, model) in proposal.models.iter().enumerate() {
         ui.horizontal_wrapped(|ui| {
-            ui.label(format!("If it is {}:", name_of(model.effect)));
+            ui.label(tr(format!("If it is {}:", name_of(model.effect))));
             for (j, gain) in gains.iter().enumerate() {
                 let Some(opening) = proposal.opening(model, *gain) else {
                     continue;
@@ -92,7 +93,7 @@ fn opening_ui(
                 } else {
                     format!(" {}", proposal.input_unit)
                 };
-                let open = ui.button(format!("{place} with gain {gain}{unit}"));
+                let open = ui.button(tr(format!("{place} with gain {gain}{unit}")));
                 targets.note(format!("experiment:{index}:open:{k}:{j}"), ui, &open);
                 if open.clicked() {
                     commands.push(Command::Desk(command));
@@ -108,10 +109,10 @@ fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::Ui) {
         .chain(proposal.others.iter().cloned())
         .collect();
     let most = trials.iter().map(|t| t.separation).fold(1.0, f64::max);
-    egui::CollapsingHeader::new("What other experiments would tell")
+    egui::CollapsingHeader::new(tr("What other experiments would tell"))
         .id_salt(("trials", index))
         .show(ui, |ui| {
-            ui.small("What the wrong one would leave, in units of the noise.");
+            ui.small(tr("What the wrong one would leave, in units of the noise."));
             for trial in &trials {
                 ui.horizontal(|ui| {
                     // Below the noise nothing is seen, far above it all is: a logarithmic bar from 0.01.
@@ -122,9 +123,9 @@ fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::Ui) {
                     let mut bar = rect;
                     bar.set_width(2.0 + share as f32 * (BAR - 2.0));
                     ui.painter().rect_filled(bar, 2.0, theme::RESIDUAL);
-                    ui.label(trial.times_noise());
+                    ui.label(tr(trial.times_noise()));
                 });
-                ui.label(&trial.text);
+                ui.label(tr(&trial.text));
             }
         });
 }
@@ -141,7 +142,7 @@ fn limits_ui(
         .measurement
         .as_ref()
         .is_none_or(|m| m.kind == Kind::Drive);
-    egui::CollapsingHeader::new("Limits of the experiment")
+    egui::CollapsingHeader::new(tr("Limits of the experiment"))
         .id_salt(("limits", index))
         .show(ui, |ui| {
             let mut limits = page.limits.unwrap_or(proposal.limits);
@@ -152,12 +153,12 @@ fn limits_ui(
                 commands.push(Command::Limit(limits));
             }
             if page.search.is_some() {
-                ui.label("Looking for the experiment ...");
+                ui.label(tr("Looking for the experiment ..."));
                 return;
             }
             let again = ui.add_enabled(
                 limits != proposal.limits,
-                egui::Button::new("Look within these limits"),
+                egui::Button::new(tr("Look within these limits")),
             );
             targets.note(format!("experiment:{index}:again"), ui, &again);
             if again.clicked() {
@@ -175,7 +176,7 @@ fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut
         }
     };
     let mut row = |name: &str, value: &mut f64, unit: &str| {
-        let label = ui.label(name);
+        let label = ui.label(tr(name));
         let speed = 0.01 * value.abs().max(1e-9);
         let drag = egui::DragValue::new(value)
             .speed(speed)
@@ -204,8 +205,8 @@ fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut
         );
     }
     if drive && limits.travel.is_none() {
-        ui.label("Longest travel");
-        if ui.small_button("Set a limit").clicked() {
+        ui.label(tr("Longest travel"));
+        if ui.small_button(tr("Set a limit")).clicked() {
             limits.travel = Some(proposal.travel.max(1e-6));
         }
         ui.end_row();

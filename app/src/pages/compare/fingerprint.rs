@@ -7,6 +7,7 @@ use hysteron_core::measurement::Measurement;
 use super::atlas::{axis_label, grid_ui, points, small, words};
 use super::{Command, Compare, name_of};
 use crate::hook::Targets;
+use crate::language::tr;
 use crate::pages::chart::{axes, caption_ui};
 use crate::theme;
 
@@ -28,14 +29,14 @@ pub(super) fn ui(
         return;
     };
     let Some(chosen) = page.chosen() else {
-        ui.label("No effect was tried on top of this model.");
+        ui.label(tr("No effect was tried on top of this model."));
         return;
     };
     ui.horizontal_wrapped(|ui| {
-        ui.label("Effect:");
+        ui.label(tr("Effect:"));
         for print in &report.fingerprints {
             let id = print.effect;
-            let label = format!("{} {:.2}", name_of(id), print.likeness);
+            let label = format!("{} {:.2}", tr(name_of(id)), print.likeness);
             let button = ui.selectable_label(id == chosen, label);
             targets.note(format!("print:{id}"), ui, &button);
             if button.clicked() {
@@ -46,7 +47,7 @@ pub(super) fn ui(
     let Some(print) = report.fingerprints.iter().find(|f| f.effect == chosen) else {
         return;
     };
-    ui.label(sentence(print));
+    ui.label(tr(sentence(print)));
     let name = format!("what {} would leave", name_of(chosen));
     caption_ui(
         ui,
@@ -54,12 +55,12 @@ pub(super) fn ui(
         &[("what is left", theme::RESIDUAL), (&name, theme::INPUT)],
     );
     time_ui(measurement, report, print, ui);
-    ui.label("The mean over each axis, in units of the noise");
+    ui.label(tr("The mean over each axis, in units of the noise"));
     let profiles: Vec<&Profile> = print.profiles.iter().collect();
     grid_ui(&profiles, ui, |profile, ui| {
         let output = measurement.outputs.get(profile.output);
         let output = output.map_or("", |c| c.name.as_str());
-        ui.label(format!("{output} over {}", words(&profile.axis)));
+        ui.label(tr(format!("{output} over {}", words(&profile.axis))));
         profile_ui(report, profile, ui);
     });
 }
@@ -117,12 +118,12 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
         .allow_scroll(false)
         .show(ui, |plot| {
             plot.line(
-                Line::new("what is left", left)
+                Line::new(tr("what is left"), left)
                     .color(theme::RESIDUAL)
                     .width(1.5),
             );
             plot.line(
-                Line::new("what it would leave", would)
+                Line::new(tr("what it would leave"), would)
                     .color(theme::INPUT)
                     .style(LineStyle::dashed_loose())
                     .width(2.0),
@@ -137,11 +138,11 @@ fn profile_ui(report: &StepReport, profile: &Profile, ui: &mut egui::Ui) {
     let id = ("print", profile.output, profile.axis.clone());
     small(id, axis_label(profile), "mean").show(ui, |plot| {
         if let Some(left) = left {
-            let line = Line::new("what is left", points(left, |b| b.mean));
+            let line = Line::new(tr("what is left"), points(left, |b| b.mean));
             plot.line(line.color(theme::RESIDUAL).width(2.0));
         }
         plot.line(
-            Line::new("what it would leave", points(profile, |b| b.mean))
+            Line::new(tr("what it would leave"), points(profile, |b| b.mean))
                 .color(theme::INPUT)
                 .style(LineStyle::dashed_loose())
                 .width(2.0),

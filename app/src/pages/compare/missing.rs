@@ -3,6 +3,7 @@
 use egui_plot::{HLine, Line, Plot, PlotPoints};
 use hysteron_core::criticism::{MissingPart, StepReport};
 
+use crate::language::tr;
 use crate::pages::chart::axes;
 use crate::theme;
 
@@ -17,12 +18,14 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
     if report.missing.is_empty() {
         return;
     }
-    ui.strong("What is missing, estimated without a model");
+    ui.strong(tr("What is missing, estimated without a model"));
     for part in report.missing.iter().take(MOST) {
-        ui.label(&part.text);
+        ui.label(tr(&part.text));
         plot_ui(part, ui);
     }
-    ui.small("Steps over one axis at a time, with bars of two standard errors.");
+    ui.small(tr(
+        "Steps over one axis at a time, with bars of two standard errors.",
+    ));
 }
 
 /// Width of the labels of y, so that the plots line up.

@@ -34,6 +34,7 @@ use crate::export::Table;
 use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::language::tr;
 use crate::save::save;
 use crate::tasks::ExperimentTask;
 use answer::{name_of, times_noise};
@@ -270,7 +271,7 @@ impl Compare {
                 if look == Look::Reveal && self.sealed.is_none() {
                     continue;
                 }
-                let tab = ui.selectable_label(self.look == look, title);
+                let tab = ui.selectable_label(self.look == look, tr(title));
                 targets.note(format!("look:{id}"), ui, &tab);
                 if tab.clicked() {
                     commands.push(Command::Look(look));
@@ -281,7 +282,7 @@ impl Compare {
                 self.report_before().is_some() && matches!(self.look, Look::Time | Look::Places);
             let toggle = ui.add_enabled(
                 can,
-                egui::Checkbox::new(&mut before, "Beside the step before"),
+                egui::Checkbox::new(&mut before, tr("Beside the step before")),
             );
             targets.note("before", ui, &toggle);
             if toggle.changed() {

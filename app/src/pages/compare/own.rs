@@ -5,6 +5,7 @@ use hysteron_core::measurement::Kind;
 
 use super::{Command, Compare};
 use crate::hook::Targets;
+use crate::language::tr;
 
 /// What is typed.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,18 +52,18 @@ pub(super) fn ui(
         return;
     };
     let mut typed = page.typed.clone();
-    egui::CollapsingHeader::new("An effect of your own").show(ui, |ui| {
+    egui::CollapsingHeader::new(tr("An effect of your own")).show(ui, |ui| {
         let variables = match measurement.kind {
             Kind::Drive => "A force as a formula of x, v, u, t; every other name is fitted.",
             Kind::Process => "An input as a formula of y, u, t; every other name is fitted.",
         };
-        ui.label(variables);
+        ui.label(tr(variables));
         egui::Grid::new("own effect").num_columns(2).show(ui, |ui| {
-            let label = ui.label("Name");
+            let label = ui.label(tr("Name"));
             ui.add(egui::TextEdit::singleline(&mut typed.name).desired_width(120.0))
                 .labelled_by(label.id);
             ui.end_row();
-            let label = ui.label("F =");
+            let label = ui.label(tr("F ="));
             ui.add(
                 egui::TextEdit::singleline(&mut typed.formula)
                     .desired_width(240.0)
@@ -73,11 +74,11 @@ pub(super) fn ui(
         });
         let checked = typed.check(measurement.kind);
         match &checked {
-            Ok(names) => ui.label(format!("To be fitted: {}", names.join(", "))),
-            Err(error) => ui.colored_label(ui.visuals().warn_fg_color, error),
+            Ok(names) => ui.label(tr(format!("To be fitted: {}", names.join(", ")))),
+            Err(error) => ui.colored_label(ui.visuals().warn_fg_color, tr(error)),
         };
         let ready = checked.is_ok() && page.job.is_none() && page.report().is_some();
-        let add = ui.add_enabled(ready, egui::Button::new("Add your effect"));
+        let add = ui.add_enabled(ready, egui::Button::new(tr("Add your effect")));
         targets.note("own:add", ui, &add);
         if add.clicked() {
             commands.push(Command::AddOwn(typed.clone()));

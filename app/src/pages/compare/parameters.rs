@@ -3,6 +3,7 @@
 use hysteron_core::criticism::{Parameter, StepReport, with_error};
 
 use super::name_of;
+use crate::language::tr;
 use crate::theme;
 
 /// Size of the bar that shows an interval, points.
@@ -12,7 +13,7 @@ const BAR: egui::Vec2 = egui::vec2(70.0, 12.0);
 const INTERVAL: f64 = 1.96;
 
 pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
-    egui::CollapsingHeader::new("Parameters of the model")
+    egui::CollapsingHeader::new(tr("Parameters of the model"))
         .default_open(true)
         .show(ui, |ui| {
             egui::Grid::new("parameters")
@@ -22,14 +23,14 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
                     for p in &report.step.parameters {
                         let owner = p.effect.map_or("baseline", name_of);
                         let hover = format!("{}, {owner}", p.label);
-                        ui.label(&p.name).on_hover_text(&hover);
-                        ui.label(with_error(p.value, p.std_error, &p.unit))
-                            .on_hover_text(hover);
+                        ui.label(tr(&p.name)).on_hover_text(tr(&hover));
+                        ui.label(tr(with_error(p.value, p.std_error, &p.unit)))
+                            .on_hover_text(tr(hover));
                         interval_ui(p, ui);
                         ui.end_row();
                     }
                 });
-            ui.small("With one standard error. Bars: 95 % intervals, from 0 at the left to twice the value; red where 0 is in them.");
+            ui.small(tr("With one standard error. Bars: 95 % intervals, from 0 at the left to twice the value; red where 0 is in them."));
         });
 }
 
@@ -54,10 +55,10 @@ fn interval_ui(p: &Parameter, ui: &mut egui::Ui) {
     let half = (0.5 * BAR.x * share.min(1.0) as f32).max(1.5);
     let bar = egui::Rect::from_center_size(middle, egui::vec2(2.0 * half, 6.0));
     painter.rect_filled(bar, 1.0, color);
-    response.on_hover_text(format!(
+    response.on_hover_text(tr(format!(
         "95 % interval: {:.4e} to {:.4e} {}",
         p.value - INTERVAL * p.std_error,
         p.value + INTERVAL * p.std_error,
         if p.unit == "1" { "" } else { &p.unit }
-    ));
+    )));
 }

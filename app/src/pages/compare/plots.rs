@@ -5,6 +5,7 @@ use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
+use crate::language::tr;
 use crate::pages::chart::{axes, envelope};
 use crate::theme;
 
@@ -84,12 +85,12 @@ fn signal_plot(
         mark(plot, finding.filter(|f| alone || is_about(f, output)));
         let measured = points(&measurement.time, &output.values);
         plot.line(
-            Line::new("measured", measured)
+            Line::new(tr("measured"), measured)
                 .color(theme::MEASURED)
                 .width(2.5),
         );
         if let Some(modelled) = modelled {
-            let line = Line::new("model", points(&measurement.time, &modelled.modelled));
+            let line = Line::new(tr("model"), points(&measurement.time, &modelled.modelled));
             plot.line(
                 line.color(theme::MODEL)
                     .width(1.5)
@@ -122,16 +123,19 @@ fn residual_plot(
     .show(ui, |plot| {
         shade(plot, finding);
         if let Some(before) = before {
-            let line = Line::new("the step before", points(&measurement.time, &less(before)));
+            let line = Line::new(
+                tr("the step before"),
+                points(&measurement.time, &less(before)),
+            );
             plot.line(line.color(theme::MODEL).width(1.2));
         }
         plot.line(
-            Line::new("residual", points(&measurement.time, &residual))
+            Line::new(tr("residual"), points(&measurement.time, &residual))
                 .color(theme::RESIDUAL)
                 .width(1.2),
         );
         for side in [2.0, -2.0] {
-            let line = HLine::new("noise, 2 sigma", side * modelled.noise);
+            let line = HLine::new(tr("noise, 2 sigma"), side * modelled.noise);
             plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
         }
     });
@@ -174,7 +178,8 @@ fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
         let text = format!("{:.0} % of the error", 100.0 * finding.share_of_error);
         let at = PlotPoint::new(span.0.max(low[0]), high[1]);
         plot.text(
-            Text::new("", at, egui::RichText::new(text).strong()).anchor(egui::Align2::LEFT_TOP),
+            Text::new("", at, egui::RichText::new(tr(text)).strong())
+                .anchor(egui::Align2::LEFT_TOP),
         );
     }
 }

@@ -8,6 +8,7 @@ use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 use super::{Command, Compare, name_of};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
+use crate::language::tr;
 use crate::tasks::RevealTask;
 use crate::theme;
 
@@ -114,14 +115,14 @@ pub(super) fn ui(
         return;
     };
     ui.add_space(6.0);
-    ui.label("The truth about this record lies in it, sealed. Add what is missing until only noise is left; then say the word.");
+    ui.label(tr("The truth about this record lies in it, sealed. Add what is missing until only noise is left; then say the word."));
     let mut word = sealed.word.clone();
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("Word");
+        let label = ui.label(tr("Word"));
         ui.add(egui::TextEdit::singleline(&mut word).desired_width(220.0))
             .labelled_by(label.id);
         let ready = !word.trim().is_empty() && sealed.job.is_none() && page.report().is_some();
-        let reveal = ui.add_enabled(ready, egui::Button::new("Reveal the truth"));
+        let reveal = ui.add_enabled(ready, egui::Button::new(tr("Reveal the truth")));
         targets.note("reveal", ui, &reveal);
         if reveal.clicked() {
             commands.push(Command::Reveal);
@@ -134,7 +135,7 @@ pub(super) fn ui(
         commands.push(Command::Word(word));
     }
     if let Some(message) = &sealed.message {
-        ui.colored_label(ui.visuals().warn_fg_color, message);
+        ui.colored_label(ui.visuals().warn_fg_color, tr(message));
     }
     let Some((effects, reveal)) = &sealed.revealed else {
         return;
@@ -142,7 +143,9 @@ pub(super) fn ui(
     ui.add_space(8.0);
     theme::answer_ui(ui, &format!("{:.0} of 100 points.", reveal.points()));
     if Some(effects) != page.shown.as_ref() {
-        ui.label("They are for the model that was on screen then; the model is another one now.");
+        ui.label(tr(
+            "They are for the model that was on screen then; the model is another one now.",
+        ));
     }
     egui::ScrollArea::vertical()
         .id_salt("truth")
@@ -154,11 +157,11 @@ pub(super) fn ui(
 }
 
 fn effects_ui(reveal: &Reveal, ui: &mut egui::Ui) {
-    ui.strong("Effects");
+    ui.strong(tr("Effects"));
     if reveal.rows.is_empty() {
-        ui.label("Nothing was hidden, and nothing was added: right.");
+        ui.label(tr("Nothing was hidden, and nothing was added: right."));
     } else if reveal.truth.hidden.is_empty() {
-        ui.label("Nothing was hidden.");
+        ui.label(tr("Nothing was hidden."));
     }
     for Row { effect, mark } in &reveal.rows {
         let name = name_of(*effect);
@@ -174,7 +177,7 @@ fn effects_ui(reveal: &Reveal, ui: &mut egui::Ui) {
             Mark::Missed => (theme::MODEL, format!("{name}: missed")),
             Mark::Wrong => (theme::MODEL, format!("{name}: wrong, it is not there")),
         };
-        ui.label(RichText::new(text).color(theme::readable(ui, color)));
+        ui.label(RichText::new(tr(text)).color(theme::readable(ui, color)));
     }
 }
 
@@ -183,32 +186,32 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
         return;
     }
     ui.add_space(8.0);
-    ui.strong("Numbers");
+    ui.strong(tr("Numbers"));
     if ui.available_width() < TABLE {
         for number in &reveal.numbers {
             let [name, truth, found, error, marks] = cells(number);
-            ui.strong(name);
-            ui.label(format!("Truth {truth}, your model {found}."));
+            ui.strong(tr(name));
+            ui.label(tr(format!("Truth {truth}, your model {found}.")));
             let error = if error.is_empty() {
                 error
             } else {
                 format!("Error {error}. ")
             };
-            ui.label(format!("{error}Marks {marks}."));
+            ui.label(tr(format!("{error}Marks {marks}.")));
         }
         return;
     }
-    egui::Grid::new("truth and model")
+    egui::Grid::new("truth_and_model")
         .num_columns(5)
         .striped(true)
         .show(ui, |ui| {
             for title in ["", "truth", "your model", "error", "marks"] {
-                ui.small(title);
+                ui.small(tr(title));
             }
             ui.end_row();
             for number in &reveal.numbers {
                 for cell in cells(number) {
-                    ui.label(cell);
+                    ui.label(tr(cell));
                 }
                 ui.end_row();
             }
@@ -253,10 +256,10 @@ fn rule_ui(reveal: &Reveal, ui: &mut egui::Ui) {
     let [effects, most_effects] = reveal.effect_points;
     let [numbers, most_numbers] = reveal.number_points;
     ui.add_space(8.0);
-    ui.label(format!(
+    ui.label(tr(format!(
         "{effects:.0} of {most_effects:.0} points for the effects: the share of right ones among all that are hidden or were added."
-    ));
-    ui.label(format!(
+    )));
+    ui.label(tr(format!(
         "{numbers:.0} of {most_numbers:.0} points for the numbers: full marks within 5 % or two standard errors, none 50 % beyond."
-    ));
+    )));
 }

@@ -9,6 +9,7 @@ use super::{
     Command, Compare, Look, experiment, missing, name_of, own, parameters, times_noise, waterfall,
 };
 use crate::hook::Targets;
+use crate::language::tr;
 use crate::theme;
 
 pub(super) fn ui(
@@ -28,12 +29,12 @@ pub(super) fn ui(
     if let Some(verdict) = &report.verdict {
         egui::Frame::group(ui.style()).show(ui, |ui| {
             ui.set_width(ui.available_width());
-            ui.strong("The data say");
-            ui.label(&verdict.text);
+            ui.strong(tr("The data say"));
+            ui.label(tr(&verdict.text));
             if verdict.experiments.is_empty()
                 && let Some(next) = &verdict.next_experiment
             {
-                ui.label(next);
+                ui.label(tr(next));
             }
         });
         for (index, proposal) in verdict.experiments.iter().enumerate() {
@@ -49,15 +50,20 @@ pub(super) fn ui(
 fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if let Some(m) = &page.measurement {
-            ui.strong(&m.name);
-            ui.label(format!("{} samples", m.len()));
+            ui.strong(tr(&m.name));
+            ui.label(tr(format!("{} samples", m.len())));
         }
-        if ui.button("Open another").clicked() {
+        if ui.button(tr("Open another")).clicked() {
             commands.push(Command::Close);
         }
         let export = ui
-            .add_enabled(page.report().is_some(), egui::Button::new("Export report"))
-            .on_hover_text("One page with pictures, equations, parameters and the verdict");
+            .add_enabled(
+                page.report().is_some(),
+                egui::Button::new(tr("Export report")),
+            )
+            .on_hover_text(tr(
+                "One page with pictures, equations, parameters and the verdict",
+            ));
         targets.note("export:report", ui, &export);
         if export.clicked() {
             commands.push(Command::ExportReport);
@@ -65,8 +71,8 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &
     });
     if page.sealed.is_some() {
         ui.horizontal_wrapped(|ui| {
-            ui.label("A mystery: its truth is sealed in it.");
-            let reveal = ui.button("Reveal ...");
+            ui.label(tr("A mystery: its truth is sealed in it."));
+            let reveal = ui.button(tr("Reveal ..."));
             targets.note("reveal:go", ui, &reveal);
             if reveal.clicked() {
                 commands.push(Command::Look(Look::Reveal));
@@ -74,21 +80,21 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &
         });
     }
     ui.horizontal_wrapped(|ui| {
-        let load = ui.button("Load model ...").on_hover_text(
+        let load = ui.button(tr("Load model ...")).on_hover_text(tr(
             "What is known beforehand: parameters, effects already in the model (TOML)",
-        );
+        ));
         targets.note("model:load", ui, &load);
         if load.clicked() {
             commands.push(Command::OpenModel);
         }
-        let save = ui.add_enabled(page.report().is_some(), egui::Button::new("Save model"));
+        let save = ui.add_enabled(page.report().is_some(), egui::Button::new(tr("Save model")));
         targets.note("model:save", ui, &save);
         if save.clicked() {
             commands.push(Command::SaveModel);
         }
         if let Some(name) = &page.model_file {
-            ui.label(format!("Begins with {name}"));
-            if ui.small_button("Forget it").clicked() {
+            ui.label(tr(format!("Begins with {name}")));
+            if ui.small_button(tr("Forget it")).clicked() {
                 commands.push(Command::DropModel);
             }
         }
@@ -99,8 +105,8 @@ fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if page.job.is_some() {
         ui.horizontal(|ui| {
             let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(230.0);
-            ui.add(bar.text(page.progress.1.clone()));
-            if ui.button("Cancel").clicked() {
+            ui.add(bar.text(tr(page.progress.1.clone())));
+            if ui.button(tr("Cancel")).clicked() {
                 commands.push(Command::Cancel);
             }
         });
@@ -117,15 +123,17 @@ fn candidates_ui(
     let (helping, others): (Vec<&Candidate>, Vec<&Candidate>) =
         report.step.candidates.iter().partition(|c| c.significant);
     if helping.is_empty() {
-        ui.label("No effect in the library would lower the error beyond chance.");
+        ui.label(tr(
+            "No effect in the library would lower the error beyond chance.",
+        ));
     } else {
-        ui.strong("What could be missing");
+        ui.strong(tr("What could be missing"));
     }
     for candidate in helping {
         card_ui(page, report, candidate, ui, targets, commands);
     }
     if !others.is_empty() {
-        ui.collapsing("Effects that do not help", |ui| {
+        ui.collapsing(tr("Effects that do not help"), |ui| {
             for candidate in others {
                 card_ui(page, report, candidate, ui, targets, commands);
             }
@@ -159,18 +167,20 @@ fn card_ui(
         ui.horizontal(|ui| {
             let add = ui.add_enabled(
                 page.job.is_none(),
-                egui::Button::new(format!("Add {}", name_of(id))),
+                egui::Button::new(tr(format!("Add {}", name_of(id)))),
             );
             targets.note(format!("add:{id}"), ui, &add);
             if add.clicked() {
                 commands.push(Command::Add(id));
             }
-            ui.label(RichText::new(format!("leaves {}", times_noise(candidate.error))).strong());
+            ui.label(
+                RichText::new(tr(format!("leaves {}", times_noise(candidate.error)))).strong(),
+            );
             if report.fingerprints.iter().any(|f| f.effect == id) {
                 let chosen = page.look == Look::Fingerprint && page.chosen() == Some(id);
                 let show = ui
-                    .selectable_label(chosen, "Fingerprint")
-                    .on_hover_text("What it would leave, beside what is left");
+                    .selectable_label(chosen, tr("Fingerprint"))
+                    .on_hover_text(tr("What it would leave, beside what is left"));
                 targets.note(format!("fingerprint:{id}"), ui, &show);
                 if show.clicked() {
                     commands.push(Command::Fingerprint(id));
@@ -185,7 +195,7 @@ fn card_ui(
             theme::MODEL,
             ui.available_width().min(BAR_WIDTH),
         );
-        ui.label(sentence);
+        ui.label(tr(sentence));
         if !candidate.equivalent_to.is_empty() {
             let names: Vec<&str> = candidate
                 .equivalent_to
@@ -194,21 +204,24 @@ fn card_ui(
                 .collect();
             ui.colored_label(
                 ui.visuals().warn_fg_color,
-                format!("These data cannot tell it from {}.", names.join(" or ")),
+                tr(format!(
+                    "These data cannot tell it from {}.",
+                    names.join(" or ")
+                )),
             );
         }
-        egui::CollapsingHeader::new("Equation")
+        egui::CollapsingHeader::new(tr("Equation"))
             .id_salt(id.as_str())
             .show(ui, |ui| {
-                ui.monospace(&equation);
-                ui.small(source);
+                ui.monospace(tr(&equation));
+                ui.small(tr(source));
                 for p in &candidate.parameters {
-                    ui.label(format!(
+                    ui.label(tr(format!(
                         "{} ({}) = {}",
                         p.name,
                         p.label,
                         with_error(p.value, p.std_error, &p.unit)
-                    ));
+                    )));
                 }
             });
     });

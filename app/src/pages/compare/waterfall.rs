@@ -5,6 +5,7 @@ use hysteron_core::criticism::StepReport;
 
 use super::{Command, Compare, name_of, times_noise};
 use crate::hook::Targets;
+use crate::language::tr;
 use crate::theme;
 
 /// Width of the widest bar, in points.
@@ -22,7 +23,7 @@ pub(super) fn ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    ui.strong("Error, in units of the noise");
+    ui.strong(tr("Error, in units of the noise"));
     let way = page.way();
     let at = page.shown.as_ref().map_or(0, Vec::len);
     let steps: Vec<(String, &StepReport)> = (0..=way.len())
@@ -35,7 +36,7 @@ pub(super) fn ui(
             };
             let label = n
                 .checked_sub(1)
-                .map_or(first.to_owned(), |i| format!("+ {}", name_of(way[i])));
+                .map_or(tr(first), |i| format!("+ {}", tr(name_of(way[i]))));
             Some((label, report))
         })
         .collect();
@@ -54,7 +55,7 @@ pub(super) fn ui(
                     },
                 )
                 .inner
-                .on_hover_text("Show this step");
+                .on_hover_text(tr("Show this step"));
             targets.note(format!("step:{n}"), ui, &row);
             if row.clicked() && page.job.is_none() && n != at {
                 commands.push(Command::Step(n));
@@ -66,25 +67,25 @@ pub(super) fn ui(
             bar_ui(ui, report.step.error, floor, largest, color, width);
             ui.end_row();
         }
-        ui.label("   Noise floor");
+        ui.label(tr("   Noise floor"));
         ui.label(times_noise(floor));
         bar_ui(ui, floor, floor, largest, theme::NOISE, width);
         ui.end_row();
     });
-    ui.small("Bars on a logarithmic scale. Click a step to see it.");
+    ui.small(tr("Bars on a logarithmic scale. Click a step to see it."));
     if page.job.is_some() {
         return;
     }
     ui.horizontal_wrapped(|ui| {
         if let Some(last) = page.effects.last() {
-            let undo = ui.button(format!("Take back {}", name_of(*last)));
+            let undo = ui.button(tr(format!("Take back {}", name_of(*last))));
             targets.note("undo", ui, &undo);
             if undo.clicked() {
                 commands.push(Command::Undo);
             }
         }
         if let Some(next) = way.get(page.effects.len()) {
-            let redo = ui.button(format!("{} again", name_of(*next)));
+            let redo = ui.button(tr(format!("{} again", name_of(*next))));
             targets.note("redo", ui, &redo);
             if redo.clicked() {
                 commands.push(Command::Redo);

@@ -2,6 +2,7 @@
 
 use super::{Command, Compare};
 use crate::hook::Targets;
+use crate::language::tr;
 use crate::theme;
 
 /// A measurement that comes with the app.
@@ -43,15 +44,15 @@ impl Compare {
         egui::ScrollArea::vertical().show(ui, |ui| {
             ui.add_space(16.0);
             theme::answer_ui(ui, "What is missing from the model?");
-            ui.label("Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which physical effect would explain the rest.");
+            ui.label(tr("Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which physical effect would explain the rest."));
             self.message_ui(ui, commands);
             ui.add_space(12.0);
             for (index, built_in) in BUILT_IN.iter().enumerate() {
                 egui::Frame::group(ui.style()).show(ui, |ui| {
                     ui.set_width(ui.available_width().min(620.0));
-                    ui.strong(built_in.title);
-                    ui.label(built_in.story);
-                    let button = ui.button(format!("Open {}", built_in.id));
+                    ui.strong(tr(built_in.title));
+                    ui.label(tr(built_in.story));
+                    let button = ui.button(tr(format!("Open {}", built_in.id)));
                     targets.note(format!("builtin:{}", built_in.id), ui, &button);
                     if button.clicked() {
                         commands.push(Command::OpenBuiltIn(index));
@@ -59,11 +60,11 @@ impl Compare {
                 });
             }
             ui.add_space(12.0);
-            ui.label("Or your own: drop a CSV file anywhere on this window, or");
-            if ui.button("Open a file ...").clicked() {
+            ui.label(tr("Or your own: drop a CSV file anywhere on this window, or"));
+            if ui.button(tr("Open a file ...")).clicked() {
                 commands.push(Command::OpenDialog);
             }
-            ui.small("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process.");
+            ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process."));
         });
     }
 }

@@ -5,6 +5,7 @@ use hysteron_core::relay::Relay;
 use hysteron_core::simulate::Noise;
 
 use super::Explore;
+use crate::language::tr;
 use crate::pages::controls::slider;
 
 /// Time between the values of the noise, as a share of a second.
@@ -25,16 +26,16 @@ impl Explore {
     /// The paper's figures, one click each.
     fn figures_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("From the paper:");
+            ui.label(tr("From the paper:"));
             for figure in figures() {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
                     .add(
-                        egui::Button::new(format!("Fig. {}", figure.number))
+                        egui::Button::new(tr(format!("Fig. {}", figure.number)))
                             .selected(chosen)
                             .frame(true),
                     )
-                    .on_hover_text(format!("{}: {}", figure.title, figure.claim));
+                    .on_hover_text(tr(format!("{}: {}", figure.title, figure.claim)));
                 if button.clicked() {
                     self.figure = (!chosen).then_some(figure.number);
                     if !chosen {
@@ -47,12 +48,12 @@ impl Explore {
     }
 
     fn relay_ui(&mut self, ui: &mut egui::Ui) {
-        ui.strong("Relay");
+        ui.strong(tr("Relay"));
         let relay = &mut self.input.relay;
         let normal = Relay::default();
         slider(ui, &mut relay.gain, normal.gain, 1.0, 0.1..=5.0, "gain k")
-            .on_hover_text("How strongly the relay pushes");
-        slider(ui, &mut relay.hysteresis, normal.hysteresis, 1.0, 0.0..=1.0, "hysteresis ε").on_hover_text("How far the output must pass zero before the relay switches; also by dragging the dashed line in the Nyquist plot");
+            .on_hover_text(tr("How strongly the relay pushes"));
+        slider(ui, &mut relay.hysteresis, normal.hysteresis, 1.0, 0.0..=1.0, "hysteresis ε").on_hover_text(tr("How far the output must pass zero before the relay switches; also by dragging the dashed line in the Nyquist plot"));
         slider(
             ui,
             &mut relay.asymmetry,
@@ -61,7 +62,7 @@ impl Explore {
             -0.6..=0.6,
             "asymmetry a",
         )
-        .on_hover_text("How much stronger it pushes up than down");
+        .on_hover_text(tr("How much stronger it pushes up than down"));
         slider(
             ui,
             &mut relay.delay,
@@ -70,12 +71,13 @@ impl Explore {
             0.0..=2.0,
             "delay [s]",
         )
-        .on_hover_text("How late the switch takes effect");
+        .on_hover_text(tr("How late the switch takes effect"));
         let noise = &mut self.input.noise;
         let mut size = noise.map_or(0.0, |n| n.std_dev);
         let before = size;
-        slider(ui, &mut size, 0.0, 1.0, 0.0..=0.2, "noise σ")
-            .on_hover_text("Standard deviation of the noise on the output that the relay sees");
+        slider(ui, &mut size, 0.0, 1.0, 0.0..=0.2, "noise σ").on_hover_text(tr(
+            "Standard deviation of the noise on the output that the relay sees",
+        ));
         if size != before {
             let old = noise.unwrap_or(Noise {
                 std_dev: 0.0,
@@ -87,19 +89,19 @@ impl Explore {
                 ..old
             });
         }
-        ui.small("Double-click a slider to reset it.");
+        ui.small(tr("Double-click a slider to reset it."));
     }
 
     fn playback_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
             let label = self.playback.label();
-            if ui.button(label).clicked() {
+            if ui.button(tr(label)).clicked() {
                 self.playback.toggle();
             }
-            if ui.button("From the start").clicked() {
+            if ui.button(tr("From the start")).clicked() {
                 self.playback.clock = 0.0;
             }
-            ui.checkbox(&mut self.nyquist.margin, "phase-margin point S");
+            ui.checkbox(&mut self.nyquist.margin, tr("phase-margin point S"));
         });
     }
 }

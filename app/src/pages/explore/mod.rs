@@ -16,6 +16,7 @@ use super::playback::Playback;
 use super::{Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
+use crate::language::tr;
 use crate::pages::controls::claim_ui;
 use crate::theme;
 use nyquist::Nyquist;
@@ -221,17 +222,17 @@ impl Explore {
         match self.finished.as_ref().map(|f| &f.data) {
             Some(Ok((data, claims))) => {
                 theme::answer_ui(ui, &data.text);
-                ui.label(&data.stability);
+                ui.label(tr(&data.stability));
                 if let Some(number) = self.figure {
                     if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
                         claim_ui(ui, number, figure.title, figure.claim, claims);
                     }
                 } else {
-                    ui.label(&data.trust.text);
+                    ui.label(tr(&data.trust.text));
                 }
             }
             Some(Err(error)) => {
-                ui.colored_label(ui.visuals().warn_fg_color, error);
+                ui.colored_label(ui.visuals().warn_fg_color, tr(error));
             }
             None => {}
         }

@@ -6,6 +6,7 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, PlotTransfo
 use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
+use crate::language::tr;
 use crate::pages::chart::{caption_ui, curve, dot, still};
 use crate::theme;
 
@@ -70,26 +71,26 @@ impl Nyquist {
             plot.set_plot_bounds_y(-1.1 * view..=0.5 * view);
             plot.set_plot_bounds_x(-1.6 * view..=view);
             plot.line(
-                Line::new("plant P(jω)", curve(&data.nyquist))
+                Line::new(tr("plant P(jω)"), curve(&data.nyquist))
                     .color(theme::MEASURED)
                     .width(2.5),
             );
             plot.line(
-                Line::new("-1/N(a)", vec![[0.0, level], [-4.0 * view, level]])
+                Line::new(tr("-1/N(a)"), vec![[0.0, level], [-4.0 * view, level]])
                     .color(theme::DESCRIBING)
                     .width(2.5)
                     .style(LineStyle::dashed_loose()),
             );
             let marks: Vec<[f64; 2]> = data.intersections.iter().map(|i| i.point).collect();
             plot.points(
-                Points::new("predicted oscillation", curve(&marks))
+                Points::new(tr("predicted oscillation"), curve(&marks))
                     .color(theme::EXACT)
                     .radius(7.0)
                     .shape(MarkerShape::Diamond),
             );
             if self.margin {
                 plot.line(
-                    Line::new("unit circle", unit_circle())
+                    Line::new(tr("unit circle"), unit_circle())
                         .color(theme::RESIDUAL)
                         .width(1.5),
                 );
@@ -97,7 +98,7 @@ impl Nyquist {
             if let Some(phi) = shown_margin {
                 let at = [-phi.cos(), -phi.sin()];
                 plot.points(
-                    Points::new("S", vec![at])
+                    Points::new(tr("S"), vec![at])
                         .color(theme::RESIDUAL)
                         .radius(8.0)
                         .shape(MarkerShape::Square),
@@ -188,7 +189,7 @@ fn unit_circle() -> PlotPoints<'static> {
 }
 
 fn label(name: &'static str, text: String, at: [f64; 2]) -> Text {
-    let text = egui::RichText::new(text).size(15.0).strong();
+    let text = egui::RichText::new(tr(text)).size(15.0).strong();
     Text::new(name, PlotPoint::new(at[0], at[1]), text)
 }
 

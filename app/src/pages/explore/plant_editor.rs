@@ -2,6 +2,8 @@
 
 use hysteron_core::plant::{TransferFunction, parse, presets};
 
+use crate::language::tr;
+
 /// The text that is being typed.
 #[derive(Default)]
 pub struct PlantEditor {
@@ -28,7 +30,7 @@ impl PlantEditor {
         }
         let typed = ui
             .horizontal(|ui| {
-                let label = ui.label("P(s) =");
+                let label = ui.label(tr("P(s) ="));
                 let edit = egui::TextEdit::singleline(&mut self.text)
                     .font(egui::TextStyle::Monospace)
                     .hint_text("1/(s+1)^3")
@@ -40,14 +42,16 @@ impl PlantEditor {
             changed |= self.take(plant);
         }
         if let Some(error) = &self.error {
-            ui.colored_label(ui.visuals().warn_fg_color, error);
-            ui.small(format!("Still shown: P(s) = {}", formula(plant)));
-            if ui.button("Back to this plant").clicked() {
+            ui.colored_label(ui.visuals().warn_fg_color, tr(error));
+            ui.small(tr(format!("Still shown: P(s) = {}", formula(plant))));
+            if ui.button(tr("Back to this plant")).clicked() {
                 self.error = None;
                 self.read = None;
             }
         } else {
-            ui.small("Type as you write it: 2 e^{-0.5s}/(3s+1), (1-s)/((s+1)(s+2))");
+            ui.small(tr(
+                "Type as you write it: 2 e^{-0.5s}/(3s+1), (1-s)/((s+1)(s+2))",
+            ));
         }
         describe_ui(ui, plant);
         changed
@@ -77,14 +81,14 @@ fn presets_ui(ui: &mut egui::Ui, plant: &mut TransferFunction) -> bool {
         .and_then(|i| all.get(i))
         .map_or("your own plant", |p| p.name);
     let mut changed = false;
-    egui::ComboBox::from_label("plant")
-        .selected_text(name)
+    egui::ComboBox::from_label(tr("plant"))
+        .selected_text(tr(name))
         .width(250.0)
         .show_ui(ui, |ui| {
             for (index, preset) in all.iter().enumerate() {
                 let row = ui
-                    .selectable_label(chosen == Some(index), preset.name)
-                    .on_hover_text(preset.sentence);
+                    .selectable_label(chosen == Some(index), tr(preset.name))
+                    .on_hover_text(tr(preset.sentence));
                 if row.clicked() {
                     plant.clone_from(&preset.plant);
                     changed = true;
@@ -96,7 +100,7 @@ fn presets_ui(ui: &mut egui::Ui, plant: &mut TransferFunction) -> bool {
 
 /// Poles, zeros and gain: what the formula means.
 fn describe_ui(ui: &mut egui::Ui, plant: &TransferFunction) {
-    ui.collapsing("Poles, zeros, gain", |ui| {
+    ui.collapsing(tr("Poles, zeros, gain"), |ui| {
         let poles = plant
             .poles()
             .iter()
@@ -107,10 +111,10 @@ fn describe_ui(ui: &mut egui::Ui, plant: &TransferFunction) {
             .iter()
             .map(|z| root(z.re, z.im))
             .collect::<Vec<_>>();
-        ui.label(format!("poles [1/s]: {}", list(&poles)));
-        ui.label(format!("zeros [1/s]: {}", list(&zeros)));
-        ui.label(format!("gain P(0): {:.4}", plant.dc_gain()));
-        ui.label(format!("dead time: {} s", plant.dead_time));
+        ui.label(tr(format!("poles [1/s]: {}", list(&poles))));
+        ui.label(tr(format!("zeros [1/s]: {}", list(&zeros))));
+        ui.label(tr(format!("gain P(0): {:.4}", plant.dc_gain())));
+        ui.label(tr(format!("dead time: {} s", plant.dead_time)));
     });
 }
 

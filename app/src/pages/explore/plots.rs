@@ -4,6 +4,7 @@ use egui_plot::{HLine, Line, LineStyle, PlotPoints, VLine};
 use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
+use crate::language::tr;
 use crate::pages::chart::{caption_ui, curve, dot, still};
 use crate::theme;
 
@@ -35,13 +36,13 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) 
     let now = data.phase.get(index_at(data, clock)).copied();
     still("phase", "output y", "its rate dy/dt [1/s]", height).show(ui, |plot| {
         plot.line(
-            Line::new("from the start", curve(&data.phase))
+            Line::new(tr("from the start"), curve(&data.phase))
                 .color(start)
                 .width(1.2),
         );
         if data.simulated.is_some() {
             plot.line(
-                Line::new("limit cycle", curve(&data.cycle))
+                Line::new(tr("limit cycle"), curve(&data.cycle))
                     .color(theme::EXACT)
                     .width(3.0),
             );
@@ -66,7 +67,7 @@ pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64,
     let now = data.time.get(i).zip(data.output.get(i));
     still("time", "time [s]", "output y, input u", height).show(ui, |plot| {
         plot.line(
-            Line::new("input u", curve(&data.input))
+            Line::new(tr("input u"), curve(&data.input))
                 .color(theme::INPUT)
                 .width(1.2)
                 .allow_band(false),
@@ -78,20 +79,20 @@ pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64,
             .map(|(t, y)| [*t, *y])
             .collect();
         plot.line(
-            Line::new("output y", output)
+            Line::new(tr("output y"), output)
                 .color(theme::SIMULATED)
                 .width(2.5),
         );
         for eps in [relay.hysteresis, -relay.hysteresis] {
             plot.hline(
-                HLine::new("±ε", eps)
+                HLine::new(tr("±ε"), eps)
                     .color(theme::NOISE)
                     .style(LineStyle::dashed_dense()),
             );
         }
         if let Some((t, y)) = now {
             plot.vline(
-                VLine::new("now", *t)
+                VLine::new(tr("now"), *t)
                     .color(theme::MODEL.gamma_multiply(0.7))
                     .width(1.0),
             );

@@ -4,6 +4,7 @@ use hysteron_core::explore::{ExploreData, ultimate_gain};
 use hysteron_core::limit_cycle::Cycle;
 use hysteron_core::relay::Relay;
 
+use crate::language::tr;
 use crate::theme;
 
 /// Describing function, exact and simulated values with their differences in per cent.
@@ -15,7 +16,7 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
         .spacing([12.0, 4.0])
         .show(ui, |ui| {
             for title in ["", "period [s]", "amplitude", "K_u", "stable"] {
-                ui.strong(title);
+                ui.strong(tr(title));
             }
             ui.end_row();
             let rows = [
@@ -32,7 +33,7 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
                 row_ui(ui, name, color, relay, cycle, reference);
             }
         });
-    ui.small("Amplitude a: half of peak to peak. K_u = 4k/(πa). Below each: difference from the exact value.");
+    ui.small(tr("Amplitude a: half of peak to peak. K_u = 4k/(πa). Below each: difference from the exact value."));
 }
 
 fn row_ui(
@@ -44,12 +45,12 @@ fn row_ui(
     reference: Option<Cycle>,
 ) {
     ui.label(
-        egui::RichText::new(name)
+        egui::RichText::new(tr(name))
             .color(theme::readable(ui, color))
             .strong(),
     );
     let Some(cycle) = cycle else {
-        ui.label("none");
+        ui.label(tr("none"));
         ui.end_row();
         return;
     };
@@ -65,11 +66,13 @@ fn row_ui(
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             ui.label(format!("{value:.4}"));
             if let Some(exact) = exact {
-                ui.small(difference(value, exact));
+                ui.small(tr(difference(value, exact)));
             }
         });
     }
-    ui.label(cycle.stable.map_or("?", |s| if s { "yes" } else { "no" }));
+    ui.label(tr(cycle
+        .stable
+        .map_or("?", |s| if s { "yes" } else { "no" })));
     ui.end_row();
 }
 
@@ -93,7 +96,7 @@ pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
     let Some(first) = data.harmonics.first() else {
         return;
     };
-    ui.strong("Harmonics of the output");
+    ui.strong(tr("Harmonics of the output"));
     for harmonic in &data.harmonics {
         let share = harmonic.amplitude / first.amplitude;
         if share < LEAST {
@@ -102,7 +105,7 @@ pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
         ui.horizontal(|ui| {
             ui.add_sized(
                 [24.0, 14.0],
-                egui::Label::new(format!("{}", harmonic.order)),
+                egui::Label::new(tr(format!("{}", harmonic.order))),
             );
             let (rect, _) = ui.allocate_exact_size(egui::vec2(230.0, 10.0), egui::Sense::hover());
             let mut bar = rect;
@@ -113,13 +116,13 @@ pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
             ui.label(format!("{:.3} %", 100.0 * share));
         });
     }
-    ui.small("The describing function sees the first only.");
+    ui.small(tr("The describing function sees the first only."));
 }
 
 /// The equations behind the page.
 pub fn equations_ui(ui: &mut egui::Ui) {
-    ui.collapsing("The equations", |ui| {
-        ui.monospace("relay      u = -k h(y)\nbalance    P(jω) = -1/N(a)\n-1/N(a) = -π/(4k) [√(a² - ε²) + jε]\nmargin S   sin φ = πε/(4k)\nexact      (I + e^(Ah)) x0 = k [G(h-L)\n             - e^(A(h-L)) G(L)],  C x0 = ε");
-        ui.small("h: half period, L: all delays, G(t): step response of the state.");
+    ui.collapsing(tr("The equations"), |ui| {
+        ui.monospace(tr("relay      u = -k h(y)\nbalance    P(jω) = -1/N(a)\n-1/N(a) = -π/(4k) [√(a² - ε²) + jε]\nmargin S   sin φ = πε/(4k)\nexact      (I + e^(Ah)) x0 = k [G(h-L)\n             - e^(A(h-L)) G(L)],  C x0 = ε"));
+        ui.small(tr("h: half period, L: all delays, G(t): step response of the state."));
     });
 }

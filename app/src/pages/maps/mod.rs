@@ -11,6 +11,7 @@ use super::{Command, Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
+use crate::language::tr;
 use crate::tasks::MapTask;
 use crate::theme;
 use picture::Picture;
@@ -87,11 +88,11 @@ impl Maps {
     /// The map in one sentence.
     fn answer_ui(&self, ui: &mut egui::Ui) {
         if let Some(message) = &self.message {
-            ui.colored_label(ui.visuals().warn_fg_color, message);
+            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
         theme::answer_ui(ui, &self.answer());
         ui.horizontal(|ui| {
-            ui.label("Click a point to set it in Explore. Try another quantity: where is the describing function worst?");
+            ui.label(tr("Click a point to set it in Explore. Try another quantity: where is the describing function worst?"));
             if self.job.is_some() {
                 ui.spinner();
                 ui.label(format!("{:.0} %", 100.0 * self.map.share()));

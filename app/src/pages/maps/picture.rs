@@ -7,6 +7,7 @@ use hysteron_core::maps::{Map, MapInput, Outcome, Quantity};
 use super::side::stability;
 use super::{axis_title, number, with_unit};
 use crate::colors::viridis;
+use crate::language::tr;
 
 /// Pixels of the texture along a cell, so that hatching shows.
 const PIXELS: usize = 4;
@@ -67,7 +68,7 @@ impl Picture {
     ) -> Option<[f64; 2]> {
         let (x, y) = (input.x, input.y);
         let title = |axis: hysteron_core::maps::Axis| {
-            axis_title(axis.parameter.label(), axis.parameter.unit())
+            tr(axis_title(axis.parameter.label(), axis.parameter.unit()))
         };
         let shown = Plot::new("map")
             .height(height)
@@ -94,7 +95,7 @@ impl Picture {
                 if let Some(point) = point {
                     for (radius, color) in [(8.0, Color32::BLACK), (6.0, Color32::WHITE)] {
                         plot.points(
-                            Points::new("set in Explore", vec![point])
+                            Points::new(tr("set in Explore"), vec![point])
                                 .shape(MarkerShape::Cross)
                                 .radius(radius)
                                 .color(color),
@@ -175,24 +176,24 @@ fn scale(values: &[f64], quantity: Quantity) -> [f64; 2] {
 /// All values of a loop, beside the pointer.
 fn reading_ui(ui: &mut egui::Ui, names: [(&str, &str); 2], values: [f64; 2], outcome: &Outcome) {
     for ((label, unit), value) in names.iter().zip(values) {
-        ui.label(format!("{label} {}", with_unit(value, unit)));
+        ui.label(tr(format!("{label} {}", with_unit(value, unit))));
     }
     ui.separator();
     if outcome.exact.is_none() {
-        ui.label("no limit cycle");
+        ui.label(tr("no limit cycle"));
         return;
     }
     for quantity in Quantity::ALL {
         match (quantity, quantity.value(outcome)) {
             (Quantity::Stability, Some(v)) => {
-                ui.strong(stability(v));
+                ui.strong(tr(stability(v)));
             }
             (_, Some(v)) => {
-                ui.label(format!(
+                ui.label(tr(format!(
                     "{} {}",
                     quantity.label(),
                     with_unit(v, quantity.unit())
-                ));
+                )));
             }
             (_, None) => {}
         }
@@ -209,18 +210,18 @@ fn legend_ui(ui: &mut egui::Ui, quantity: Quantity, scale: [f64; 2], height: f32
                 let (rect, _) =
                     ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
                 ui.painter().rect_filled(rect, 2.0, viridis(value));
-                ui.label(text);
+                ui.label(tr(text));
             });
         }
     } else {
-        ui.label(axis_title(quantity.label(), quantity.unit()));
+        ui.label(tr(axis_title(quantity.label(), quantity.unit())));
         let (rect, _) = ui.allocate_exact_size(egui::vec2(BAR_WIDTH, bar), egui::Sense::hover());
         bar_ui(ui, rect, scale);
     }
     ui.add_space(8.0);
     let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
     hatch_ui(ui, rect);
-    ui.small("no limit cycle");
+    ui.small(tr("no limit cycle"));
 }
 
 fn bar_ui(ui: &egui::Ui, rect: egui::Rect, scale: [f64; 2]) {

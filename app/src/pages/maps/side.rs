@@ -3,40 +3,42 @@
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
 use super::{Command, Maps, with_unit};
+use crate::language::tr;
 
 impl Maps {
     /// Axes and quantity.
     pub(super) fn choices_ui(&mut self, ui: &mut egui::Ui) {
         ui.add_space(4.0);
-        ui.strong("Colour");
+        let colour = ui.strong(tr("Colour"));
         egui::ComboBox::from_id_salt("quantity")
-            .selected_text(self.quantity.label())
+            .selected_text(tr(self.quantity.label()))
             .width(280.0)
             .show_ui(ui, |ui| {
                 for quantity in Quantity::ALL {
-                    let row = ui.selectable_value(&mut self.quantity, quantity, quantity.label());
+                    let row =
+                        ui.selectable_value(&mut self.quantity, quantity, tr(quantity.label()));
                     if row.clicked() {
                         self.picture.outdated();
                     }
                 }
-            });
+            })
+            .response
+            .labelled_by(colour.id);
         ui.add_space(4.0);
-        ui.strong("Across");
         let base = self.input.base.clone();
-        axis_ui(ui, "across", &mut self.input.x, &base);
-        ui.strong("Upwards");
-        axis_ui(ui, "upwards", &mut self.input.y, &base);
-        if ui.button("Swap the axes").clicked() {
+        axis_ui(ui, "Across", &mut self.input.x, &base);
+        axis_ui(ui, "Upwards", &mut self.input.y, &base);
+        if ui.button(tr("Swap the axes")).clicked() {
             std::mem::swap(&mut self.input.x, &mut self.input.y);
             self.point = self.point.map(|[x, y]| [y, x]);
         }
         ui.add_space(4.0);
-        ui.small("Everything else is as set in Explore. Amplitude: half of peak to peak. K_u = 4k/(πa), with the exact amplitude a.");
+        ui.small(tr("Everything else is as set in Explore. Amplitude: half of peak to peak. K_u = 4k/(πa), with the exact amplitude a."));
     }
 
     /// Every quantity at the chosen point.
     pub(super) fn point_ui(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-        ui.strong("At one point");
+        ui.strong(tr("At one point"));
         let (x, y) = (self.input.x, self.input.y);
         let old = self.point.unwrap_or_else(|| {
             [x, y].map(|axis| {
@@ -49,7 +51,7 @@ impl Maps {
         for (value, axis) in point.iter_mut().zip([x, y]) {
             ui.add(
                 egui::Slider::new(value, axis.from..=axis.to)
-                    .text(axis.parameter.label())
+                    .text(tr(axis.parameter.label()))
                     .suffix(suffix(axis.parameter.unit()))
                     .max_decimals(3),
             );
@@ -68,16 +70,16 @@ impl Maps {
                             (Quantity::Stability, Some(v)) => stability(v).to_owned(),
                             (_, Some(v)) => with_unit(v, quantity.unit()),
                         };
-                        ui.label(quantity.label());
-                        ui.label(text);
+                        ui.label(tr(quantity.label()));
+                        ui.label(tr(text));
                         ui.end_row();
                     }
                 });
         }
         if self.point.is_some() {
-            ui.label("Explore is set to this point.");
+            ui.label(tr("Explore is set to this point."));
         }
-        if ui.button("Show this loop in Explore").clicked() {
+        if ui.button(tr("Show this loop in Explore")).clicked() {
             self.choose(point, commands);
             commands.push(Command::Go("explore"));
         }
@@ -103,28 +105,32 @@ fn axis_ui(
     axis: &mut Axis,
     base: &hysteron_core::explore::ExploreInput,
 ) {
+    let title = ui.strong(tr(name));
     egui::ComboBox::from_id_salt(name)
-        .selected_text(axis.parameter.label())
+        .selected_text(tr(axis.parameter.label()))
         .width(280.0)
         .show_ui(ui, |ui| {
             for parameter in Parameter::ALL {
                 let chosen = axis.parameter == parameter;
-                if ui.selectable_label(chosen, parameter.label()).clicked() && !chosen {
+                if ui.selectable_label(chosen, tr(parameter.label())).clicked() && !chosen {
                     *axis = Axis::around(parameter, base);
                 }
             }
-        });
+        })
+        .response
+        .labelled_by(title.id);
     ui.horizontal(|ui| {
         let speed = 0.005 * (axis.to - axis.from).abs().max(1e-3);
         for (label, value) in [("from", &mut axis.from), ("to", &mut axis.to)] {
-            ui.label(label);
+            let label = ui.label(tr(label));
             ui.add(
                 egui::DragValue::new(value)
                     .speed(speed)
                     .range(0.0..=1e4)
                     .max_decimals(3)
                     .suffix(suffix(axis.parameter.unit())),
-            );
+            )
+            .labelled_by(label.id);
         }
     });
 }

@@ -4,6 +4,7 @@ use egui::Ui;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
+use crate::language::tr;
 use crate::pages::Desk;
 
 /// Name and story of an experiment.
@@ -16,10 +17,6 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
         Experiment::Relay => (
             "Relay",
             "A relay on the velocity: shows friction and what comes late.",
-        ),
-        Experiment::Drifting => (
-            "Drifting relay",
-            "A relay whose drift turns round: shows a gap. Its record is too long for a link.",
         ),
         Experiment::Stairs => (
             "Staircase",
@@ -51,28 +48,28 @@ fn handy(unit: &'static str) -> (f64, &'static str) {
 impl Bench {
     pub(super) fn choices_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
         ui.horizontal_wrapped(|ui| {
-            ui.label("Experiment:");
+            ui.label(tr("Experiment:"));
             for experiment in Experiment::ALL {
                 let (name, story) = words(experiment);
-                ui.selectable_value(&mut self.experiment, experiment, name)
-                    .on_hover_text(story);
+                ui.selectable_value(&mut self.experiment, experiment, tr(name))
+                    .on_hover_text(tr(story));
             }
         });
-        ui.label(words(self.experiment).1);
+        ui.label(tr(words(self.experiment).1));
         ui.horizontal_wrapped(|ui| {
-            ui.label("Hidden:");
+            ui.label(tr("Hidden:"));
             for (by_hand, id, name) in [
                 (false, "surprise", "Surprise me: none, one or two effects"),
                 (true, "choose", "I choose"),
             ] {
-                let radio = ui.radio_value(&mut self.by_hand, by_hand, name);
+                let radio = ui.radio_value(&mut self.by_hand, by_hand, tr(name));
                 desk.targets.note(format!("mystery:{id}"), ui, &radio);
             }
         });
         if self.by_hand {
             self.menu_ui(ui);
         } else {
-            ui.label(self.surprise());
+            ui.label(tr(self.surprise()));
         }
     }
 
@@ -102,15 +99,15 @@ impl Bench {
             0 => "Effects that this experiment hardly shows".to_owned(),
             n => format!("Effects that this experiment hardly shows ({n} chosen)"),
         };
-        egui::CollapsingHeader::new(title)
-            .id_salt("hardly shown")
+        egui::CollapsingHeader::new(tr(title))
+            .id_salt("hardly_shown")
             .show(ui, |ui| {
                 for effect in others {
                     self.effect_ui(ui, effect);
                 }
             });
         if self.picks.is_empty() {
-            ui.label("Nothing is chosen: then nothing is missing, which is for your students to find out.");
+            ui.label(tr("Nothing is chosen: then nothing is missing, which is for your students to find out."));
         }
     }
 
@@ -124,10 +121,10 @@ impl Bench {
             let full = self.picks.len() >= MOST && !chosen;
             let tick = ui.add_enabled(
                 other.is_none() && !full,
-                egui::Checkbox::new(&mut chosen, name),
+                egui::Checkbox::new(&mut chosen, tr(name)),
             );
             if let Some(other) = other {
-                tick.on_disabled_hover_text(format!("Not together with {}", other.name()));
+                tick.on_disabled_hover_text(tr(format!("Not together with {}", other.name())));
             } else if tick.changed() {
                 self.picks.retain(|p| p.effect != effect.id);
                 if chosen {
@@ -151,8 +148,12 @@ fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
     for strength in Strength::ALL {
         let at = effect.value(strength);
         let button = ui
-            .selectable_label(*value == at, strength_name(strength))
-            .on_hover_text(format!("{}: {}", effect.name(), strength_name(strength)));
+            .selectable_label(*value == at, tr(strength_name(strength)))
+            .on_hover_text(tr(format!(
+                "{}: {}",
+                effect.name(),
+                strength_name(strength)
+            )));
         if button.clicked() {
             *value = at;
         }
@@ -161,7 +162,7 @@ fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
     let (scale, unit) = handy(unit);
     let [least, most] = effect.range;
     let mut shown = *value * scale;
-    let text = ui.label(format!("{label} {symbol}"));
+    let text = ui.label(format!("{} {symbol}", tr(label)));
     let field = egui::DragValue::new(&mut shown)
         .range(least * scale..=most * scale)
         .speed(0.002 * most * scale)

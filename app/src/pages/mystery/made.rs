@@ -4,6 +4,7 @@ use egui_plot::Line;
 use hysteron_core::mystery::Mystery;
 
 use crate::export::Table;
+use crate::language::tr;
 use crate::link::VERSION;
 use crate::pages::chart::{caption_ui, curve, envelope, still};
 use crate::pages::{Command, Desk};
@@ -60,11 +61,10 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
     } = product;
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.strong(format!("{name} is made."));
-        ui.label(format!(
-            "{samples} samples in {duration:.1} s. What is hidden stands in it, sealed."        ));
+        ui.strong(tr(format!("{name} is made.")));
+        ui.label(tr(format!("{samples} samples in {duration:.1} s. What is hidden stands in it, sealed.")));
         ui.horizontal_wrapped(|ui| {
-            let save = ui.button("Save the file");
+            let save = ui.button(tr("Save the file"));
             desk.targets.note("mystery:save", ui, &save);
             if save.clicked() {
                 desk.commands.push(Command::Save(Box::new(Document {
@@ -76,9 +76,9 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
             }
             let fits = link.len() <= LONGEST;
             let copy = ui
-                .add_enabled(fits, egui::Button::new("Copy the mystery's link"))
-                .on_hover_text("Opens this record in Compare; the truth is sealed in it")
-                .on_disabled_hover_text("This record is too long for a link: save the file");
+                .add_enabled(fits, egui::Button::new(tr("Copy the mystery's link")))
+                .on_hover_text(tr("Opens this record in Compare; the truth is sealed in it"))
+                .on_disabled_hover_text(tr("This record is too long for a link: save the file"));
             desk.targets.note("mystery:copy", ui, &copy);
             if copy.clicked() {
                 desk.commands.push(Command::CopyOther {
@@ -87,9 +87,9 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
                 });
             }
             if !fits {
-                ui.label("It is too long for a link: save the file.");
+                ui.label(tr("It is too long for a link: save the file."));
             }
-            let open = ui.button("Open it in Compare");
+            let open = ui.button(tr("Open it in Compare"));
             desk.targets.note("mystery:open", ui, &open);
             if open.clicked() {
                 desk.commands.push(if fits {
@@ -100,8 +100,8 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
             }
         });
         caption_ui(ui, "What was measured", &[("velocity", theme::MEASURED)]);
-        still("mystery record", "time [s]", "v1 [rad/s]", 200.0).show(ui, |plot| {
-            plot.line(Line::new("velocity", curve(points)).color(theme::MEASURED));
+        still("mystery_record", "time [s]", "v1 [rad/s]", 200.0).show(ui, |plot| {
+            plot.line(Line::new(tr("velocity"), curve(points)).color(theme::MEASURED));
         });
     });
 }

@@ -13,6 +13,7 @@ use super::{Command, Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
+use crate::language::tr;
 use crate::tasks::MysteryTask;
 use crate::theme;
 use made::Product;
@@ -76,7 +77,7 @@ impl Bench {
 
     fn page_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         theme::answer_ui(ui, "Which effect is hidden?");
-        ui.label("The bench hides physics in a drive and measures it. The truth travels with the record, sealed with your word: find it, then reveal it.");
+        ui.label(tr("The bench hides physics in a drive and measures it. The truth travels with the record, sealed with your word: find it, then reveal it."));
         ui.add_space(6.0);
         if ui.available_width() < NARROW {
             self.teacher_ui(ui, desk);
@@ -108,33 +109,35 @@ impl Bench {
 
     fn make_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label("Word");
+            let label = ui.label(tr("Word"));
             ui.add(
                 egui::TextEdit::singleline(&mut self.word)
                     .desired_width(220.0)
-                    .hint_text("a few words are better than one"),
+                    .hint_text(tr("a few words are better than one")),
             )
             .labelled_by(label.id)
-            .on_hover_text("Whoever has it can open the truth; without it nobody can, you neither");
+            .on_hover_text(tr(
+                "Whoever has it can open the truth; without it nobody can, you neither",
+            ));
             let obstacle = self.obstacle();
             let ready = obstacle.is_none() && self.job.is_none();
-            let make = ui.add_enabled(ready, egui::Button::new("Make the mystery"));
+            let make = ui.add_enabled(ready, egui::Button::new(tr("Make the mystery")));
             desk.targets.note("mystery:make", ui, &make);
             if make.clicked() {
                 self.make(ui.ctx());
             }
             if self.job.is_some() {
                 ui.spinner();
-                ui.label("The bench is running ...");
-                if ui.button("Cancel").clicked() {
+                ui.label(tr("The bench is running ..."));
+                if ui.button(tr("Cancel")).clicked() {
                     self.job = None;
                 }
             } else if let Some(obstacle) = obstacle {
-                ui.label(obstacle);
+                ui.label(tr(obstacle));
             }
         });
         if let Some(message) = &self.message {
-            ui.colored_label(ui.visuals().warn_fg_color, message);
+            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
     }
 }
@@ -143,9 +146,9 @@ impl Bench {
 fn student_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.strong("You were given a mystery?");
-        ui.label("Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is left. Then say the word under Reveal: the truth stands beside your model, with points for the effects and for the numbers.");
-        let go = ui.button("Go to Compare");
+        ui.strong(tr("You were given a mystery?"));
+        ui.label(tr("Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is left. Then say the word under Reveal: the truth stands beside your model, with points for the effects and for the numbers."));
+        let go = ui.button(tr("Go to Compare"));
         desk.targets.note("mystery:student", ui, &go);
         if go.clicked() {
             desk.commands.push(Command::Go("compare"));

@@ -5,6 +5,7 @@ use hysteron_core::tuning::PhaseMarginReport;
 
 use super::draw::{beside, curve, number, plot, table};
 use super::{Seen, Stage};
+use crate::language::tr;
 use crate::theme;
 
 pub const STAGE: Stage = Stage {
@@ -35,16 +36,16 @@ fn answer(seen: Seen<'_>) -> String {
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let Ok(found) = &seen.report.phase_margin else {
-        ui.label("Try a smaller phase margin.");
+        ui.label(tr("Try a smaller phase margin."));
         return;
     };
     let design = &found.adaptation.design;
-    ui.label(format!(
+    ui.label(tr(format!(
         "A relay with k = π a/4 = {} and ε = a sin φ = {} stands in series with the gain K, which is changed from run to run until the amplitude is a = {}. Every step squares the error.",
         number(design.gain),
         number(design.hysteresis),
         number(design.amplitude)
-    ));
+    )));
     beside(
         ui,
         height,
@@ -70,12 +71,12 @@ fn convergence_ui(ui: &mut egui::Ui, found: &PhaseMarginReport, height: f32) {
     .include_y(0.0)
     .show(ui, |plot| {
         plot.line(
-            Line::new("relative error", curve(&errors))
+            Line::new(tr("relative error"), curve(&errors))
                 .color(theme::SIMULATED)
                 .width(2.0),
         );
         plot.points(
-            Points::new("relative error", curve(&errors))
+            Points::new(tr("relative error"), curve(&errors))
                 .color(theme::SIMULATED)
                 .radius(5.0)
                 .shape(MarkerShape::Circle),
@@ -88,22 +89,22 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     let heads = ["n", "K(n)", "error of a", "period [s]", "order"];
     table(ui, "adaptation table", &heads, |ui| {
         for (n, step) in adaptation.steps.iter().enumerate() {
-            ui.label(n.to_string());
+            ui.label(tr(n.to_string()));
             ui.label(format!("{:.6}", step.gain));
             ui.label(format!("{:+.1e}", step.error));
             ui.label(number(step.test.period));
             // The first order needs three errors.
             let order = n.checked_sub(2).and_then(|i| adaptation.orders.get(i));
-            ui.label(order.map_or_else(String::new, |o| format!("{o:.2}")));
+            ui.label(tr(order.map_or_else(String::new, |o| format!("{o:.2}"))));
             ui.end_row();
         }
     });
-    ui.small("Order 2: quadratic convergence (Steffensen's secant through a run and its proportional correction).");
+    ui.small(tr("Order 2: quadratic convergence (Steffensen's secant through a run and its proportional correction)."));
     if let Some(truth) = found.true_phase_margin {
-        ui.label(format!(
+        ui.label(tr(format!(
             "The true phase margin with this K is {:.2}°: what is missing to the wanted {:.0}° is the describing function's error.",
             truth.to_degrees(),
             adaptation.design.phase_margin.to_degrees()
-        ));
+        )));
     }
 }

@@ -5,6 +5,7 @@ use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{AMPLITUDE_CONVENTION, Pid, RULES, TuningInput, Wish, rule};
 
 use super::Tune;
+use crate::language::tr;
 use crate::pages::Desk;
 use crate::pages::controls::slider;
 
@@ -21,10 +22,10 @@ impl Tune {
     }
 
     fn relay_ui(&mut self, ui: &mut egui::Ui, relay: &mut Relay) {
-        ui.strong("Relay");
+        ui.strong(tr("Relay"));
         let normal = Relay::default();
         slider(ui, &mut relay.gain, normal.gain, 1.0, 0.1..=5.0, "gain k")
-            .on_hover_text("How strongly the relay pushes in the experiment");
+            .on_hover_text(tr("How strongly the relay pushes in the experiment"));
         slider(
             ui,
             &mut relay.hysteresis,
@@ -33,9 +34,9 @@ impl Tune {
             0.0..=1.0,
             "hysteresis ε",
         )
-        .on_hover_text(
+        .on_hover_text(tr(
             "Keeps the relay from switching on noise, and makes the ultimate gain look smaller",
-        );
+        ));
         slider(
             ui,
             &mut self.asymmetry,
@@ -44,7 +45,9 @@ impl Tune {
             -0.6..=0.6,
             "asymmetry a",
         )
-        .on_hover_text("Of the relay in step 4 only: without it a test tells no static gain");
+        .on_hover_text(tr(
+            "Of the relay in step 4 only: without it a test tells no static gain",
+        ));
         slider(
             ui,
             &mut relay.delay,
@@ -53,11 +56,13 @@ impl Tune {
             0.0..=2.0,
             "delay [s]",
         )
-        .on_hover_text("How late the actuator acts; part of the plant for the controller");
+        .on_hover_text(tr(
+            "How late the actuator acts; part of the plant for the controller",
+        ));
     }
 
     fn wishes_ui(&mut self, ui: &mut egui::Ui) {
-        ui.strong("Controller");
+        ui.strong(tr("Controller"));
         slider(
             ui,
             &mut self.input.wish.phase_margin,
@@ -66,7 +71,9 @@ impl Tune {
             5.0..=80.0,
             "phase margin [°]",
         )
-        .on_hover_text("What the relay of step 3 and the rule of Astrom and Hagglund aim at");
+        .on_hover_text(tr(
+            "What the relay of step 3 and the rule of Astrom and Hagglund aim at",
+        ));
         let mut gain = self.input.present.gain;
         slider(
             ui,
@@ -76,25 +83,27 @@ impl Tune {
             0.1..=5.0,
             "gain before",
         )
-        .on_hover_text("The proportional controller that the tuned one replaces");
+        .on_hover_text(tr(
+            "The proportional controller that the tuned one replaces",
+        ));
         self.input.present = Pid::p(gain);
         let chosen = rule(&self.input.rule).map_or("", |r| r.name);
-        egui::ComboBox::from_label("rule")
-            .selected_text(chosen)
+        egui::ComboBox::from_label(tr("rule"))
+            .selected_text(tr(chosen))
             .width(240.0)
             .show_ui(ui, |ui| {
                 for rule in &RULES {
                     let same = self.input.rule == rule.id;
-                    if ui.selectable_label(same, rule.name).clicked() {
+                    if ui.selectable_label(same, tr(rule.name)).clicked() {
                         rule.id.clone_into(&mut self.input.rule);
                     }
                 }
             });
         if let Ok(rule) = rule(&self.input.rule) {
-            ui.small(rule.sentence);
-            ui.small(rule.source);
+            ui.small(tr(rule.sentence));
+            ui.small(tr(rule.source));
         }
-        ui.small("Double-click a slider to reset it.");
+        ui.small(tr("Double-click a slider to reset it."));
     }
 }
 
@@ -102,35 +111,33 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     let all = presets();
     let plant = &mut desk.relay_loop.plant;
     let chosen = all.iter().find(|p| p.plant == *plant);
-    egui::ComboBox::from_label("plant")
-        .selected_text(chosen.map_or("that of Explore", |p| p.name))
+    egui::ComboBox::from_label(tr("plant"))
+        .selected_text(tr(chosen.map_or("that of Explore", |p| p.name)))
         .width(220.0)
         .show_ui(ui, |ui| {
             for preset in &all {
                 let same = chosen.is_some_and(|c| c.name == preset.name);
-                if ui.selectable_label(same, preset.name).clicked() {
+                if ui.selectable_label(same, tr(preset.name)).clicked() {
                     plant.clone_from(&preset.plant);
                 }
             }
         });
     if let Some(preset) = chosen {
-        ui.small(preset.sentence);
+        ui.small(tr(preset.sentence));
     }
-    ui.small("Plant and relay are those of Explore.");
+    ui.small(tr("Plant and relay are those of Explore."));
 }
 
 fn equations_ui(ui: &mut egui::Ui) {
-    ui.collapsing("The equations", |ui| {
-        ui.monospace(
-            "(4) K_u = 4k/(π √(a² - ε²)), T_u: period\n\
+    ui.collapsing(tr("The equations"), |ui| {
+        ui.monospace(tr("(4) K_u = 4k/(π √(a² - ε²)), T_u: period\n\
              (7) k = π a/4,  ε = a sin φ\n\
              (8) K(n+1): secant through two runs\n\
              (9) C(jω) = S/M\n\
-             C(s) = K (1 + 1/(Ti s) + Td s/(Tf s + 1))",
-        );
-        ui.small(format!("Convention: {AMPLITUDE_CONVENTION}."));
-        ui.small(
+             C(s) = K (1 + 1/(Ti s) + Td s/(Tf s + 1))"));
+        ui.small(tr(format!("Convention: {AMPLITUDE_CONVENTION}.")));
+        ui.small(tr(
             "φ: phase margin, M: identified point of the Nyquist curve, S: where it shall go.",
-        );
+        ));
     });
 }

@@ -3,6 +3,7 @@
 use egui_plot::{Legend, Line, LineStyle, Plot, PlotPoints};
 use hysteron_core::tuning::{Pid, RelayTest};
 
+use crate::language::tr;
 use crate::theme;
 
 /// Colour of what was before.
@@ -49,8 +50,8 @@ pub fn controller(pid: &Pid) -> String {
 pub fn plot<'a>(id: &'a str, height: f32, x: &'a str, y: &'a str) -> Plot<'a> {
     Plot::new(id)
         .height(height)
-        .x_axis_label(x)
-        .y_axis_label(y)
+        .x_axis_label(tr(x))
+        .y_axis_label(tr(y))
         .allow_scroll(false)
         .legend(Legend::default())
 }
@@ -80,20 +81,20 @@ pub fn run_ui(ui: &mut egui::Ui, id: &str, test: &RelayTest, height: f32) {
     let end = test.run.time.last().copied().unwrap_or(0.0);
     plot(id, height, "time [s]", "output y, input u").show(ui, |plot| {
         plot.line(
-            Line::new("input u", staircase(&test.run.input, end))
+            Line::new(tr("input u"), staircase(&test.run.input, end))
                 .color(theme::INPUT)
                 .width(1.2)
                 .allow_band(false),
         );
         for eps in [test.relay.hysteresis, -test.relay.hysteresis] {
             plot.line(
-                Line::new("threshold ±ε", curve(&[[0.0, eps], [end, eps]]))
+                Line::new(tr("threshold ±ε"), curve(&[[0.0, eps], [end, eps]]))
                     .color(theme::NOISE)
                     .style(LineStyle::dashed_dense()),
             );
         }
         plot.line(
-            Line::new("output y", series(&test.run.time, &test.run.output))
+            Line::new(tr("output y"), series(&test.run.time, &test.run.output))
                 .color(theme::SIMULATED)
                 .width(2.5),
         );
@@ -126,7 +127,7 @@ pub fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut
             .spacing([14.0, 4.0])
             .show(ui, |ui| {
                 for head in heads {
-                    ui.strong(*head);
+                    ui.strong(tr(*head));
                 }
                 ui.end_row();
                 rows(ui);

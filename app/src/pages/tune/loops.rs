@@ -5,6 +5,7 @@ use hysteron_core::tuning::{LoopReport, Response};
 
 use super::draw::{AFTER, BEFORE, beside, controller, curve, maybe, number, plot, series, table};
 use super::{Seen, Stage};
+use crate::language::tr;
 use crate::theme;
 
 pub const STAGE: Stage = Stage {
@@ -40,11 +41,11 @@ fn answer(seen: Seen<'_>) -> String {
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let report = seen.report;
     let after = report.after.as_ref().ok();
-    ui.label(format!(
+    ui.label(tr(format!(
         "Before: {}. After: {}.",
         controller(&report.before.pid),
         after.map_or_else(|| "none".to_owned(), |a| controller(&a.pid))
-    ));
+    )));
     let half = (0.5 * height - 16.0).max(200.0);
     beside(
         ui,
@@ -91,7 +92,7 @@ fn response_ui(
         .show(ui, |plot| {
             let response = part(before);
             plot.line(
-                Line::new("before", series(&response.time, &response.output))
+                Line::new(tr("before"), series(&response.time, &response.output))
                     .color(BEFORE)
                     .width(2.0)
                     .style(LineStyle::dashed_loose())
@@ -99,7 +100,7 @@ fn response_ui(
             );
             if let Some(response) = after.map(part) {
                 plot.line(
-                    Line::new("after", series(&response.time, &response.output))
+                    Line::new(tr("after"), series(&response.time, &response.output))
                         .color(AFTER)
                         .width(2.5)
                         .allow_band(false),
@@ -119,14 +120,14 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
                 .map(|t| [t.cos(), t.sin()])
                 .collect();
             plot.line(
-                Line::new("unit circle", curve(&circle))
+                Line::new(tr("unit circle"), curve(&circle))
                     .color(theme::NOISE.gamma_multiply(0.6))
                     .width(1.0)
                     .style(LineStyle::dashed_dense())
                     .allow_band(false),
             );
             plot.line(
-                Line::new("before", curve(&before.nyquist))
+                Line::new(tr("before"), curve(&before.nyquist))
                     .color(BEFORE)
                     .width(2.0)
                     .style(LineStyle::dashed_loose())
@@ -134,14 +135,14 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
             );
             if let Some(after) = after {
                 plot.line(
-                    Line::new("after", curve(&after.nyquist))
+                    Line::new(tr("after"), curve(&after.nyquist))
                         .color(AFTER)
                         .width(2.5)
                         .allow_band(false),
                 );
             }
             plot.points(
-                Points::new("-1", curve(&[[-1.0, 0.0]]))
+                Points::new(tr("-1"), curve(&[[-1.0, 0.0]]))
                     .color(theme::MODEL)
                     .radius(6.0)
                     .shape(MarkerShape::Cross),
@@ -152,9 +153,9 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
 fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, horizon: f64) {
     table(ui, "loops", &["", "before", "after"], |ui| {
         let mut row = |name: &str, value: &dyn Fn(&LoopReport) -> String| {
-            ui.label(name);
-            ui.colored_label(BEFORE, value(before));
-            ui.colored_label(AFTER, after.map_or_else(String::new, value));
+            ui.label(tr(name));
+            ui.colored_label(BEFORE, tr(value(before)));
+            ui.colored_label(AFTER, tr(after.map_or_else(String::new, value)));
             ui.end_row();
         };
         row("stable", &|l| match l.unstable_poles {
@@ -186,10 +187,10 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
         row("load error [s]", &|l| stable(l, number(l.load.iae)));
         row("load peak", &|l| stable(l, number(l.load.peak)));
     });
-    ui.small(format!(
+    ui.small(tr(format!(
         "Load error: integral of |y| over the {} s shown. Without integral action it grows with the time.",
         number(horizon)
-    ));
+    )));
 }
 
 fn dash() -> String {

@@ -17,6 +17,7 @@ use super::{Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
+use crate::language::tr;
 use crate::tasks::TuneTask;
 use crate::theme;
 
@@ -109,7 +110,7 @@ impl View for Tune {
         if ui.available_width() < 700.0 {
             egui::CentralPanel::default().show(ui, |ui| {
                 egui::ScrollArea::vertical().show(ui, |ui| {
-                    egui::CollapsingHeader::new("Plant, relay and wishes")
+                    egui::CollapsingHeader::new(tr("Plant, relay and wishes"))
                         .show(ui, |ui| self.controls_ui(ui, desk));
                     self.ask(ui.ctx(), desk);
                     self.steps_ui(ui, desk);
@@ -220,14 +221,14 @@ impl Tune {
     fn steps_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         ui.horizontal_wrapped(|ui| {
             for (index, stage) in STAGES.iter().enumerate() {
-                let text = format!("{} {}", index + 1, stage.title);
+                let text = format!("{} {}", index + 1, tr(stage.title));
                 let button = ui.selectable_label(self.stage == index, text);
                 desk.targets.note(format!("step:{}", stage.id), ui, &button);
                 if button.clicked() {
                     self.stage = index;
                 }
             }
-            if self.stage + 1 < STAGES.len() && ui.button("Next step").clicked() {
+            if self.stage + 1 < STAGES.len() && ui.button(tr("Next step")).clicked() {
                 self.stage += 1;
             }
             if self.job.is_some() {
@@ -238,12 +239,12 @@ impl Tune {
 
     fn stage_ui(&mut self, ui: &mut egui::Ui, height: f32) {
         if let Some(message) = &self.message {
-            ui.colored_label(ui.visuals().warn_fg_color, message);
+            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
         let Some(stage) = STAGES.get(self.stage) else {
             return;
         };
-        ui.label(stage.question);
+        ui.label(tr(stage.question));
         let Some((input, report)) = &self.shown else {
             let waits = self.message.is_none();
             let text = if waits {

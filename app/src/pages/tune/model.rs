@@ -4,6 +4,7 @@ use hysteron_core::tuning::{AsymmetricTest, Model, TuningError};
 
 use super::draw::{beside, number, run_ui, table};
 use super::{Seen, Stage};
+use crate::language::tr;
 
 pub const STAGE: Stage = Stage {
     id: "model",
@@ -47,16 +48,16 @@ fn words(model: &Model) -> String {
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let Ok(found) = &seen.report.asymmetric else {
-        ui.label("Give the relay some asymmetry: then its input has a mean, which tells the static gain.");
+        ui.label(tr("Give the relay some asymmetry: then its input has a mean, which tells the static gain."));
         return;
     };
-    ui.label(format!(
+    ui.label(tr(format!(
         "The input now has a mean, which tells the static gain; the half periods {} s and {} s have the ratio {}, which tells how much of the lag is dead time: {:.0} %.",
         number(found.test.on_time),
         number(found.test.off_time),
         number(found.half_period_ratio),
         100.0 * found.normalised_dead_time
-    ));
+    )));
     beside(
         ui,
         height,
@@ -77,12 +78,12 @@ fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {
     );
     for failed in [&found.berner, &found.shen] {
         if let Err(error) = failed {
-            ui.small(error.to_string());
+            ui.small(tr(error.to_string()));
         }
     }
-    ui.small("Berner, Hagglund and Astrom: from the half periods. Shen, Wu and Yu: through the points of the Nyquist curve at 0 and at ω.");
+    ui.small(tr("Berner, Hagglund and Astrom: from the half periods. Shen, Wu and Yu: through the points of the Nyquist curve at 0 and at ω."));
     let point = &found.point;
-    ui.label(format!(
+    ui.label(tr(format!(
         "Point of the Nyquist curve at ω = {} rad/s: {} {} j.",
         number(point.omega),
         number(point.value[0]),
@@ -91,14 +92,14 @@ fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {
             if point.value[1] < 0.0 { "-" } else { "+" },
             number(point.value[1].abs())
         )
-    ));
+    )));
     if let Some(gain) = found.static_gain {
-        ui.label(format!("Static gain: {}.", number(gain)));
+        ui.label(tr(format!("Static gain: {}.", number(gain))));
     }
 }
 
 fn row_ui(ui: &mut egui::Ui, name: &str, model: &Result<Model, TuningError>) {
-    ui.label(name);
+    ui.label(tr(name));
     let cells = match model {
         Ok(Model::Lag {
             gain,
@@ -113,7 +114,7 @@ fn row_ui(ui: &mut egui::Ui, name: &str, model: &Result<Model, TuningError>) {
         Err(_) => ["none".to_owned(), String::new(), String::new()],
     };
     for cell in cells {
-        ui.label(cell);
+        ui.label(tr(cell));
     }
     ui.end_row();
 }

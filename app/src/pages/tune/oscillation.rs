@@ -2,6 +2,7 @@
 
 use super::draw::{number, run_ui};
 use super::{Seen, Stage};
+use crate::language::tr;
 
 pub const STAGE: Stage = Stage {
     id: "oscillation",
@@ -21,6 +22,6 @@ fn answer(seen: Seen<'_>) -> String {
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
-    ui.label("From rest to the settled cycle. No model is needed: these two numbers are the whole measurement. Amplitude: half of peak to peak.");
+    ui.label(tr("From rest to the settled cycle. No model is needed: these two numbers are the whole measurement. Amplitude: half of peak to peak."));
     run_ui(ui, "relay run", &seen.report.test, height);
 }

@@ -4,6 +4,7 @@ use hysteron_core::tuning::{LoopReport, rule};
 
 use super::draw::{controller, maybe, number, table};
 use super::{Seen, Stage};
+use crate::language::tr;
 
 pub const STAGE: Stage = Stage {
     id: "rules",
@@ -22,7 +23,7 @@ fn answer(seen: Seen<'_>) -> String {
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
-    ui.label("The same experiment, different wishes: compare robustness (Ms: 1.4 is calm, 2 is lively, beyond that is risky) with how well a load is rejected. Click a rule to take it.");
+    ui.label(tr("The same experiment, different wishes: compare robustness (Ms: 1.4 is calm, 2 is lively, beyond that is risky) with how well a load is rejected. Click a rule to take it."));
     let heads = [
         "rule",
         "K",
@@ -39,27 +40,27 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
                 continue;
             };
             let name = ui
-                .selectable_label(*chosen == rule.id, rule.name)
-                .on_hover_text(format!("{}\n{}", rule.sentence, rule.source));
+                .selectable_label(*chosen == rule.id, tr(rule.name))
+                .on_hover_text(tr(format!("{}\n{}", rule.sentence, rule.source)));
             if name.clicked() {
                 rule.id.clone_into(chosen);
             }
             match &report.outcome {
                 Ok(found) => cells_ui(ui, found),
                 Err(error) => {
-                    ui.label("none").on_hover_text(error.to_string());
+                    ui.label(tr("none")).on_hover_text(tr(error.to_string()));
                 }
             }
             ui.end_row();
         }
     });
-    ui.small(format!(
+    ui.small(tr(format!(
         "Ms: maximum sensitivity, 1/Ms is the least distance of the loop's Nyquist curve from -1. Load error: integral of |y| over {} s after a step of 1 at the plant's input.",
         number(seen.report.horizon)
-    ));
+    )));
     for report in &seen.report.rules {
         if let (Ok(rule), Err(error)) = (rule(&report.rule), &report.outcome) {
-            ui.small(format!("{}: {error}.", rule.name));
+            ui.small(format!("{}: {}.", tr(rule.name), tr(error.to_string())));
         }
     }
 }
@@ -71,12 +72,14 @@ fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
     let derivative = (pid.derivative_time > 0.0).then_some(pid.derivative_time);
     ui.label(maybe(derivative, "-"));
     let Some(margins) = found.margins else {
-        ui.label("unstable");
+        ui.label(tr("unstable"));
         return;
     };
     ui.label(format!("{:.2}", margins.max_sensitivity));
     let phase = margins.phase_margin.map(f64::to_degrees);
-    ui.label(phase.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}")));
+    ui.label(tr(
+        phase.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}"))
+    ));
     ui.label(format!("{:.0}", 100.0 * found.set_point.overshoot));
     ui.label(number(found.load.iae));
 }

@@ -5,6 +5,7 @@ use hysteron_core::tuning::Ultimate;
 
 use super::draw::{beside, curve, error, maybe, number, plot, table};
 use super::{Seen, Stage};
+use crate::language::tr;
 use crate::theme;
 
 pub const STAGE: Stage = Stage {
@@ -41,7 +42,7 @@ fn off(share: f64) -> String {
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
-    ui.label("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis, and K_u is read off the axis. Try less hysteresis.");
+    ui.label(tr("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis, and K_u is read off the axis. Try less hysteresis."));
     beside(
         ui,
         height,
@@ -60,14 +61,14 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
         .default_y_bounds(-0.8 * reach, 0.4 * reach)
         .show(ui, |plot| {
             plot.line(
-                Line::new("plant P(jω)", curve(&report.nyquist))
+                Line::new(tr("plant P(jω)"), curve(&report.nyquist))
                     .color(theme::MEASURED)
                     .width(2.0)
                     .allow_band(false),
             );
             let line = curve(&[[-20.0, found[1]], [0.0, found[1]]]);
             plot.line(
-                Line::new("relay -1/N(a)", line)
+                Line::new(tr("relay -1/N(a)"), line)
                     .color(theme::DESCRIBING)
                     .width(2.5)
                     .style(LineStyle::dashed_loose())
@@ -75,7 +76,7 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
             );
             let mut mark = |name: &str, at: [f64; 2], color, shape| {
                 plot.points(
-                    Points::new(name, curve(&[at]))
+                    Points::new(tr(name), curve(&[at]))
                         .color(color)
                         .radius(6.0)
                         .shape(shape),
@@ -111,11 +112,11 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
     let heads = ["", "K_u", "error", "T_u [s]", "error"];
     table(ui, "ultimate table", &heads, |ui| {
         let mut row = |name: &str, u: Option<Ultimate>, gain: Option<f64>, period: Option<f64>| {
-            ui.label(name);
-            ui.label(maybe(u.map(|u| u.gain), "none"));
-            ui.label(error(gain));
-            ui.label(maybe(u.map(|u| u.period), "none"));
-            ui.label(error(period));
+            ui.label(tr(name));
+            ui.label(tr(maybe(u.map(|u| u.gain), "none")));
+            ui.label(tr(error(gain)));
+            ui.label(tr(maybe(u.map(|u| u.period), "none")));
+            ui.label(tr(error(period)));
             ui.end_row();
         };
         row(
@@ -132,16 +133,16 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
         );
         row("true", found.truth, None, None);
     });
-    ui.small(format!(
+    ui.small(tr(format!(
         "Here the {}. Half or twice of K_u is what a program reports that counts otherwise.",
         found.amplitude_convention
-    ));
+    )));
     ui.add_space(6.0);
     let point = &seen.report.point;
-    ui.label(format!(
+    ui.label(tr(format!(
         "The point itself, at ω = {} rad/s, is off by {:.1} % of its size, since the describing function takes the output for a sine; by the first harmonic of the record it is exact (off by {:.0e}).",
         number(point.point.omega),
         100.0 * point.error,
         point.fourier_error
-    ));
+    )));
 }

@@ -1,0 +1,158 @@
+//! The language of the interface. The app thinks in English; what it says is translated where it is drawn:
+//! `ui.label(tr("..."))`. So state, links, tests and files are the same in every language.
+//!
+//! A language is a folder of texts in `assets/` and a line in [`Language::ALL`]; see `docs/translation.md`.
+
+mod catalogue;
+
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeSet, HashMap};
+
+pub use catalogue::{Catalogue, is_plain};
+
+/// A language that the app speaks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Language {
+    /// What stands in the source.
+    #[default]
+    English,
+    /// Deutsch.
+    German,
+}
+
+/// The German texts, by the parts of the app.
+const GERMAN: [&str; 7] = [
+    include_str!("../../../assets/german/app.txt"),
+    include_str!("../../../assets/german/backlash.txt"),
+    include_str!("../../../assets/german/compare.txt"),
+    include_str!("../../../assets/german/effects.txt"),
+    include_str!("../../../assets/german/errors.txt"),
+    include_str!("../../../assets/german/loops.txt"),
+    include_str!("../../../assets/german/mystery.txt"),
+];
+
+impl Language {
+    /// All of them, in the order of the menu.
+    pub const ALL: [Self; 2] = [Self::English, Self::German];
+
+    /// Its name in itself.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::English => "English",
+            Self::German => "Deutsch",
+        }
+    }
+
+    /// Its code (ISO 639-1), also where it is kept.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::English => "en",
+            Self::German => "de",
+        }
+    }
+
+    /// The language of a code, or of a locale such as `de_AT.UTF-8` or `de-CH`.
+    pub fn of_locale(locale: &str) -> Option<Self> {
+        let code = locale.split(['_', '-', '.', '@']).next()?;
+        let code = code.to_ascii_lowercase();
+        Self::ALL.into_iter().find(|l| l.code() == code)
+    }
+
+    /// That of the system or the browser; English where the app does not speak it.
+    pub fn of_system() -> Self {
+        system_locale()
+            .and_then(|locale| Self::of_locale(&locale))
+            .unwrap_or_default()
+    }
+
+    /// Its texts; English has none.
+    fn sources(self) -> &'static [&'static str] {
+        match self {
+            Self::English => &[],
+            Self::German => &GERMAN,
+        }
+    }
+
+    /// All that is said in it, by what it is in English.
+    pub fn catalogue(self) -> Catalogue {
+        Catalogue::read(self.sources())
+    }
+}
+
+/// The locale of messages, as POSIX names it (IEEE 1003.1, 8.2).
+#[cfg(not(target_arch = "wasm32"))]
+fn system_locale() -> Option<String> {
+    ["LC_ALL", "LC_MESSAGES", "LANG"]
+        .into_iter()
+        .filter_map(|name| std::env::var(name).ok())
+        .find(|locale| !locale.is_empty())
+}
+
+#[cfg(target_arch = "wasm32")]
+fn system_locale() -> Option<String> {
+    web_sys::window()?.navigator().language()
+}
+
+/// Sentences that are remembered; numbers in them change from frame to frame.
+const REMEMBERED: usize = 2048;
+
+/// Untranslated texts that are remembered.
+const MISSED: usize = 200;
+
+#[derive(Default)]
+struct Speaker {
+    catalogue: Option<Catalogue>,
+    said: HashMap<String, String>,
+    missed: BTreeSet<String>,
+}
+
+thread_local! {
+    // Whatever draws does so on one thread.
+    static LANGUAGE: Cell<Language> = const { Cell::new(Language::English) };
+    static SPEAKER: RefCell<Speaker> = RefCell::default();
+}
+
+/// The language that is spoken on this thread.
+pub fn spoken() -> Language {
+    LANGUAGE.get()
+}
+
+/// Speaks a language on this thread from now on.
+pub fn speak(language: Language) {
+    if LANGUAGE.replace(language) != language {
+        SPEAKER.set(Speaker::default());
+    }
+}
+
+/// A text of the interface in the language that is spoken: the English one where it has no translation.
+pub fn tr(text: impl AsRef<str>) -> String {
+    let text = text.as_ref();
+    let language = spoken();
+    if language == Language::English {
+        return text.to_owned();
+    }
+    SPEAKER.with_borrow_mut(|speaker| speaker.say(language, text))
+}
+
+/// What was said since the language was chosen and had no translation.
+pub fn missed() -> Vec<String> {
+    SPEAKER.with_borrow(|speaker| speaker.missed.iter().cloned().collect())
+}
+
+impl Speaker {
+    fn say(&mut self, language: Language, text: &str) -> String {
+        if let Some(said) = self.said.get(text) {
+            return said.clone();
+        }
+        let catalogue = self.catalogue.get_or_insert_with(|| language.catalogue());
+        let said = catalogue.translate(text);
+        if !said.complete && self.missed.len() < MISSED {
+            self.missed.insert(text.to_owned());
+        }
+        if self.said.len() >= REMEMBERED {
+            self.said.clear();
+        }
+        self.said.insert(text.to_owned(), said.text.clone());
+        said.text
+    }
+}

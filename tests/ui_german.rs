@@ -1,0 +1,359 @@
+//! The app in German: every text has a translation, and none is left out on any page.
+
+#[path = "support/source.rs"]
+mod source;
+#[path = "support/ui.rs"]
+mod ui;
+
+use std::collections::BTreeSet;
+
+use egui::epaint::{ClippedShape, Shape};
+use egui_kittest::kittest::Queryable as _;
+use hysteron::language::{self, Catalogue, Language, is_plain};
+use hysteron::lessons;
+use ui::{App, NARROW, WIDE, app, click, finish, show, state};
+
+/// Where the app can be, so that all its pages, their steps, and what they say in several cases are seen.
+const PLACES: [&str; 33] = [
+    "v1;start",
+    "v1;lessons",
+    "v1;explore",
+    "v1;explore;explore.figure=3",
+    "v1;explore;explore.figure=4",
+    "v1;explore;explore.figure=5",
+    "v1;explore;explore.margin=true;loop.relay.hysteresis=0.5",
+    "v1;explore;loop.relay.hysteresis=0",
+    "v1;explore;loop.relay.asymmetry=0.3",
+    "v1;explore;loop.relay.hysteresis=0;loop.plant.denominator=1,1",
+    "v1;explore;loop.plant.denominator=1,1;loop.relay.hysteresis=2",
+    "v1;explore;loop.plant.numerator=-1,-1,4;loop.plant.denominator=1,6,11,6;loop.relay.hysteresis=0.5",
+    "v1;maps",
+    "v1;maps;maps.quantity=stability",
+    "v1;maps;maps.quantity=amplitude_error;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
+    "v1;tune",
+    "v1;tune;tune.step=ultimate",
+    "v1;tune;tune.step=adaptation",
+    "v1;tune;tune.step=model",
+    "v1;tune;tune.step=model;tune.asymmetry=0",
+    "v1;tune;tune.step=rules",
+    "v1;tune;tune.step=loops",
+    "v1;backlash",
+    "v1;backlash;backlash.figure=7",
+    "v1;backlash;backlash.figure=10",
+    "v1;backlash;backlash.figure=11",
+    "v1;backlash;backlash.figure=12",
+    "v1;backlash;backlash.run.command.relay.relay.asymmetry=0",
+    "v1;backlash;backlash.file=drive-10",
+    "v1;compare",
+    "v1;compare;compare.file=drive-02",
+    "v1;compare;compare.file=process-02",
+    "v1;compare;compare.file=drive-02;compare.effects=%5B%22coulomb_friction%22%5D",
+];
+
+/// A window so tall that nothing is below the fold.
+const TALL: [f32; 2] = [1600.0, 2400.0];
+
+/// Texts that are the same in both languages.
+const SAME: [&str; 6] = ["Start", "Export", "Motor", "P(jω)", "Name", "Deutsch"];
+
+fn painted(harness: &App) -> BTreeSet<String> {
+    let mut texts = BTreeSet::new();
+    for ClippedShape { shape, .. } in &harness.output().shapes {
+        collect(shape, &mut texts);
+    }
+    texts
+}
+
+fn collect(shape: &Shape, texts: &mut BTreeSet<String>) {
+    match shape {
+        Shape::Text(text) => {
+            texts.insert(text.galley.job.text.clone());
+        }
+        Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, texts)),
+        _ => {}
+    }
+}
+
+fn speak(harness: &mut App, language: Language) {
+    harness.state_mut().speak(language);
+    finish(harness);
+}
+
+/// What stands on the screen in English when German is spoken: what has no translation, and what is painted
+/// in both languages alike.
+#[derive(Default)]
+struct English(BTreeSet<String>);
+
+impl English {
+    /// Looks at the app as it is now.
+    fn look(&mut self, harness: &mut App) {
+        speak(harness, Language::English);
+        let english = painted(harness);
+        speak(harness, Language::German);
+        let german = painted(harness);
+        let alike = german.intersection(&english);
+        let words = alike.filter(|t| !is_plain(t) && !SAME.contains(&t.trim()));
+        self.0.extend(words.cloned());
+        self.0.extend(language::missed());
+    }
+
+    fn assert_none(&self) {
+        assert!(self.0.is_empty(), "{:#?}", self.0);
+    }
+}
+
+/// Opens what can be opened on the page.
+fn unfold(harness: &mut App, labels: &[&str]) {
+    for label in labels {
+        if let Some(found) = harness.query_all_by_label(label).next() {
+            found.click_accesskit();
+        }
+        finish(harness);
+    }
+}
+
+fn german() -> Catalogue {
+    Language::German.catalogue()
+}
+
+#[test]
+fn the_texts_have_the_same_slots_in_both_languages() {
+    assert_eq!(german().faults(), Vec::<String>::new());
+    assert!(german().english().count() > 1000);
+}
+
+/// Files whose texts are not drawn: the command line, what writes and reads files, and what tests read.
+const NOT_DRAWN: [&str; 26] = [
+    "app/src/cli/",
+    "app/src/bin/",
+    "app/src/export/",
+    "app/src/language/",
+    "app/src/hook.rs",
+    "app/src/main.rs",
+    "app/src/start.rs",
+    "app/src/address.rs",
+    "app/src/pages/compare/export.rs",
+    "app/src/lessons/mod.rs",
+    "app/src/lessons/question.rs",
+    "app/src/lessons/markdown.rs",
+    "core/src/report/",
+    "core/src/scenario.rs",
+    "core/src/drive/scenario.rs",
+    "core/src/drive/record.rs",
+    "core/src/backlash/map.rs",
+    "core/src/measurement/mat.rs",
+    "core/src/criticism/report.rs",
+    "core/src/criticism/next_experiment/limits.rs",
+    "core/src/user_model/write.rs",
+    "core/src/plant/state_space.rs",
+    "core/src/model/",
+    // Its sentences are for the report of a command; the page has its own.
+    "core/src/tuning/report.rs",
+    "core/src/tuning/experiment.rs",
+    "core/src/tuning/closed_loop.rs",
+];
+
+/// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
+const NO_TEXTS: [&str; 19] = [
+    "hysteron language",
+    "hysteron lessons",
+    "hysteron look",
+    "copy link",
+    "lesson below",
+    "phase of the motor",
+    "own effect",
+    "map choices",
+    "adaptation table",
+    "loop nyquist",
+    "asymmetric run",
+    "ultimate table",
+    "a download has no dialog",
+    "only a browser asks for it",
+    "a thread needs no messages",
+    "reads like fail",
+    "the message of each says it",
+    "no numbers",
+    "MNm",
+];
+
+/// Whether a literal says something: several words, or one that begins a sentence.
+fn speaks(text: &str) -> bool {
+    let words = text.split(|c: char| !c.is_alphabetic());
+    let words: Vec<&str> = words.filter(|w| w.chars().count() > 1).collect();
+    let several = text.contains(' ') && words.len() > 1;
+    let begins =
+        words.len() == 1 && text.trim() == words[0] && text.starts_with(char::is_uppercase);
+    !is_plain(text) && (several || begins)
+}
+
+/// Whether a known text has all that a literal says, in its order. The core puts sentences together of several
+/// literals, so that one may be a part of what is known.
+fn holds(known: &str, literal: &str) -> bool {
+    let mut rest = known;
+    literal
+        .split("{}")
+        .all(|part| match rest.find(part.trim()) {
+            Some(at) => {
+                rest = &rest[at + part.trim().len()..];
+                true
+            }
+            None => false,
+        })
+}
+
+#[test]
+fn every_text_in_the_source_has_a_german_one() {
+    let known: Vec<String> = german().english().collect();
+    let mut unknown = BTreeSet::new();
+    for file in ["app/src", "core/src"].into_iter().flat_map(source::files) {
+        let name = file.display().to_string();
+        if NOT_DRAWN.iter().any(|n| name.contains(n)) {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).expect("a file");
+        for literal in source::literals(&text) {
+            let mut sentences = literal.split(". ");
+            let said = sentences.all(|s| known.iter().any(|k| holds(k, s)));
+            if speaks(&literal) && !said && !NO_TEXTS.contains(&literal.as_str()) {
+                unknown.insert(format!("{name}: {literal:?}"));
+            }
+        }
+    }
+    assert!(unknown.is_empty(), "{unknown:#?}");
+}
+
+#[test]
+fn no_page_leaves_a_text_in_english() {
+    let mut english = English::default();
+    let mut harness = app("start", TALL);
+    for place in PLACES {
+        show(&mut harness, place);
+        unfold(
+            &mut harness,
+            &[
+                "Die Gleichungen",
+                "Pole, Nullstellen, Verstärkung",
+                "Gleichung",
+            ],
+        );
+        english.look(&mut harness);
+    }
+    for page in harness.state().page_ids() {
+        let mut harness = app(page, NARROW);
+        finish(&mut harness);
+        english.look(&mut harness);
+    }
+    english.assert_none();
+}
+
+#[test]
+fn what_a_record_cannot_decide_is_said_in_german() {
+    let mut english = English::default();
+    let mut harness = app("compare", TALL);
+    let path = format!("{}/../tests/data/drive-05.csv", env!("CARGO_MANIFEST_DIR"));
+    let bytes = std::fs::read(path).expect("a file of the tests");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open(&ctx, "drive-05", &bytes);
+    speak(&mut harness, Language::German);
+    for look in ["Über der Zeit", "Wo es versagt", "Fingerabdrücke"] {
+        unfold(&mut harness, &[look]);
+        english.look(&mut harness);
+    }
+    unfold(&mut harness, &["Verstärkungsasymmetrie hinzufügen"]);
+    harness.get_by_label("Mach diesen Versuch");
+    unfold(
+        &mut harness,
+        &[
+            "Grenzen des Versuchs",
+            "Was andere Versuche verraten würden",
+            "Ein eigener Effekt",
+        ],
+    );
+    english.look(&mut harness);
+    english.assert_none();
+}
+
+#[test]
+fn what_is_refused_is_said_in_german() {
+    let mut english = English::default();
+    let mut harness = app("compare", TALL);
+    let ctx = harness.ctx.clone();
+    for (name, text) in [
+        ("a.csv", ""),
+        ("b.csv", "t [s],u [N m],x1 [rad]\n0,1\n"),
+        ("c.csv", "t,u,x1\n0,1,2\n"),
+        ("d.csv", "t [s],u [N m],x1 [rad]\n0,1,2\n"),
+        ("e.toml", "kind = \"drive\"\n[parameters]\nJ9 = 1\n"),
+    ] {
+        harness.state_mut().open(&ctx, name, text.as_bytes());
+        english.look(&mut harness);
+    }
+    for link in [
+        "nonsense",
+        "v9;explore",
+        "v1;nowhere",
+        "v1;explore;loop.relay.gain=-1",
+        "v1;explore;loop.relay.delay=-1",
+        "v1;explore;explore.figure=9",
+        "v1;backlash;backlash.run.duration=-1",
+        "v1;backlash;backlash.run.drive.motor.inertia=0",
+        "v1;maps;maps.across.from=9",
+        "v1;tune;tune.rule=mine",
+        "v1;compare;compare.file=mine",
+    ] {
+        let refused = harness.state_mut().open_link(&ctx, link);
+        assert!(refused.is_err(), "{link}");
+        english.look(&mut harness);
+    }
+    english.assert_none();
+}
+
+#[test]
+fn the_lessons_ask_the_same_in_both_languages() {
+    let [english, german] = Language::ALL.map(|l| lessons::all_in(l).collect::<Vec<_>>());
+    assert_eq!(english.len(), german.len());
+    for (english, german) in english.iter().zip(&german) {
+        let id = english.id;
+        assert_eq!(german.faults(), Vec::<String>::new(), "{id}");
+        assert_eq!((german.id, german.minutes), (id, english.minutes));
+        assert_eq!(german.asked(), english.asked(), "{id}");
+        let links = |l: &lessons::Lesson| l.links().collect::<Vec<_>>();
+        assert_eq!(links(german), links(english), "{id}");
+        assert_ne!(german.title, english.title);
+    }
+}
+
+#[test]
+fn a_language_is_chosen_in_the_menu_and_a_lesson_is_taken_in_it() {
+    let mut harness = app("lessons", WIDE);
+    click(&mut harness, "Look");
+    click(&mut harness, "Deutsch");
+    assert_eq!(state(&harness)["language"], "de");
+    click(&mut harness, "1  Das Relais und seine Hysterese");
+    harness.get_by_label("Deine Antwort").focus();
+    harness.step();
+    harness.get_by_label("Deine Antwort").type_text("0,7616");
+    harness.step();
+    unfold(&mut harness, &["Prüfen"]);
+    assert_eq!(state(&harness)["solved"], serde_json::json!(["relay"]));
+    harness.get_by_label("Richtig.");
+    harness.get_by_label("Nächste Lektion: Warum schwingt er?");
+    click(&mut harness, "Ansicht");
+    click(&mut harness, "English");
+    harness.get_by_label("Right.");
+}
+
+#[test]
+fn a_locale_names_a_language() {
+    for (locale, language) in [
+        ("de", Some(Language::German)),
+        ("de_AT.UTF-8", Some(Language::German)),
+        ("DE-ch", Some(Language::German)),
+        ("en_US", Some(Language::English)),
+        ("C.UTF-8", None),
+        ("delta", None),
+        ("", None),
+    ] {
+        assert_eq!(Language::of_locale(locale), language, "{locale}");
+    }
+}
