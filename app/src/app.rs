@@ -1,19 +1,22 @@
 //! The shell around the pages.
 
+mod give;
+
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::util::undoer::Undoer;
 
+pub use give::GivenFile;
+
 use crate::address;
 use crate::bar::Bar;
 use crate::document::Document;
-use crate::export::{self, Table};
 use crate::language::{self, Language, tr};
 use crate::notice::{self, Notice};
-use crate::pages::{Command, Desk, View, registry};
+use crate::pages::{Command, Desk, View, chart_menu, registry};
+use crate::shortcuts;
 use crate::theme::{self, Look};
 use crate::{lessons, link};
-use crate::{save, shortcuts};
 
 /// The app: the pages and what they share.
 pub struct HysteronApp {
@@ -30,8 +33,12 @@ pub struct HysteronApp {
     /// Whether the sheet with the keys is open.
     sheet: bool,
     notice: Option<Notice>,
+    /// Axes of the plots of the last frame, x and y, in English.
+    plots: Vec<[String; 2]>,
     /// What saving a file has to say.
     said: (Sender<String>, Receiver<String>),
+    /// Where files go that are given away, if not to the user.
+    diverted: Option<Sender<GivenFile>>,
     #[cfg(target_arch = "wasm32")]
     address: address::Address,
     frame: u64,
@@ -50,7 +57,9 @@ impl Default for HysteronApp {
             language: Language::English,
             sheet: false,
             notice: None,
+            plots: Vec::new(),
             said: channel(),
+            diverted: None,
             #[cfg(target_arch = "wasm32")]
             address: address::Address::default(),
             frame: 0,
@@ -128,6 +137,7 @@ impl HysteronApp {
         self.frame += 1;
         language::speak(self.language);
         self.desk.targets.clear();
+        chart_menu::clear(ui.ctx());
         self.take_dropped_files(ui.ctx());
         self.take_pasted_link(ui.ctx());
         for page in &mut self.pages {
@@ -149,6 +159,8 @@ impl HysteronApp {
         if let Some(page) = self.pages.get_mut(self.front) {
             page.ui(ui, desk);
         }
+        self.give_plots(ui);
+        self.plots = chart_menu::axes(ui.ctx());
         for command in std::mem::take(&mut self.desk.commands) {
             self.carry_out(ui, command);
         }
@@ -183,22 +195,11 @@ impl HysteronApp {
                     page.toggle_play();
                 }
             }
-            Command::SaveSvg => {
-                let text = self.svg(ui);
-                let name = format!("{}.svg", self.document().page);
-                self.save(ctx, name, "Picture", "image/svg+xml", text);
-            }
-            Command::SavePng => {
-                let (said, again) = (self.said.0.clone(), ctx.clone());
-                let page = self.document().page;
-                ctx.request_screenshot(move |image| {
-                    save::save_png(&again, &page, export::png(&image), &said);
-                });
-            }
+            Command::SaveSvg => self.save_svg(ui, &self.document().page, ctx.content_rect()),
+            Command::SavePng => self.save_png(ctx, &self.document().page, ctx.content_rect()),
             Command::SaveTable(name) => {
                 if let Some(table) = self.tables().into_iter().find(|t| t.name == name) {
-                    let file = format!("{}.csv", name.replace(' ', "-"));
-                    self.save(ctx, file, "Table", "text/csv;charset=utf-8", table.csv());
+                    self.save_table(ctx, &name.replace(' ', "-"), &table);
                 }
             }
             Command::NextLook => self.set_look(ctx, self.look().next()),
@@ -247,42 +248,6 @@ impl HysteronApp {
                 }
             }
         }
-    }
-
-    /// The page in front as a picture of lines; to be asked for within the frame, after drawing.
-    pub fn svg(&self, ui: &egui::Ui) -> String {
-        let (layer, size) = (ui.layer_id(), ui.ctx().content_rect());
-        let ground = ui.visuals().panel_fill;
-        ui.ctx().graphics(|graphics| {
-            let shapes = graphics
-                .get(layer)
-                .into_iter()
-                .flat_map(egui::layers::PaintList::all_entries);
-            export::svg(shapes, size, ground)
-        })
-    }
-
-    /// The numbers behind the page in front.
-    pub fn tables(&self) -> Vec<Table> {
-        let front = self.pages.get(self.front);
-        front.map_or_else(Vec::new, |p| p.tables())
-    }
-
-    fn save(
-        &self,
-        ctx: &egui::Context,
-        name: String,
-        kind: &'static str,
-        media: &'static str,
-        text: String,
-    ) {
-        let document = save::Document {
-            name,
-            kind,
-            media,
-            text,
-        };
-        save::save(ctx, document, &self.said.0);
     }
 
     /// Goes back to what was set before the last change, or forth again.
@@ -336,6 +301,7 @@ impl HysteronApp {
         state["language"] = self.language.code().into();
         state["link"] = self.link().into();
         state["notice"] = self.notice.as_ref().map(Notice::text).into();
+        state["plots"] = serde_json::json!(self.plots);
         state["targets"] = self.desk.targets.to_json();
         state
     }

@@ -26,7 +26,7 @@ mod theme;
 #[cfg(not(target_arch = "wasm32"))]
 mod work;
 
-pub use app::HysteronApp;
+pub use app::{GivenFile, HysteronApp};
 #[cfg(not(target_arch = "wasm32"))]
 pub use start::run_native;
 #[cfg(target_arch = "wasm32")]

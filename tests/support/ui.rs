@@ -17,6 +17,46 @@ pub const WIDE: [f32; 2] = [1280.0, 800.0];
 /// A narrow window, points.
 pub const NARROW: [f32; 2] = [420.0, 800.0];
 
+/// A window so tall that nothing is below the fold.
+pub const TALL: [f32; 2] = [1600.0, 2400.0];
+
+/// Where the app can be, so that all its pages, their steps, and what they say in several cases are seen.
+pub const PLACES: [&str; 33] = [
+    "v1;start",
+    "v1;lessons",
+    "v1;explore",
+    "v1;explore;explore.figure=3",
+    "v1;explore;explore.figure=4",
+    "v1;explore;explore.figure=5",
+    "v1;explore;explore.margin=true;loop.relay.hysteresis=0.5",
+    "v1;explore;loop.relay.hysteresis=0",
+    "v1;explore;loop.relay.asymmetry=0.3",
+    "v1;explore;loop.relay.hysteresis=0;loop.plant.denominator=1,1",
+    "v1;explore;loop.plant.denominator=1,1;loop.relay.hysteresis=2",
+    "v1;explore;loop.plant.numerator=-1,-1,4;loop.plant.denominator=1,6,11,6;loop.relay.hysteresis=0.5",
+    "v1;maps",
+    "v1;maps;maps.quantity=stability",
+    "v1;maps;maps.quantity=amplitude_error;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
+    "v1;tune",
+    "v1;tune;tune.step=ultimate",
+    "v1;tune;tune.step=adaptation",
+    "v1;tune;tune.step=model",
+    "v1;tune;tune.step=model;tune.asymmetry=0",
+    "v1;tune;tune.step=rules",
+    "v1;tune;tune.step=loops",
+    "v1;backlash",
+    "v1;backlash;backlash.figure=7",
+    "v1;backlash;backlash.figure=10",
+    "v1;backlash;backlash.figure=11",
+    "v1;backlash;backlash.figure=12",
+    "v1;backlash;backlash.run.command.relay.relay.asymmetry=0",
+    "v1;backlash;backlash.file=drive-10",
+    "v1;compare",
+    "v1;compare;compare.file=drive-02",
+    "v1;compare;compare.file=process-02",
+    "v1;compare;compare.file=drive-02;compare.effects=%5B%22coulomb_friction%22%5D",
+];
+
 /// The app in its window.
 pub type App = Harness<'static, HysteronApp>;
 

@@ -11,7 +11,7 @@ pub use svg::picture as svg;
 pub struct Table {
     /// What they are, also the name of the file.
     pub name: &'static str,
-    /// Title with unit, and values, of each column; all are equally long.
+    /// Title with unit, and values, of each column; shorter ones end with empty fields.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
@@ -44,7 +44,7 @@ impl Table {
         let titles: Vec<String> = self.columns.iter().map(|(t, _)| quoted(t)).collect();
         let mut text = titles.join(",");
         text.push('\n');
-        let rows = self.columns.iter().map(|(_, v)| v.len()).min().unwrap_or(0);
+        let rows = self.columns.iter().map(|(_, v)| v.len()).max().unwrap_or(0);
         for row in 0..rows {
             for (i, (_, values)) in self.columns.iter().enumerate() {
                 if i > 0 {

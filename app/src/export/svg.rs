@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use egui::epaint::{ClippedShape, ColorMode, PathStroke, TextShape};
 use egui::{Color32, FontFamily, Mesh, Pos2, Rect, Shape, Stroke};
 
-/// The shapes of a layer as an SVG file of this size on this ground. Pictures made of pixels (the colours of a
+/// The shapes of a layer at this place as an SVG file on this ground. Pictures made of pixels (the colours of a
 /// parameter map) are left out: SVG is for lines and words.
 pub fn picture<'a>(
     shapes: impl Iterator<Item = &'a ClippedShape>,
@@ -15,7 +15,9 @@ pub fn picture<'a>(
     let mut svg = Svg::default();
     let mut clip = None;
     for clipped in shapes {
-        if !clipped.clip_rect.is_positive() {
+        let seen = clipped.clip_rect.intersect(size);
+        let bounds = clipped.shape.visual_bounding_rect();
+        if !seen.is_positive() || (bounds.is_finite() && !bounds.intersects(size)) {
             continue;
         }
         if clip != Some(clipped.clip_rect) {

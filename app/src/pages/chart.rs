@@ -1,8 +1,15 @@
 //! What the plots of several pages share.
 
-use std::ops::RangeInclusive;
+use std::ops::{Deref, DerefMut, RangeInclusive};
 
-use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotPoints, Points, uniform_grid_spacer};
+use egui::{AsIdSalt, IdSalt};
+use egui_plot::{
+    AxisHints, GridInput, GridMark, Line, Plot, PlotGeometry, PlotItem, PlotPoints, PlotResponse,
+    PlotUi, Points, uniform_grid_spacer,
+};
+
+use super::chart_menu;
+use crate::export::Table;
 
 use crate::language::tr;
 use crate::theme;
@@ -41,27 +48,136 @@ pub fn envelope(time: &[f64], values: &[f64], most: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Axes whose labels have as many decimals as they need; that of y at least this wide, so that plots above
-/// each other line up.
-pub fn axes(plot: Plot<'_>, x: impl AsRef<str>, y: impl AsRef<str>, width: f32) -> Plot<'_> {
-    let axis = |hints: AxisHints<'static>| hints.label_spacing(LABELS).formatter(label);
-    plot.custom_x_axes(vec![axis(AxisHints::new_x().label(tr(x)))])
-        .custom_y_axes(vec![axis(
-            AxisHints::new_y().label(tr(y)).min_thickness(width),
-        )])
-        .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
-        .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
+/// A plot whose axes have names, whose labels have as many decimals as they need, and that has a menu.
+pub struct Chart<'a> {
+    plot: Plot<'a>,
+    salt: IdSalt,
+    /// Names of the axes with their units, in English.
+    axes: [String; 2],
+}
+
+impl<'a> Chart<'a> {
+    /// A plot of this height; the labels of y are at least `width` wide, so that plots above each other line up.
+    pub fn new(
+        salt: impl AsIdSalt,
+        [x, y]: [impl Into<String>; 2],
+        height: f32,
+        width: f32,
+    ) -> Self {
+        let salt = IdSalt::new(salt);
+        let axes = [x.into(), y.into()];
+        let axis = |hints: AxisHints<'static>| hints.label_spacing(LABELS).formatter(label);
+        let [x, y] = [0, 1].map(|i| tr(&axes[i]));
+        let plot = Plot::new(salt)
+            .height(height)
+            .allow_scroll(false)
+            .custom_x_axes(vec![axis(AxisHints::new_x().label(x))])
+            .custom_y_axes(vec![axis(AxisHints::new_y().label(y).min_thickness(width))])
+            .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
+            .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)));
+        Self { plot, salt, axes }
+    }
+
+    /// With more of what a plot can do.
+    #[must_use]
+    pub fn with(mut self, more: impl FnOnce(Plot<'a>) -> Plot<'a>) -> Self {
+        self.plot = more(self.plot);
+        self
+    }
+
+    /// Shows its data and stays where it is.
+    #[must_use]
+    pub fn still(self) -> Self {
+        self.with(|plot| {
+            plot.allow_zoom(false)
+                .allow_boxed_zoom(false)
+                .allow_axis_zoom_drag(false)
+                .allow_drag(false)
+        })
+    }
+
+    /// Draws it.
+    pub fn show<R>(
+        self,
+        ui: &mut egui::Ui,
+        draw: impl FnOnce(&mut Pen<'_, 'a>) -> R + 'a,
+    ) -> PlotResponse<R> {
+        let Self { plot, salt, axes } = self;
+        let id = ui.scope_id().with(salt);
+        let start = ui.cursor().min;
+        let table = chart_menu::wants_numbers(ui.ctx(), id).then(|| Table::new("plot"));
+        let titles = axes.clone();
+        let shown = plot.show(ui, move |plot| {
+            let mut pen = Pen {
+                plot,
+                axes: titles,
+                table,
+            };
+            (draw(&mut pen), pen.table)
+        });
+        let (inner, table) = shown.inner;
+        chart_menu::ui(ui, id, &axes, start, shown.response.rect, table);
+        PlotResponse {
+            inner,
+            response: shown.response,
+            transform: shown.transform,
+            hovered_plot_item: shown.hovered_plot_item,
+        }
+    }
+}
+
+/// Draws in a plot, and notes the numbers of its curves where they are asked for.
+pub struct Pen<'p, 'd> {
+    plot: &'p mut PlotUi<'d>,
+    axes: [String; 2],
+    table: Option<Table>,
+}
+
+impl<'d> Pen<'_, 'd> {
+    pub fn line(&mut self, line: Line<'d>) {
+        self.note(&line);
+        self.plot.line(line);
+    }
+
+    pub fn points(&mut self, points: Points<'d>) {
+        self.note(&points);
+        self.plot.points(points);
+    }
+
+    /// Two columns for each curve: x and y.
+    fn note(&mut self, item: &dyn PlotItem) {
+        let (Some(table), PlotGeometry::Points(points)) = (&mut self.table, item.geometry()) else {
+            return;
+        };
+        if points.is_empty() {
+            return;
+        }
+        let title = |axis: &String| format!("{}: {axis}", item.name());
+        let columns = [
+            (title(&self.axes[0]), points.iter().map(|p| p.x).collect()),
+            (title(&self.axes[1]), points.iter().map(|p| p.y).collect()),
+        ];
+        table.columns.extend(columns);
+    }
+}
+
+impl<'d> Deref for Pen<'_, 'd> {
+    type Target = PlotUi<'d>;
+
+    fn deref(&self) -> &PlotUi<'d> {
+        self.plot
+    }
+}
+
+impl DerefMut for Pen<'_, '_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        self.plot
+    }
 }
 
 /// A plot that shows its data and stays where it is.
-pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Plot<'static> {
-    axes(Plot::new(name), x, y, 0.0)
-        .height(height)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_drag(false)
+pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Chart<'static> {
+    Chart::new(name, [x, y], height, 0.0).still()
 }
 
 /// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.

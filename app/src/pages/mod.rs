@@ -3,6 +3,7 @@
 
 mod backlash;
 mod chart;
+pub mod chart_menu;
 mod compare;
 mod controls;
 mod explore;

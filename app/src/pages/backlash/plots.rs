@@ -89,6 +89,7 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         "velocity v1 [rad/s]",
         height,
     )
+    .with(|plot| plot.link_cursor(egui::Id::unique("motor position"), [true, false]))
     .show(ui, |plot| {
         plot.line(
             Line::new(tr("last periods"), curve(&points))
@@ -172,7 +173,9 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     caption_ui(ui, "Backlash map", &curves);
     let [low, high] = scene.range;
     let load = scene.load_range;
-    still("map", "motor x1 [mrad]", "load x2 [mrad]", height).show(ui, |plot| {
+    let chart = still("map", "motor x1 [mrad]", "load x2 [mrad]", height)
+        .with(|plot| plot.link_cursor(egui::Id::unique("motor position"), [true, false]));
+    chart.show(ui, |plot| {
         plot.points(
             Points::new(tr("x2 over x1"), curve(&scene.map))
                 .color(LOAD)

@@ -1,11 +1,11 @@
 //! Where the model fails: the residual over every axis, as small pictures.
 
-use egui_plot::{HLine, Line, Plot, Span};
+use egui_plot::{HLine, Line, Span};
 use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
 
 use super::Compare;
 use crate::language::tr;
-use crate::pages::chart::{axes, caption_ui};
+use crate::pages::chart::{Chart, caption_ui};
 use crate::theme;
 
 /// Least width of a picture, and its height, points.
@@ -112,13 +112,8 @@ pub(super) fn points(profile: &Profile, value: impl Fn(&ProfileBin) -> f64) -> V
 }
 
 /// A small plot that stays where it is.
-pub(super) fn small(id: impl egui::AsIdSalt, x: String, y: &'static str) -> Plot<'static> {
-    axes(Plot::new(id), x, y, AXIS_WIDTH)
-        .height(HEIGHT)
-        .allow_scroll(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
+pub(super) fn small(id: impl egui::AsIdSalt, x: String, y: &'static str) -> Chart<'static> {
+    Chart::new(id, [x, y.to_owned()], HEIGHT, AXIS_WIDTH).still()
 }
 
 fn picture_ui(
@@ -130,7 +125,7 @@ fn picture_ui(
     let id = ("atlas", profile.output, profile.axis.clone());
     let region = finding.filter(|f| f.axis == profile.axis && f.from < f.to);
     small(id, axis_label(profile), "rms")
-        .include_y(0.0)
+        .with(|plot| plot.include_y(0.0))
         .show(ui, |plot| {
             if let Some(f) = region {
                 let color = theme::SHADE.gamma_multiply(0.2);

@@ -1,6 +1,6 @@
 //! What an effect would leave if it were what is missing, beside what is left.
 
-use egui_plot::{Line, LineStyle, Plot};
+use egui_plot::{Line, LineStyle};
 use hysteron_core::criticism::{Fingerprint, Profile, StepReport};
 use hysteron_core::measurement::Measurement;
 
@@ -8,7 +8,7 @@ use super::atlas::{axis_label, grid_ui, points, small, words};
 use super::{Command, Compare, name_of};
 use crate::hook::Targets;
 use crate::language::tr;
-use crate::pages::chart::{axes, caption_ui};
+use crate::pages::chart::{Chart, caption_ui};
 use crate::theme;
 
 /// Height of a plot over time, and width of its labels, points.
@@ -108,15 +108,12 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
         } else {
             format!("{} [{}]", output.name, output.unit)
         };
-        axes(
-            Plot::new(("fingerprint", print.effect.as_str(), index)),
-            "time [s]",
-            label,
-            AXIS_WIDTH,
-        )
-        .height(HEIGHT)
-        .allow_scroll(false)
-        .show(ui, |plot| {
+        let id = ("fingerprint", print.effect.as_str(), index);
+        let axes = ["time [s]".to_owned(), label];
+        let linked = egui::Id::unique("fingerprint");
+        let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH)
+            .with(|plot| plot.link_cursor(linked, [true, false]));
+        chart.show(ui, |plot| {
             plot.line(
                 Line::new(tr("what is left"), left)
                     .color(theme::RESIDUAL)

@@ -1,10 +1,10 @@
 //! Where no effect explains the rest: what is missing, estimated without a model.
 
-use egui_plot::{HLine, Line, Plot, PlotPoints};
+use egui_plot::{HLine, Line, PlotPoints};
 use hysteron_core::criticism::{MissingPart, StepReport};
 
 use crate::language::tr;
-use crate::pages::chart::axes;
+use crate::pages::chart::Chart;
 use crate::theme;
 
 /// Estimates that are drawn.
@@ -44,17 +44,9 @@ fn plot_ui(part: &MissingPart, ui: &mut egui::Ui) {
         label(&part.axis, &part.axis_unit),
         label(&part.what, &part.unit),
     );
-    axes(
-        Plot::new(("missing", &part.what, &part.axis)),
-        x,
-        y,
-        AXIS_WIDTH,
-    )
-    .height(HEIGHT)
-    .allow_scroll(false)
-    .allow_drag(false)
-    .allow_zoom(false)
-    .show(ui, |plot| {
+    let id = ("missing", &part.what, &part.axis);
+    let chart = Chart::new(id, [x, y], HEIGHT, AXIS_WIDTH).still();
+    chart.show(ui, |plot| {
         for p in &part.parts {
             // Bars that know nothing would squeeze the rest.
             let half = (2.0 * p.std_error).min(2.0 * size);

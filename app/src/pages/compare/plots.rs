@@ -1,12 +1,12 @@
 //! Measured and modelled curves over each other, the residual beneath.
 
-use egui_plot::{HLine, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, Span, Text};
+use egui_plot::{HLine, Legend, Line, LineStyle, PlotPoint, PlotPoints, Span, Text};
 use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
 use crate::language::tr;
-use crate::pages::chart::{axes, envelope};
+use crate::pages::chart::{Chart, envelope};
 use crate::theme;
 
 /// Most points of a curve that are drawn; above, each stretch shows its extremes.
@@ -40,20 +40,18 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     }
 }
 
-fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32) -> Plot<'a> {
+fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32) -> Chart<'a> {
     let (start, end) = (measurement.time[0], measurement.time[measurement.len() - 1]);
     let group = egui::Id::unique(("compare", &measurement.name));
-    axes(Plot::new(id), "time [s]", y_label, AXIS_WIDTH)
-        .height(height)
-        .default_x_bounds(
-            start,
-            start + FIRST_VIEW * (end - start).max(f64::MIN_POSITIVE),
-        )
-        .auto_bounds([false, true])
-        .link_axis(group, [true, false])
-        .link_cursor(group, [true, false])
-        .allow_scroll(false)
-        .legend(Legend::default())
+    let first = start + FIRST_VIEW * (end - start).max(f64::MIN_POSITIVE);
+    let axes = ["time [s]".to_owned(), y_label];
+    Chart::new(id, axes, height, AXIS_WIDTH).with(|plot| {
+        plot.default_x_bounds(start, first)
+            .auto_bounds([false, true])
+            .link_axis(group, [true, false])
+            .link_cursor(group, [true, false])
+            .legend(Legend::default())
+    })
 }
 
 fn unit_label(name: &str, unit: &str) -> String {

@@ -1,13 +1,14 @@
 //! The map as one textured image, with axes, colour bar, legend and reading.
 
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
-use egui_plot::{MarkerShape, Plot, PlotImage, PlotPoint, Points};
+use egui_plot::{MarkerShape, PlotImage, PlotPoint, Points};
 use hysteron_core::maps::{Map, MapInput, Outcome, Quantity};
 
 use super::side::stability;
 use super::{axis_title, number, with_unit};
 use crate::colors::viridis;
 use crate::language::tr;
+use crate::pages::chart::Chart;
 
 /// Pixels of the texture along a cell, so that hatching shows.
 const PIXELS: usize = 4;
@@ -67,23 +68,16 @@ impl Picture {
         height: f32,
     ) -> Option<[f64; 2]> {
         let (x, y) = (input.x, input.y);
-        let title = |axis: hysteron_core::maps::Axis| {
-            tr(axis_title(axis.parameter.label(), axis.parameter.unit()))
-        };
-        let shown = Plot::new("map")
-            .height(height)
-            .x_axis_label(title(x))
-            .y_axis_label(title(y))
-            .show_grid(false)
-            .show_crosshair(true)
-            .allow_drag(false)
-            .allow_zoom(false)
-            .allow_scroll(false)
-            .allow_boxed_zoom(false)
-            .allow_axis_zoom_drag(false)
-            .allow_double_click_reset(false)
-            .set_margin_fraction(egui::Vec2::ZERO)
-            .label_formatter(|_| None)
+        let axes = [x, y].map(|a| axis_title(a.parameter.label(), a.parameter.unit()));
+        let shown = Chart::new("map", axes, height, 0.0)
+            .still()
+            .with(|plot| {
+                plot.show_grid(false)
+                    .show_crosshair(true)
+                    .allow_double_click_reset(false)
+                    .set_margin_fraction(egui::Vec2::ZERO)
+                    .label_formatter(|_| None)
+            })
             .show(ui, |plot| {
                 plot.set_plot_bounds_x(x.from..=x.to);
                 plot.set_plot_bounds_y(y.from..=y.to);

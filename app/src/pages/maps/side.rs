@@ -2,7 +2,7 @@
 
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
-use super::{Command, Maps, with_unit};
+use super::{Command, Maps, axis_title, with_unit};
 use crate::language::tr;
 
 impl Maps {
@@ -51,8 +51,10 @@ impl Maps {
         for (value, axis) in point.iter_mut().zip([x, y]) {
             ui.add(
                 egui::Slider::new(value, axis.from..=axis.to)
-                    .text(tr(axis.parameter.label()))
-                    .suffix(suffix(axis.parameter.unit()))
+                    .text(tr(axis_title(
+                        axis.parameter.label(),
+                        axis.parameter.unit(),
+                    )))
                     .max_decimals(3),
             );
         }

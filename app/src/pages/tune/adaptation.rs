@@ -68,7 +68,7 @@ fn convergence_ui(ui: &mut egui::Ui, found: &PhaseMarginReport, height: f32) {
         "step n",
         "error of the amplitude, log10",
     )
-    .include_y(0.0)
+    .with(|plot| plot.include_y(0.0))
     .show(ui, |plot| {
         plot.line(
             Line::new(tr("relative error"), curve(&errors))

@@ -1,9 +1,10 @@
 //! What the steps draw alike.
 
-use egui_plot::{Legend, Line, LineStyle, Plot, PlotPoints};
+use egui_plot::{Legend, Line, LineStyle, PlotPoints};
 use hysteron_core::tuning::{Pid, RelayTest};
 
 use crate::language::tr;
+use crate::pages::chart::Chart;
 use crate::theme;
 
 /// Colour of what was before.
@@ -47,13 +48,8 @@ pub fn controller(pid: &Pid) -> String {
 }
 
 /// An empty plot with named axes; the wheel scrolls the page.
-pub fn plot<'a>(id: &'a str, height: f32, x: &'a str, y: &'a str) -> Plot<'a> {
-    Plot::new(id)
-        .height(height)
-        .x_axis_label(tr(x))
-        .y_axis_label(tr(y))
-        .allow_scroll(false)
-        .legend(Legend::default())
+pub fn plot<'a>(id: &str, height: f32, x: &str, y: &str) -> Chart<'a> {
+    Chart::new(id, [x, y], height, 0.0).with(|plot| plot.legend(Legend::default()))
 }
 
 /// Points as a curve.

@@ -87,8 +87,11 @@ fn response_ui(
     let end = part(before).time.last().copied().unwrap_or(1.0);
     let bottom = if before.margins.is_some() { -0.1 } else { -0.5 } * top;
     plot(id, height, "time [s]", axis)
-        .default_x_bounds(0.0, end)
-        .default_y_bounds(bottom, top)
+        .with(|plot| {
+            plot.default_x_bounds(0.0, end)
+                .default_y_bounds(bottom, top)
+                .link_cursor(egui::Id::unique("responses"), [true, false])
+        })
         .show(ui, |plot| {
             let response = part(before);
             plot.line(
@@ -111,9 +114,11 @@ fn response_ui(
 
 fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, height: f32) {
     plot("loop nyquist", height, "real part", "imaginary part")
-        .data_aspect(1.0)
-        .default_x_bounds(-2.2, 0.8)
-        .default_y_bounds(-1.6, 0.6)
+        .with(|plot| {
+            plot.data_aspect(1.0)
+                .default_x_bounds(-2.2, 0.8)
+                .default_y_bounds(-1.6, 0.6)
+        })
         .show(ui, |plot| {
             let circle: Vec<[f64; 2]> = (0..=120)
                 .map(|i| std::f64::consts::TAU * f64::from(i) / 120.0)

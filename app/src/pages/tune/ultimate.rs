@@ -56,9 +56,11 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
     let found = report.point.point.value;
     let reach = 2.2 * found[0].hypot(found[1]);
     plot("ultimate", height, "real part", "imaginary part")
-        .data_aspect(1.0)
-        .default_x_bounds(-reach, 0.4 * reach)
-        .default_y_bounds(-0.8 * reach, 0.4 * reach)
+        .with(|plot| {
+            plot.data_aspect(1.0)
+                .default_x_bounds(-reach, 0.4 * reach)
+                .default_y_bounds(-0.8 * reach, 0.4 * reach)
+        })
         .show(ui, |plot| {
             plot.line(
                 Line::new(tr("plant P(jω)"), curve(&report.nyquist))

@@ -1,0 +1,113 @@
+//! What a plot gives away: its picture and its numbers. Its menu notes the wish; the next frame, in which no
+//! menu covers the plot, fulfils it.
+
+use egui::{Context, Id, Pos2, Rect, UiBuilder, vec2};
+
+use crate::export::Table;
+use crate::language::tr;
+
+/// Side of the button of a menu, points.
+const BUTTON: f32 = 18.0;
+
+/// What may be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Png,
+    Svg,
+    Csv,
+}
+
+impl Form {
+    const ALL: [(Self, &'static str); 3] = [
+        (Self::Png, "Picture of this plot (PNG)"),
+        (Self::Svg, "Picture of this plot (SVG)"),
+        (Self::Csv, "Data of this plot (CSV)"),
+    ];
+}
+
+/// A plot that was asked for.
+#[derive(Clone, Debug)]
+pub struct Given {
+    pub form: Form,
+    /// Its axes, in English; they are the name of the file.
+    pub axes: [String; 2],
+    /// Where it is, points.
+    pub place: Rect,
+    /// Its curves, if its numbers were asked for.
+    pub table: Option<Table>,
+}
+
+/// The axes of the plots on the screen, and what was asked of which.
+#[derive(Clone, Debug, Default)]
+struct Plots {
+    axes: Vec<[String; 2]>,
+    wish: Option<(Id, Form)>,
+    given: Option<Given>,
+}
+
+fn with<R>(ctx: &Context, act: impl FnOnce(&mut Plots) -> R) -> R {
+    ctx.data_mut(|data| act(data.get_temp_mut_or_default(Id::unique("plots"))))
+}
+
+/// Forgets the plots of the last frame.
+pub fn clear(ctx: &Context) {
+    with(ctx, |plots| plots.axes.clear());
+}
+
+/// The axes of the plots of this frame, x and y, in English.
+pub fn axes(ctx: &Context) -> Vec<[String; 2]> {
+    with(ctx, |plots| plots.axes.clone())
+}
+
+/// The plot that was asked for, once.
+pub fn given(ctx: &Context) -> Option<Given> {
+    with(ctx, |plots| plots.given.take())
+}
+
+/// Whether the numbers of a plot are wished for.
+pub fn wants_numbers(ctx: &Context, plot: Id) -> bool {
+    with(ctx, |plots| plots.wish == Some((plot, Form::Csv)))
+}
+
+/// Draws the menu of a plot in its lower right corner, and gives what was wished for.
+pub fn ui(
+    ui: &mut egui::Ui,
+    plot: Id,
+    axes: &[String; 2],
+    start: Pos2,
+    inner: Rect,
+    table: Option<Table>,
+) {
+    let ctx = ui.ctx().clone();
+    with(&ctx, |plots| {
+        plots.axes.push(axes.clone());
+        if let Some((_, form)) = plots.wish.take_if(|(wished, _)| *wished == plot) {
+            // Labels of the last ticks reach a little beyond the frame; those of x stand below it.
+            let end = inner.max + vec2(10.0, 44.0);
+            plots.given = Some(Given {
+                form,
+                axes: axes.clone(),
+                place: Rect::from_min_max(start, end),
+                table,
+            });
+        }
+    });
+    let corner = Rect::from_min_max(inner.max - vec2(BUTTON + 2.0, BUTTON + 2.0), inner.max);
+    let mut child = ui.new_child(UiBuilder::new().id_salt(plot).max_rect(corner));
+    child.spacing_mut().button_padding = vec2(2.0, 0.0);
+    let name = tr(format!("Menu of the plot: {} over {}", axes[1], axes[0]));
+    let faint = child.visuals().weak_text_color();
+    let button = egui::Button::new(egui::RichText::new("…").color(faint).size(16.0)).frame(false);
+    let (response, _) =
+        egui::containers::menu::MenuButton::from_button(button).ui(&mut child, |ui| {
+            for (form, label) in Form::ALL {
+                if ui.button(tr(label)).clicked() {
+                    with(&ctx, |plots| plots.wish = Some((plot, form)));
+                    ctx.request_repaint();
+                    ui.close();
+                }
+            }
+        });
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    response.on_hover_text(tr("Save this plot"));
+}
