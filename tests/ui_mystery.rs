@@ -43,6 +43,16 @@ fn a_mystery_is_made_handed_on_diagnosed_and_revealed() {
     let link = copied(&mut teacher).expect("a link on the clipboard");
     assert!(link.len() <= 16_384, "{} characters", link.len());
 
+    // The file is the same record.
+    let (there, given) = std::sync::mpsc::channel();
+    teacher.state_mut().divert_files(there);
+    click(&mut teacher, "Save the file");
+    let (name, bytes) = given.try_recv().expect("a file");
+    let (_, text) = link.split_once("mystery=").expect("a mystery");
+    let linked = Mystery::from_link(text).expect("a mystery");
+    assert_eq!(name, format!("{}.csv", linked.name()));
+    assert_eq!(bytes, linked.csv().into_bytes());
+
     // The student opens the link.
     let mut student = app("start", WIDE);
     show(&mut student, &link);

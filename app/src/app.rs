@@ -225,7 +225,7 @@ impl HysteronApp {
                 ctx.copy_text(address::whole(&link));
                 self.notice = Some(Notice::done(ctx, saying));
             }
-            Command::Save(document) => save::save(ctx, *document, &self.said.0),
+            Command::Save(document) => self.save_text(ctx, *document),
             Command::OpenFile(page, name, bytes) => {
                 self.go(page);
                 self.open(ctx, &name, &bytes);
