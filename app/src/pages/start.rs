@@ -91,8 +91,8 @@ impl View for Start {
         });
     }
 
-    fn toggle_play(&mut self) {
-        self.playback.toggle();
+    fn toggle_play(&mut self, ctx: &egui::Context) {
+        self.playback.toggle(ctx);
     }
 
     fn table_names(&self) -> Vec<&'static str> {
@@ -195,9 +195,9 @@ impl Start {
             .on_hover_text(tr(
                 "How far the output must pass zero before the relay switches",
             ));
-            let label = self.playback.label();
+            let label = self.playback.label(ui.ctx());
             if ui.button(tr(label)).clicked() {
-                self.playback.toggle();
+                self.playback.toggle(ui.ctx());
             }
         });
     }

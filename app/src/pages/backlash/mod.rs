@@ -23,6 +23,7 @@ use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::pages::controls::claim_ui;
+use crate::recent::{Recent, Recents};
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
 use design::Design;
@@ -268,12 +269,12 @@ impl Backlash {
         }
     }
 
-    fn wide_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    fn wide_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         egui::Panel::left("drive")
             .exact_size(SIDE)
             .resizable(false)
             .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, targets));
+                egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, recent, targets));
             });
         egui::CentralPanel::default().show(ui, |ui| {
             self.answer_ui(ui);
@@ -291,7 +292,7 @@ impl Backlash {
         });
     }
 
-    fn narrow_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    fn narrow_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         egui::CentralPanel::default().show(ui, |ui| {
             egui::ScrollArea::vertical().show(ui, |ui| {
                 self.answer_ui(ui);
@@ -302,7 +303,7 @@ impl Backlash {
                     plots::phase_ui(ui, scene, self.playback.clock, 240.0);
                     plots::map_ui(ui, scene, self.playback.clock, 240.0);
                 }
-                self.side_ui(ui, targets);
+                self.side_ui(ui, recent, targets);
             });
         });
     }
@@ -326,14 +327,18 @@ impl View for Backlash {
         self.estimate(ui.ctx());
         self.play(ui);
         if ui.available_width() < NARROW {
-            self.narrow_ui(ui, &mut desk.targets);
+            self.narrow_ui(ui, &desk.recent, &mut desk.targets);
         } else {
-            self.wide_ui(ui, &mut desk.targets);
+            self.wide_ui(ui, &desk.recent, &mut desk.targets);
         }
     }
 
     fn takes_files(&self) -> bool {
         true
+    }
+
+    fn opened(&mut self) -> Vec<Recent> {
+        self.files.opened()
     }
 
     fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
@@ -344,8 +349,8 @@ impl View for Backlash {
         self.files.open_dropped(ctx, file);
     }
 
-    fn toggle_play(&mut self) {
-        self.playback.toggle();
+    fn toggle_play(&mut self, ctx: &egui::Context) {
+        self.playback.toggle(ctx);
     }
 
     fn hint(&self) -> Option<(&'static str, &'static str)> {

@@ -81,8 +81,8 @@ impl View for Explore {
         }
     }
 
-    fn toggle_play(&mut self) {
-        self.playback.toggle();
+    fn toggle_play(&mut self, ctx: &egui::Context) {
+        self.playback.toggle(ctx);
     }
 
     fn hint(&self) -> Option<(&'static str, &'static str)> {
