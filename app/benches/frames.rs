@@ -1,7 +1,8 @@
 //! How much work of its own a frame takes while someone drags: every slider and every number of every page in
 //! turn, frame after frame without a pause, and the shapes cut into triangles, as for a software rasteriser.
 //! What paints them is not measured. Each drag is made several times, and the least time of each of its frames
-//! counts: what else the machine did meanwhile is no work of the app.
+//! counts, on Linux without the time that it waited for a processor: what else the machine did meanwhile is no
+//! work of the app.
 //!
 //! ```text
 //! cargo bench -p hysteron --bench frames
@@ -78,10 +79,12 @@ impl Bench {
             events,
             ..RawInput::default()
         };
-        let begin = Instant::now();
+        let (begin, waited) = (Instant::now(), waited());
         let mut output = self.ctx.run_ui(input, |ui| self.app.frame_ui(ui));
         let triangles = self.ctx.tessellate(output.shapes, output.pixels_per_point);
-        self.frames.push(begin.elapsed());
+        let elapsed = begin.elapsed();
+        self.frames
+            .push(elapsed.saturating_sub(self::waited().saturating_sub(waited)));
         drop(triangles);
         // Nothing is painted.
         output.textures_delta.clear();
@@ -164,6 +167,13 @@ impl Bench {
         }
         least
     }
+}
+
+/// How long this thread has waited for a processor so far (Documentation/scheduler/sched-stats.rst of Linux).
+fn waited() -> Duration {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let waited = stat.split_whitespace().nth(1);
+    Duration::from_nanos(waited.and_then(|w| w.parse().ok()).unwrap_or(0))
 }
 
 fn milliseconds(time: Duration) -> f64 {

@@ -181,8 +181,15 @@ impl Start {
             }
             None => {}
         }
-        ui.horizontal_wrapped(|ui| {
+        // A slider does not break: in a narrow window its name needs the whole width.
+        let narrow = ui.available_width() < NARROW;
+        if narrow {
             ui.label(tr("Turn it:"));
+        }
+        ui.horizontal_wrapped(|ui| {
+            if !narrow {
+                ui.label(tr("Turn it:"));
+            }
             let normal = Relay::default().hysteresis;
             slider(
                 ui,

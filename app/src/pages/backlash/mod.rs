@@ -277,17 +277,20 @@ impl Backlash {
                 egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, recent, targets));
             });
         egui::CentralPanel::default().show(ui, |ui| {
-            self.answer_ui(ui);
-            self.playback_ui(ui, targets);
-            let Some(scene) = &self.scene else {
-                return;
-            };
-            picture::ui(ui, scene, self.playback.clock, PICTURE);
-            let height = (0.5 * ui.available_height() - 34.0).max(120.0);
-            plots::time_ui(ui, scene, self.playback.clock, height);
-            ui.columns(2, |columns| {
-                plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
-                plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
+            // Large type leaves less room than the plots need.
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                self.answer_ui(ui);
+                self.playback_ui(ui, targets);
+                let Some(scene) = &self.scene else {
+                    return;
+                };
+                picture::ui(ui, scene, self.playback.clock, PICTURE);
+                let height = (0.5 * ui.available_height() - 34.0).max(120.0);
+                plots::time_ui(ui, scene, self.playback.clock, height);
+                ui.columns(2, |columns| {
+                    plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
+                    plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
+                });
             });
         });
     }
