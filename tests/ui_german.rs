@@ -114,7 +114,11 @@ const NOT_DRAWN: [&str; 26] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 19] = [
+const NO_TEXTS: [&str; 23] = [
+    "hysteron files",
+    "hysteron motion",
+    "reduced motion",
+    "(prefers-reduced-motion: reduce)",
     "hysteron language",
     "hysteron lessons",
     "hysteron look",
