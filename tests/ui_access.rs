@@ -7,10 +7,10 @@ mod ui;
 use std::collections::BTreeSet;
 use std::sync::mpsc::channel;
 
-use egui::Role;
+use egui::{Key, Role};
 use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
 use hysteron::GivenFile;
-use ui::{App, NARROW, PLACES, TALL, WIDE, app, finish, show, state};
+use ui::{App, NARROW, PLACES, TALL, WIDE, app, click, finish, show, state};
 
 /// Numbers that have no unit: the loop of Explore is in units of its own signals, the rest are ratios.
 const PLAIN: [&str; 14] = [
@@ -173,4 +173,144 @@ fn every_plot_gives_its_picture_and_its_numbers() {
     let (name, bytes) = ask(&mut harness, menu, "Data of this plot (CSV)");
     assert_eq!(name, "maps-relay-gain-k-over-hysteresis-ε.csv");
     assert!(bytes.starts_with("hysteresis ε,relay gain k,period [s]".as_bytes()));
+}
+
+/// Presses Tab until the control of this name has the keyboard.
+fn tab_to(harness: &mut App, name: &str) {
+    for _ in 0..200 {
+        harness.key_press(Key::Tab);
+        harness.step();
+        let found = harness.query_all_by_label(name).any(|n| n.is_focused());
+        if found {
+            return;
+        }
+    }
+    panic!("the keys do not lead to {name}");
+}
+
+fn press(harness: &mut App, key: Key) {
+    harness.key_press(key);
+    finish(harness);
+}
+
+#[test]
+fn keys_alone_lead_everywhere() {
+    let mut harness = app("start", WIDE);
+    finish(&mut harness);
+    tab_to(&mut harness, "Open Explore");
+    press(&mut harness, Key::Enter);
+    assert_eq!(state(&harness)["page"], "explore");
+    // A slider is moved by the arrows and reset by Delete.
+    let gain = |harness: &App| {
+        let gain = state(harness)["explore"]["loop"]["relay"]["gain"].as_f64();
+        gain.expect("a gain")
+    };
+    tab_to(&mut harness, "gain k");
+    for _ in 0..5 {
+        press(&mut harness, Key::ArrowRight);
+    }
+    assert!(gain(&harness) > 1.0, "{}", gain(&harness));
+    press(&mut harness, Key::Delete);
+    assert_eq!(gain(&harness), 1.0);
+    // A menu.
+    tab_to(&mut harness, "Look");
+    press(&mut harness, Key::Enter);
+    tab_to(&mut harness, "Light");
+    press(&mut harness, Key::Enter);
+    assert_eq!(state(&harness)["look"], "Light");
+    // The menu of a plot.
+    let (sender, files) = channel();
+    harness.state_mut().divert_files(sender);
+    tab_to(
+        &mut harness,
+        "Menu of the plot: output y, input u over time [s]",
+    );
+    press(&mut harness, Key::Enter);
+    tab_to(&mut harness, "Data of this plot (CSV)");
+    press(&mut harness, Key::Enter);
+    let (name, _) = files.try_recv().expect("a file");
+    assert_eq!(name, "explore-output-y-input-u-over-time.csv");
+    // A measurement, and an effect.
+    press(&mut harness, Key::Num6);
+    assert_eq!(state(&harness)["page"], "compare");
+    tab_to(&mut harness, "Open drive-02");
+    press(&mut harness, Key::Enter);
+    tab_to(&mut harness, "Add Coulomb friction");
+    press(&mut harness, Key::Enter);
+    assert!(state(&harness)["error"].as_f64().is_some_and(|e| e < 1.2));
+}
+
+#[test]
+fn with_less_motion_nothing_moves_that_was_not_started() {
+    let clock = |harness: &App| state(harness)["clock"].as_f64().expect("a clock");
+    let moved = |harness: &mut App| {
+        let before = clock(harness);
+        for _ in 0..10 {
+            harness.step();
+        }
+        clock(harness) > before
+    };
+    let mut harness = app("start", WIDE);
+    assert!(moved(&mut harness), "the first page is alive");
+    harness.get_by_label("Look").click();
+    harness.step();
+    harness.step();
+    harness.get_by_label("Less motion").click();
+    finish(&mut harness);
+    assert_eq!(state(&harness)["calm"], true);
+    assert!(!moved(&mut harness));
+    assert_eq!(
+        state(&harness)["link"],
+        "v1;start",
+        "a link is not about it"
+    );
+    for page in ["backlash", "start"] {
+        show(&mut harness, &format!("v1;{page}"));
+        assert!(!moved(&mut harness), "{page}");
+        harness.get_by_label("Play").click();
+        finish(&mut harness);
+        assert!(moved(&mut harness), "{page}: who presses Play sees it");
+        harness.get_by_label("Pause").click();
+        finish(&mut harness);
+        assert!(!moved(&mut harness), "{page}");
+    }
+}
+
+/// A file that is let go over the window.
+#[derive(Debug)]
+struct Dropped(std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|e| e.to_string())
+    }
+}
+
+#[test]
+fn a_file_that_was_opened_is_opened_again_by_one_click() {
+    let mut harness = app("compare", WIDE);
+    let source = format!("{}/../tests/data/drive-02.csv", env!("CARGO_MANIFEST_DIR"));
+    let file: egui::DroppedFileHandle = std::sync::Arc::new(Dropped(source.into()));
+    harness.input_mut().dropped_files.push(file);
+    harness.step();
+    let opened = |harness: &mut App| {
+        for _ in 0..500 {
+            harness.step();
+            if state(harness)["file"] == "drive-02.csv" {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        panic!("it does not open: {}", state(harness));
+    };
+    opened(&mut harness);
+    finish(&mut harness);
+    click(&mut harness, "Open another");
+    harness.get_by_label("Opened before:");
+    harness.get_by_label("drive-02.csv").click();
+    opened(&mut harness);
 }

@@ -116,7 +116,11 @@ const NOT_DRAWN: [&str; 28] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 20] = [
+const NO_TEXTS: [&str; 24] = [
+    "hysteron files",
+    "hysteron motion",
+    "reduced motion",
+    "(prefers-reduced-motion: reduce)",
     "µN m s²/rad²",
     "hysteron language",
     "hysteron lessons",

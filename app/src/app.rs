@@ -12,6 +12,7 @@ use crate::address;
 use crate::bar::Bar;
 use crate::document::Document;
 use crate::language::{self, Language, tr};
+use crate::motion;
 use crate::notice::{self, Notice};
 use crate::pages::{Command, Desk, View, chart_menu, registry};
 use crate::shortcuts;
@@ -30,6 +31,8 @@ pub struct HysteronApp {
     /// How the app looks; as the system does until someone has chosen.
     look: Option<Look>,
     language: Language,
+    /// Whether nothing moves by itself.
+    calm: bool,
     /// Whether the sheet with the keys is open.
     sheet: bool,
     notice: Option<Notice>,
@@ -55,6 +58,7 @@ impl Default for HysteronApp {
             history: Undoer::default(),
             look: None,
             language: Language::English,
+            calm: false,
             sheet: false,
             notice: None,
             plots: Vec::new(),
@@ -133,6 +137,7 @@ impl HysteronApp {
             theme::apply(ui.ctx());
             let look = self.look.unwrap_or_else(|| Look::of_system(ui.ctx()));
             self.set_look(ui.ctx(), look);
+            self.set_calm(ui.ctx(), self.calm);
         }
         self.frame += 1;
         language::speak(self.language);
@@ -142,6 +147,9 @@ impl HysteronApp {
         self.take_pasted_link(ui.ctx());
         for page in &mut self.pages {
             page.update(ui.ctx());
+            page.opened()
+                .into_iter()
+                .for_each(|r| self.desk.recent.note(r));
         }
         let present = self.document();
         let now = ui.input(|i| i.time);
@@ -192,7 +200,7 @@ impl HysteronApp {
             }
             Command::Play => {
                 if let Some(page) = self.pages.get_mut(self.front) {
-                    page.toggle_play();
+                    page.toggle_play(ctx);
                 }
             }
             Command::SaveSvg => self.save_svg(ui, &self.document().page, ctx.content_rect()),
@@ -204,6 +212,7 @@ impl HysteronApp {
             }
             Command::NextLook => self.set_look(ctx, self.look().next()),
             Command::SetLook(look) => self.set_look(ctx, look),
+            Command::Calm(calm) => self.set_calm(ctx, calm),
             Command::Speak(language) => self.speak(language),
             Command::Sheet => self.sheet = !self.sheet,
             Command::Close => {
@@ -270,6 +279,11 @@ impl HysteronApp {
         look.apply(ctx);
     }
 
+    fn set_calm(&mut self, ctx: &egui::Context, calm: bool) {
+        self.calm = calm;
+        motion::reduce(ctx, calm);
+    }
+
     fn look(&self) -> Look {
         self.look.unwrap_or_default()
     }
@@ -299,6 +313,7 @@ impl HysteronApp {
         state["solved"] = serde_json::json!(self.desk.study.solved);
         state["look"] = self.look().name().into();
         state["language"] = self.language.code().into();
+        state["calm"] = self.calm.into();
         state["link"] = self.link().into();
         state["notice"] = self.notice.as_ref().map(Notice::text).into();
         state["plots"] = serde_json::json!(self.plots);
@@ -320,6 +335,7 @@ impl HysteronApp {
             ],
             look: self.look(),
             language: self.language,
+            calm: self.calm,
         };
         bar.ui(ui, &mut self.desk);
     }
@@ -399,7 +415,12 @@ fn drop_hint_ui(ctx: &egui::Context) {
 const KEPT: &str = "hysteron";
 const KEPT_LOOK: &str = "hysteron look";
 const KEPT_LANGUAGE: &str = "hysteron language";
+const KEPT_MOTION: &str = "hysteron motion";
+const KEPT_RECENT: &str = "hysteron files";
 const KEPT_SOLVED: &str = "hysteron lessons";
+
+/// What is kept under the key of motion where nothing may move by itself.
+const CALM: &str = "reduced";
 
 impl HysteronApp {
     /// The app as it was left.
@@ -411,6 +432,10 @@ impl HysteronApp {
         }
         let language = kept(KEPT_LANGUAGE).and_then(|code| Language::of_locale(&code));
         app.language = language.unwrap_or_else(Language::of_system);
+        app.calm = kept(KEPT_MOTION).map_or_else(motion::of_system, |m| m == CALM);
+        if let Some(recent) = kept(KEPT_RECENT) {
+            app.desk.recent = serde_json::from_str(&recent).unwrap_or_default();
+        }
         if let Some(solved) = kept(KEPT_SOLVED) {
             app.desk.study.solved = solved.split_whitespace().map(str::to_owned).collect();
         }
@@ -441,6 +466,11 @@ impl eframe::App for HysteronApp {
         let solved: Vec<&str> = self.desk.study.solved.iter().map(String::as_str).collect();
         storage.set_string(KEPT_SOLVED, solved.join(" "));
         storage.set_string(KEPT_LANGUAGE, self.language.code().to_owned());
+        let motion = if self.calm { CALM } else { "usual" };
+        storage.set_string(KEPT_MOTION, motion.to_owned());
+        if let Ok(recent) = serde_json::to_string(&self.desk.recent) {
+            storage.set_string(KEPT_RECENT, recent);
+        }
         storage.set_string(KEPT_LOOK, self.look().name().to_owned());
     }
 

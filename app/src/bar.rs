@@ -22,6 +22,8 @@ pub struct Bar<'a> {
     pub tables: &'a [&'static str],
     /// The look of the app.
     pub look: Look,
+    /// Whether nothing moves by itself.
+    pub calm: bool,
     /// Its language.
     pub language: Language,
 }
@@ -100,6 +102,17 @@ impl Bar<'_> {
                     commands.push(Command::SetLook(look));
                     ui.close();
                 }
+            }
+            ui.separator();
+            let mut calm = self.calm;
+            let hint = tr("Nothing moves by itself; Play still plays");
+            if ui
+                .checkbox(&mut calm, tr("Less motion"))
+                .on_hover_text(hint)
+                .changed()
+            {
+                commands.push(Command::Calm(calm));
+                ui.close();
             }
             ui.separator();
             for language in Language::ALL {

@@ -1,9 +1,11 @@
-//! Files that a user opens: by a dialog or by dropping them on the window, natively and on the web.
+//! Files that a user opens: by a dialog, by dropping them on the window, or once more, natively and on the web.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// A file that is being read elsewhere: its name, and its bytes or why there are none.
+use crate::recent::Recent;
+
+/// A file that has been read: its name, and its bytes or why there are none.
 pub type Arrival = (String, Result<Vec<u8>, String>);
 
 /// What a dialog asks for: in words, and by the endings of names.
@@ -25,20 +27,61 @@ pub const MODEL: Filter = Filter {
     endings: &["toml"],
 };
 
+/// A file that is being read elsewhere, and how to find it again.
+struct Read {
+    name: String,
+    path: String,
+    bytes: Result<Vec<u8>, String>,
+}
+
 /// Files on their way.
-pub struct Files(Sender<Arrival>, Receiver<Arrival>);
+pub struct Files {
+    sender: Sender<Read>,
+    receiver: Receiver<Read>,
+    opened: Vec<Recent>,
+}
 
 impl Default for Files {
     fn default() -> Self {
         let (sender, receiver) = channel();
-        Self(sender, receiver)
+        Self {
+            sender,
+            receiver,
+            opened: Vec::new(),
+        }
     }
 }
 
 impl Files {
     /// The next file that has been read.
-    pub fn arrived(&self) -> Option<Arrival> {
-        self.1.try_recv().ok()
+    pub fn arrived(&mut self) -> Option<Arrival> {
+        let read = self.receiver.try_recv().ok()?;
+        if let Ok(bytes) = &read.bytes {
+            let recent = Recent::new(&read.name, &read.path, bytes);
+            self.opened.push(recent);
+        }
+        Some((read.name, read.bytes))
+    }
+
+    /// What has been opened since it was last asked for.
+    pub fn opened(&mut self) -> Vec<Recent> {
+        std::mem::take(&mut self.opened)
+    }
+
+    /// Reads a file that was opened before.
+    pub fn reopen(&self, ctx: &egui::Context, recent: &Recent) {
+        let (sender, ctx, recent) = (self.sender.clone(), ctx.clone(), recent.clone());
+        let read = move || {
+            let bytes = recent.read();
+            let Recent { name, path, .. } = recent;
+            // A page that is gone needs no file.
+            let _ = sender.send(Read { name, path, bytes });
+            ctx.request_repaint();
+        };
+        #[cfg(not(target_arch = "wasm32"))]
+        std::thread::spawn(read);
+        #[cfg(target_arch = "wasm32")]
+        read();
     }
 
     /// Reads a file that was dropped on the window.
@@ -47,29 +90,35 @@ impl Files {
             .path()
             .file_name()
             .map_or_else(|| "file".into(), |n| n.to_string_lossy().into_owned());
-        let (sender, ctx, file) = (self.0.clone(), ctx.clone(), Arc::clone(file));
+        let path = file.path().to_string_lossy().into_owned();
+        let (sender, ctx, file) = (self.sender.clone(), ctx.clone(), Arc::clone(file));
         #[cfg(not(target_arch = "wasm32"))]
         std::thread::spawn(move || {
-            // A page that is gone needs no file.
-            let _ = sender.send((name, file.bytes()));
+            let bytes = file.bytes();
+            let _ = sender.send(Read { name, path, bytes });
             ctx.request_repaint();
         });
         #[cfg(target_arch = "wasm32")]
         wasm_bindgen_futures::spawn_local(async move {
             let bytes = file.bytes_async().await;
-            let _ = sender.send((name, bytes));
+            let _ = sender.send(Read { name, path, bytes });
             ctx.request_repaint();
         });
     }
 
     /// Asks for a file.
     pub fn open_dialog(&self, ctx: &egui::Context, filter: Filter) {
-        let (sender, ctx) = (self.0.clone(), ctx.clone());
+        let (sender, ctx) = (self.sender.clone(), ctx.clone());
         let dialog = rfd::AsyncFileDialog::new().add_filter(filter.words, filter.endings);
         let pick = async move {
             if let Some(file) = dialog.pick_file().await {
-                let bytes = file.read().await;
-                let _ = sender.send((file.file_name(), Ok(bytes)));
+                let bytes = Ok(file.read().await);
+                #[cfg(not(target_arch = "wasm32"))]
+                let path = file.path().to_string_lossy().into_owned();
+                #[cfg(target_arch = "wasm32")]
+                let path = String::new();
+                let name = file.file_name();
+                let _ = sender.send(Read { name, path, bytes });
                 ctx.request_repaint();
             }
         };

@@ -14,10 +14,12 @@ mod jobs;
 pub mod language;
 pub mod lessons;
 pub mod link;
+mod motion;
 mod notice;
 mod pages;
 #[cfg(not(target_arch = "wasm32"))]
 mod pieces;
+mod recent;
 mod save;
 mod shortcuts;
 mod start;

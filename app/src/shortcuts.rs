@@ -144,7 +144,7 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
                 "Tab goes from control to control, the arrow keys move a slider.",
             ));
             ui.label(tr(
-                "A double click on a slider resets it; a click on its number types one.",
+                "A double click on a slider, or Delete, resets it; a click on its number types one.",
             ));
             ui.label(tr("A file is opened by dropping it on the window."));
         });

@@ -7,7 +7,7 @@ use hysteron_core::figures::Check;
 use crate::language::tr;
 use crate::theme;
 
-/// A slider over `value * scale`, reset by a double click. A value from elsewhere (a map, a dragged line, a
+/// A slider over `value * scale`, reset by a double click or by Delete. A value from elsewhere (a map, a dragged line, a
 /// link) may lie beyond the slider and stays.
 pub fn slider(
     ui: &mut egui::Ui,
@@ -24,7 +24,7 @@ pub fn slider(
             .max_decimals(3)
             .clamping(egui::SliderClamping::Edits),
     );
-    if track_double_clicked(ui, &response) {
+    if track_double_clicked(ui, &response) || reset_by_key(ui, &response) {
         *value = normal;
     } else if response.changed() {
         *value = shown / scale;
@@ -45,6 +45,14 @@ fn track_double_clicked(ui: &egui::Ui, response: &egui::Response) -> bool {
     });
     response.enabled()
         && pointer.is_some_and(|at| track.contains(at) && response.contains_pointer())
+}
+
+/// Whether Delete was pressed while the slider, or the number beside it, had the keyboard; not while a number
+/// is typed, where that key belongs to the text.
+fn reset_by_key(ui: &egui::Ui, response: &egui::Response) -> bool {
+    response.has_focus()
+        && !ui.ctx().text_edit_focused()
+        && ui.input(|i| i.key_pressed(egui::Key::Delete))
 }
 
 /// What a figure of the paper claims, and whether it is so with what is set now.

@@ -20,6 +20,7 @@ use crate::export::Table;
 use crate::hook::Targets;
 use crate::language::Language;
 use crate::lessons::Study;
+use crate::recent::{Recent, Recents};
 use crate::save::Document;
 use crate::theme::Look;
 
@@ -57,10 +58,14 @@ pub trait View {
         None
     }
     /// Plays or pauses, if something moves on it.
-    fn toggle_play(&mut self) {}
+    fn toggle_play(&mut self, _ctx: &egui::Context) {}
     /// Whether files can be opened on it.
     fn takes_files(&self) -> bool {
         false
+    }
+    /// Files that the user has opened on it since the last call.
+    fn opened(&mut self) -> Vec<Recent> {
+        Vec::new()
     }
     /// Opens the bytes of a file.
     fn open(&mut self, _ctx: &egui::Context, _name: &str, _bytes: &[u8]) {}
@@ -94,6 +99,8 @@ pub struct Desk {
     pub relay_loop: ExploreInput,
     /// The lesson that stands beside them.
     pub study: Study,
+    /// Files that were opened before.
+    pub recent: Recents,
     /// Where the buttons are.
     pub targets: Targets,
     /// What is to be done after this frame.
@@ -142,6 +149,8 @@ pub enum Command {
     SetLook(Look),
     /// Speaks this language.
     Speak(Language),
+    /// Lets nothing move by itself, or lets it.
+    Calm(bool),
     /// Shows or hides the sheet with the keys.
     Sheet,
     /// Closes what lies over the page.

@@ -92,8 +92,8 @@ impl View for Start {
         });
     }
 
-    fn toggle_play(&mut self) {
-        self.playback.toggle();
+    fn toggle_play(&mut self, ctx: &egui::Context) {
+        self.playback.toggle(ctx);
     }
 
     fn table_names(&self) -> Vec<&'static str> {
@@ -182,8 +182,15 @@ impl Start {
             }
             None => {}
         }
-        ui.horizontal_wrapped(|ui| {
+        // A slider does not break: in a narrow window its name needs the whole width.
+        let narrow = ui.available_width() < NARROW;
+        if narrow {
             ui.label(tr("Turn it:"));
+        }
+        ui.horizontal_wrapped(|ui| {
+            if !narrow {
+                ui.label(tr("Turn it:"));
+            }
             let normal = Relay::default().hysteresis;
             slider(
                 ui,
@@ -196,9 +203,9 @@ impl Start {
             .on_hover_text(tr(
                 "How far the output must pass zero before the relay switches",
             ));
-            let label = self.playback.label();
+            let label = self.playback.label(ui.ctx());
             if ui.button(tr(label)).clicked() {
-                self.playback.toggle();
+                self.playback.toggle(ui.ctx());
             }
         });
     }

@@ -1,7 +1,7 @@
 //! A measurement made ready for fitting: noise levels, windows, held-back blocks.
 
 use super::CriticismError;
-use super::noise::noise_level;
+use super::noise::{Noise, noise};
 use super::window::drive_window;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
@@ -25,6 +25,9 @@ const SCOUT_PART: usize = 5;
 /// ... and on at least this many samples.
 const SCOUT_SAMPLES: usize = 2500;
 
+/// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// Samples around a window start from which its state is first guessed.
 const GUESS_SAMPLES: usize = 5;
 
@@ -34,6 +37,8 @@ pub(super) struct Output {
     pub is_velocity: bool,
     pub values: Vec<f64>,
     pub noise: f64,
+    /// The noise is that of counting alone.
+    pub counted: bool,
 }
 
 /// A run of samples that is used as a whole, either for fitting or for judging.
@@ -60,18 +65,21 @@ pub(super) struct Data {
     pub has_position: bool,
 }
 
+/// Whether the block at this place is held back: one of every pair, in the order of Thue and Morse, which never
+/// repeats itself. Strictly by turns, a periodic motion could show one phase to the fit and another to the judge.
+fn is_held_back(block: usize) -> bool {
+    block.count_ones() % 2 == 1
+}
+
 impl Data {
     pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
         let input = &measurement.input.values;
-        let levels = measurement
-            .outputs
-            .iter()
-            .map(|c| noise_level(&c.values, input));
+        let levels = measurement.outputs.iter().map(|c| noise(&c.values, input));
         Self::with_noise(measurement, &levels.collect::<Vec<_>>())
     }
 
     /// The same where the noise of each output is known.
-    pub fn with_noise(measurement: &Measurement, noise: &[f64]) -> Result<Self, CriticismError> {
+    pub fn with_noise(measurement: &Measurement, noise: &[Noise]) -> Result<Self, CriticismError> {
         let n = measurement.len();
         let input = &measurement.input.values;
         if input.iter().all(|u| *u == input[0]) {
@@ -83,7 +91,8 @@ impl Data {
             .zip(noise)
             .map(|(c, noise)| Output {
                 is_velocity: c.quantity != Quantity::Position,
-                noise: *noise,
+                noise: noise.level,
+                counted: noise.counted,
                 values: c.values.clone(),
             })
             .collect();
@@ -115,7 +124,7 @@ impl Data {
                 from: *from,
                 to: split_end(n, block, k),
                 window: windows.partition_point(|w| w <= from) - 1,
-                held_back: k % 2 == 1,
+                held_back: is_held_back(k),
             })
             .collect();
         let before = if starts_at_rest(&outputs) {
@@ -181,12 +190,13 @@ impl Data {
 
     /// Pairs of windows (fitted and held back) spread over the record, about `samples` in all.
     pub fn thinned(&self, samples: usize) -> Self {
-        let stride = self.used().div_ceil(samples.max(1)).max(1);
-        if stride == 1 || self.kind == Kind::Process {
+        let share = samples as f64 / self.used() as f64;
+        if share >= 1.0 || self.kind == Kind::Process {
             return self.clone();
         }
         let mut part = self.clone();
-        let chosen = |window: usize| (window / 2).is_multiple_of(stride);
+        // Evenly spread, but at no fixed distance, which could meet the same phase of a periodic motion each time.
+        let chosen = |window: usize| ((window / 2) as f64 * GOLDEN).fract() < share;
         part.windows = (0..self.windows.len())
             .filter(|w| chosen(*w))
             .map(|w| self.windows[w])

@@ -245,7 +245,8 @@ impl DiagnosisJob {
                 bold: true,
             }));
         }
-        self.imitation = job.imitation();
+        let unknown = report.verdict.as_ref().is_some_and(|v| v.unknown);
+        self.imitation = if unknown { job.imitation() } else { None };
         let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
         let verdict = report.verdict.clone();

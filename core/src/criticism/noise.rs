@@ -30,6 +30,20 @@ const QUANTUM_SAMPLES: usize = 4000;
 ///
 /// `input` is as long and tells when the signal may have kinks.
 pub fn noise_level(values: &[f64], input: &[f64]) -> f64 {
+    noise(values, input).level
+}
+
+/// The noise of a channel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Noise {
+    /// Standard deviation.
+    pub level: f64,
+    /// It is that of counting alone: nothing is seen of what stays within half a step, and a body that rests
+    /// or creeps leaves an error that is no random one.
+    pub counted: bool,
+}
+
+pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
     let quantum = quantum(values);
     // A quantised signal is dithered by one step, evenly spread, so that quantiles are smooth.
     let dithered: Vec<f64> = values
@@ -45,7 +59,10 @@ pub fn noise_level(values: &[f64], input: &[f64]) -> f64 {
         .fold(f64::INFINITY, f64::min);
     // Quantisation and dither alone, within what the estimate can tell.
     if quantum > 0.0 && smallest * smallest < QUANTISED * 2.0 * uniform {
-        return uniform.sqrt();
+        return Noise {
+            level: uniform.sqrt(),
+            counted: true,
+        };
     }
     let variance = if smallest.is_finite() {
         smallest * smallest - uniform
@@ -53,7 +70,10 @@ pub fn noise_level(values: &[f64], input: &[f64]) -> f64 {
         0.0
     };
     let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * 1e-9;
-    variance.max(uniform).max(rounding * rounding).sqrt()
+    Noise {
+        level: variance.max(uniform).max(rounding * rounding).sqrt(),
+        counted: false,
+    }
 }
 
 /// Step of a quantised channel; 0 where none is seen.
@@ -167,10 +187,12 @@ mod tests {
         let values: Vec<f64> = (0..5000)
             .map(|i| (0.01 * (f64::from(i) * 0.0123).sin() / step).round() * step)
             .collect();
-        let noise = noise_level(&values, &vec![0.0; 5000]);
+        let noise = noise(&values, &vec![0.0; 5000]);
+        assert!(noise.counted);
         assert!(
-            (noise / (step / 12.0_f64.sqrt()) - 1.0).abs() < 0.1,
-            "{noise}"
+            (noise.level / (step / 12.0_f64.sqrt()) - 1.0).abs() < 0.1,
+            "{}",
+            noise.level
         );
     }
 }

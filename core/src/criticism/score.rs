@@ -18,6 +18,9 @@ pub(super) struct Score {
     pub fit_cost: f64,
     /// By how much autocorrelation widens variances: at least 1.
     pub correlation: f64,
+    /// All that is measured is counted, and what is left there lies within half a step of the counter: no
+    /// more can be seen.
+    pub within_counts: bool,
 }
 
 /// Scores a fit; each window's states count as fitted on its own data.
@@ -61,7 +64,31 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
         fit_count,
         fit_cost,
         correlation: correlation_inflation(data, &fit.motion),
+        within_counts: within_counts(data, &fit.motion),
     }
+}
+
+/// Half a step of a counter in its standard deviations, with a little more for what a state is off by.
+const HALF_STEP: f64 = 1.05 * 1.732_050_8;
+
+/// Share of the residuals that must lie within half a step.
+const WITHIN: f64 = 0.97;
+
+/// Whether the held-back residuals stay within half a step of their counters.
+fn within_counts(data: &Data, motion: &Motion) -> bool {
+    let (mut within, mut all) = (0_usize, 0_usize);
+    for o in &data.outputs {
+        if !o.counted {
+            return false;
+        }
+        let modelled = motion.of(o.is_velocity);
+        for b in data.blocks.iter().filter(|b| b.held_back) {
+            let left = (b.from..b.to).map(|i| (o.values[i] - modelled[i]).abs() / o.noise);
+            within += left.filter(|r| *r < HALF_STEP).count();
+            all += b.to - b.from;
+        }
+    }
+    within as f64 > WITHIN * all as f64
 }
 
 /// Longest lag, in samples, over which autocorrelation is summed.

@@ -95,6 +95,7 @@ pub(super) fn outweighs(before: &Score, after: &Score) -> bool {
 /// Whether what is left looks like noise in itself.
 pub(super) fn is_plain_noise(score: &Score) -> bool {
     score.error < SURE_NOISE_ERROR
+        || score.within_counts
         || (score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION)
 }
 

@@ -418,8 +418,8 @@ impl StepJob {
         let helping = || {
             self.tried
                 .iter()
-                .filter(|(e, _)| !(settled && widens(*e)) && !self.barred.contains(&e.id()))
-                .filter(|(_, s)| helps_clearly(model, s, first))
+                .filter(|(e, _)| !self.barred.contains(&e.id()))
+                .filter(|(e, s)| !(settled && widens(*e)) && helps_clearly(model, s, first))
         };
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
@@ -627,17 +627,22 @@ impl StepJob {
     /// left, and the model without it: it may as well imitate a part of what no effect explains.
     pub(super) fn imitation(&self) -> Option<(EffectId, Scored)> {
         let model = self.model.as_ref()?;
-        if is_noise(&model.score, self.session.first(model)) || !self.contradicted.is_empty() {
+        if !self.contradicted.is_empty() {
+            return None;
+        }
+        // Where a long record was thinned, all of it decides.
+        let whole = self.session.completed(model);
+        if is_noise(&whole.score, self.session.first(&whole)) {
             return None;
         }
         self.wanted
             .iter()
             .zip(&self.without)
-            .filter(|(e, without)| {
-                !self.session.knowledge.has(e.id()) && !outweighs(&without.score, &model.score)
-            })
-            .min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))
-            .map(|(e, without)| (e.id(), without.clone()))
+            .filter(|(e, _)| !self.session.knowledge.has(e.id()))
+            .map(|(e, without)| (e.id(), without, self.session.completed(without).score))
+            .filter(|(_, _, score)| !outweighs(score, &whole.score))
+            .min_by(|a, b| a.2.error.total_cmp(&b.2.error))
+            .map(|(id, without, _)| (id, without.clone()))
     }
 
     /// Models with an effect that lowers the error much, though not beyond chance while the rest is as

@@ -7,6 +7,7 @@ use super::scene::MILLI;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::pages::controls::slider;
+use crate::recent::Recents;
 
 /// Width below which the playback stands in two rows, points.
 const NARROW_PLAYBACK: f32 = 520.0;
@@ -16,11 +17,16 @@ const STIFFNESS: f64 = 1500.0;
 const DAMPING: f64 = 0.2;
 
 impl Backlash {
-    pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    pub(super) fn controls_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        recent: &Recents,
+        targets: &mut Targets,
+    ) {
         let before = self.input;
         self.figures_ui(ui, targets);
         self.lesson_ui(ui);
-        self.files_ui(ui, targets);
+        self.files_ui(ui, recent, targets);
         ui.separator();
         self.relay_ui(ui);
         egui::CollapsingHeader::new(tr("Design a drifting test")).show(ui, |ui| {
@@ -224,11 +230,11 @@ impl Backlash {
     pub(super) fn playback_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
         let narrow = ui.available_width() < NARROW_PLAYBACK;
         ui.horizontal(|ui| {
-            let label = self.playback.label();
+            let label = self.playback.label(ui.ctx());
             let button = ui.button(tr(label));
             targets.note("gap:play", ui, &button);
             if button.clicked() {
-                self.playback.toggle();
+                self.playback.toggle(ui.ctx());
             }
             if ui
                 .button(tr("Step"))

@@ -23,6 +23,7 @@ use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::pages::controls::claim_ui;
+use crate::recent::{Recent, Recents};
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
 use design::Design;
@@ -268,30 +269,33 @@ impl Backlash {
         }
     }
 
-    fn wide_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    fn wide_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         egui::Panel::left("drive")
             .exact_size(SIDE)
             .resizable(false)
             .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, targets));
+                egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, recent, targets));
             });
         egui::CentralPanel::default().show(ui, |ui| {
-            self.answer_ui(ui);
-            self.playback_ui(ui, targets);
-            let Some(scene) = &self.scene else {
-                return;
-            };
-            picture::ui(ui, scene, self.playback.clock, PICTURE);
-            let height = (0.5 * ui.available_height() - 34.0).max(120.0);
-            plots::time_ui(ui, scene, self.playback.clock, height);
-            ui.columns(2, |columns| {
-                plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
-                plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
+            // Large type leaves less room than the plots need.
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                self.answer_ui(ui);
+                self.playback_ui(ui, targets);
+                let Some(scene) = &self.scene else {
+                    return;
+                };
+                picture::ui(ui, scene, self.playback.clock, PICTURE);
+                let height = (0.5 * ui.available_height() - 34.0).max(120.0);
+                plots::time_ui(ui, scene, self.playback.clock, height);
+                ui.columns(2, |columns| {
+                    plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
+                    plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
+                });
             });
         });
     }
 
-    fn narrow_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    fn narrow_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         egui::CentralPanel::default().show(ui, |ui| {
             egui::ScrollArea::vertical().show(ui, |ui| {
                 self.answer_ui(ui);
@@ -302,7 +306,7 @@ impl Backlash {
                     plots::phase_ui(ui, scene, self.playback.clock, 240.0);
                     plots::map_ui(ui, scene, self.playback.clock, 240.0);
                 }
-                self.side_ui(ui, targets);
+                self.side_ui(ui, recent, targets);
             });
         });
     }
@@ -326,14 +330,18 @@ impl View for Backlash {
         self.estimate(ui.ctx());
         self.play(ui);
         if ui.available_width() < NARROW {
-            self.narrow_ui(ui, &mut desk.targets);
+            self.narrow_ui(ui, &desk.recent, &mut desk.targets);
         } else {
-            self.wide_ui(ui, &mut desk.targets);
+            self.wide_ui(ui, &desk.recent, &mut desk.targets);
         }
     }
 
     fn takes_files(&self) -> bool {
         true
+    }
+
+    fn opened(&mut self) -> Vec<Recent> {
+        self.files.opened()
     }
 
     fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
@@ -344,8 +352,8 @@ impl View for Backlash {
         self.files.open_dropped(ctx, file);
     }
 
-    fn toggle_play(&mut self) {
-        self.playback.toggle();
+    fn toggle_play(&mut self, ctx: &egui::Context) {
+        self.playback.toggle(ctx);
     }
 
     fn hint(&self) -> Option<(&'static str, &'static str)> {

@@ -9,6 +9,8 @@ use super::scene::MILLI;
 use crate::files::MEASUREMENT;
 use crate::hook::Targets;
 use crate::language::tr;
+use crate::motion;
+use crate::recent::{Recents, measurement};
 
 /// Crossings that are listed.
 const LISTED: usize = 12;
@@ -22,25 +24,25 @@ const LESSON_DELAY: f64 = 2e-4;
 
 impl Backlash {
     /// The panel beside the plots.
-    pub(super) fn side_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    pub(super) fn side_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         ui.add_space(4.0);
         ui.spacing_mut().slider_width = SLIDER;
         if self.measured() {
-            self.measurement_ui(ui, targets);
+            self.measurement_ui(ui, recent, targets);
         } else {
-            self.controls_ui(ui, targets);
+            self.controls_ui(ui, recent, targets);
         }
     }
 
     /// What is open, and the way back.
-    fn measurement_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    fn measurement_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         let name = self.scene.as_ref().and_then(|s| s.file());
         ui.strong(tr(name.unwrap_or("Reading ...")));
         if let Some(verdict) = self.scene.as_ref().and_then(|s| s.verdict()) {
             ui.label(tr(verdict));
         }
         if self.estimation.is_some() {
-            ui.spinner();
+            motion::busy_ui(ui);
         }
         if let Some(Ok(estimate)) = self.scene.as_ref().and_then(|s| s.estimate.as_ref()) {
             traverses_ui(ui, estimate);
@@ -51,10 +53,10 @@ impl Backlash {
             self.close();
         }
         ui.separator();
-        self.files_ui(ui, targets);
+        self.files_ui(ui, recent, targets);
     }
 
-    pub(super) fn files_ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets) {
+    pub(super) fn files_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         ui.strong(tr("Measured drifting tests"));
         let mut chosen = None;
         ui.horizontal_wrapped(|ui| {
@@ -77,6 +79,9 @@ impl Backlash {
                 self.files.open_dialog(ui.ctx(), MEASUREMENT);
             }
         });
+        if let Some(recent) = recent.ui(ui, measurement, targets) {
+            self.files.reopen(ui.ctx(), &recent);
+        }
         if let Some(built_in) = chosen {
             self.open_bytes(ui.ctx(), built_in.id, &built_in.csv());
         }

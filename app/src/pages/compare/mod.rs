@@ -35,6 +35,7 @@ use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::recent::Recent;
 use crate::save::save;
 use crate::tasks::ExperimentTask;
 use answer::{name_of, times_noise};
@@ -132,6 +133,8 @@ enum Look {
 enum Command {
     OpenBuiltIn(usize),
     OpenDialog,
+    /// Opens a file once more.
+    Reopen(Recent),
     Close,
     Add(EffectId),
     Undo,
@@ -248,8 +251,9 @@ impl Compare {
                 });
             }
         } else {
-            egui::CentralPanel::default()
-                .show(ui, |ui| self.welcome_ui(ui, targets, &mut commands));
+            egui::CentralPanel::default().show(ui, |ui| {
+                self.welcome_ui(ui, &desk.recent, targets, &mut commands);
+            });
         }
         for command in commands {
             match command {
@@ -314,6 +318,7 @@ impl Compare {
                     self.open(ctx, built_in.id, built_in.csv);
                 }
             }
+            Command::Reopen(recent) => self.files.reopen(ctx, &recent),
             Command::OpenDialog => self.files.open_dialog(ctx, MEASUREMENT),
             Command::OpenModel => self.files.open_dialog(ctx, MODEL),
             Command::Type(typed) => self.typed = typed,
@@ -483,6 +488,10 @@ impl View for Compare {
 
     fn takes_files(&self) -> bool {
         true
+    }
+
+    fn opened(&mut self) -> Vec<Recent> {
+        self.files.opened()
     }
 
     fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {

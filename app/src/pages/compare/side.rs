@@ -164,7 +164,7 @@ fn card_ui(
     };
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let add = ui.add_enabled(
                 page.job.is_none(),
                 egui::Button::new(tr(format!("Add {}", name_of(id)))),

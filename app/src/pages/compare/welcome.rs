@@ -3,6 +3,7 @@
 use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::tr;
+use crate::recent::{Recents, measurement};
 use crate::theme;
 
 /// A measurement that comes with the app.
@@ -38,6 +39,7 @@ impl Compare {
     pub(super) fn welcome_ui(
         &self,
         ui: &mut egui::Ui,
+        recent: &Recents,
         targets: &mut Targets,
         commands: &mut Vec<Command>,
     ) {
@@ -63,6 +65,9 @@ impl Compare {
             ui.label(tr("Or your own: drop a CSV file anywhere on this window, or"));
             if ui.button(tr("Open a file ...")).clicked() {
                 commands.push(Command::OpenDialog);
+            }
+            if let Some(recent) = recent.ui(ui, measurement, targets) {
+                commands.push(Command::Reopen(recent));
             }
             ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process."));
         });

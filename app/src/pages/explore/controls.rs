@@ -94,9 +94,9 @@ impl Explore {
 
     fn playback_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
-            let label = self.playback.label();
+            let label = self.playback.label(ui.ctx());
             if ui.button(tr(label)).clicked() {
-                self.playback.toggle();
+                self.playback.toggle(ui.ctx());
             }
             if ui.button(tr("From the start")).clicked() {
                 self.playback.clock = 0.0;

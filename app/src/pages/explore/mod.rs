@@ -81,8 +81,8 @@ impl View for Explore {
         }
     }
 
-    fn toggle_play(&mut self) {
-        self.playback.toggle();
+    fn toggle_play(&mut self, ctx: &egui::Context) {
+        self.playback.toggle(ctx);
     }
 
     fn hint(&self) -> Option<(&'static str, &'static str)> {
@@ -195,13 +195,16 @@ impl Explore {
                 });
             });
         egui::CentralPanel::default().show(ui, |ui| {
-            self.answer_ui(ui);
-            let height = (0.5 * ui.available_height() - 34.0).max(150.0);
-            ui.columns(2, |columns| {
-                self.nyquist_ui(&mut columns[0], height);
-                self.phase_ui(&mut columns[1], height);
+            // Large type leaves less room than the plots need.
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                self.answer_ui(ui);
+                let height = (0.5 * ui.available_height() - 34.0).max(150.0);
+                ui.columns(2, |columns| {
+                    self.nyquist_ui(&mut columns[0], height);
+                    self.phase_ui(&mut columns[1], height);
+                });
+                self.time_ui(ui, height);
             });
-            self.time_ui(ui, height);
         });
     }
 

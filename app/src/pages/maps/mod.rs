@@ -12,6 +12,7 @@ use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::motion;
 use crate::tasks::MapTask;
 use crate::theme;
 use picture::Picture;
@@ -91,10 +92,10 @@ impl Maps {
             ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
         theme::answer_ui(ui, &self.answer());
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.label(tr("Click a point to set it in Explore. Try another quantity: where is the describing function worst?"));
             if self.job.is_some() {
-                ui.spinner();
+                motion::busy_ui(ui);
                 ui.label(format!("{:.0} %", 100.0 * self.map.share()));
             }
         });

@@ -18,6 +18,7 @@ use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::motion;
 use crate::tasks::TuneTask;
 use crate::theme;
 
@@ -232,7 +233,7 @@ impl Tune {
                 self.stage += 1;
             }
             if self.job.is_some() {
-                ui.spinner();
+                motion::busy_ui(ui);
             }
         });
     }

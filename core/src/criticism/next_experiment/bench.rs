@@ -8,6 +8,7 @@ use super::program::Program;
 use crate::criticism::CriticismError;
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
+use crate::criticism::noise::Noise;
 use crate::criticism::score::score;
 use crate::criticism::session::{Scored, Session};
 use crate::criticism::structure::Structure;
@@ -116,7 +117,7 @@ pub(super) struct Bench {
     /// Their number of samples.
     samples: usize,
     outputs: Vec<(Quantity, String, String)>,
-    noise: Vec<f64>,
+    noise: Vec<Noise>,
 }
 
 impl Bench {
@@ -150,7 +151,14 @@ impl Bench {
             stretch: step * samples,
         };
         Some(Self {
-            noise: data.outputs.iter().map(|o| o.noise).collect(),
+            noise: data
+                .outputs
+                .iter()
+                .map(|o| Noise {
+                    level: o.noise,
+                    counted: o.counted,
+                })
+                .collect(),
             outputs: session.outputs.clone(),
             units: (
                 session.input_unit().to_owned(),

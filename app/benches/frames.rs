@@ -1,0 +1,230 @@
+//! How much work of its own a frame takes while someone drags: every slider and every number of every page in
+//! turn, frame after frame without a pause, and the shapes cut into triangles, as for a software rasteriser.
+//! What paints them is not measured. Each drag is made several times, and the least time of each of its frames
+//! counts, on Linux without the time that it waited for a processor: what else the machine did meanwhile is no
+//! work of the app.
+//!
+//! ```text
+//! cargo bench -p hysteron --bench frames
+//! ```
+
+use std::time::{Duration, Instant};
+
+use egui::accesskit::{Node, TreeUpdate};
+use egui::{Context, Event, Modifiers, PointerButton, Pos2, RawInput, Rect, Role, Vec2};
+use hysteron::HysteronApp;
+
+/// The window: so tall that most controls are in view, points.
+const WINDOW: Vec2 = Vec2::new(1280.0, 1400.0);
+
+/// Frames of a drag from one end to the other.
+const DRAG: usize = 40;
+
+/// Times that a drag is made.
+const REPEATS: usize = 3;
+
+/// Frames, and the time between them, until what was opened is computed.
+const SETTLE: usize = 2000;
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// Time between two pictures at 60 a second.
+const FRAME: Duration = Duration::from_micros(16_667);
+
+/// What is opened: a name, a link, and whether something of it is dragged besides its controls.
+const PLACES: [(&str, &str); 13] = [
+    ("start", "v1;start"),
+    ("explore", "v1;explore"),
+    ("explore, Fig. 5", "v1;explore;explore.figure=5"),
+    ("maps", "v1;maps"),
+    ("tune, relay", "v1;tune"),
+    ("tune, ultimate gain", "v1;tune;tune.step=ultimate"),
+    ("tune, phase margin", "v1;tune;tune.step=adaptation"),
+    ("tune, model", "v1;tune;tune.step=model"),
+    ("tune, rules", "v1;tune;tune.step=rules"),
+    ("tune, loops", "v1;tune;tune.step=loops"),
+    ("backlash", "v1;backlash"),
+    ("backlash, measured", "v1;backlash;backlash.file=drive-10"),
+    ("compare", "v1;compare;compare.file=drive-02"),
+];
+
+/// An app in a window of its own.
+struct Bench {
+    ctx: Context,
+    app: HysteronApp,
+    time: f64,
+    frames: Vec<Duration>,
+}
+
+impl Bench {
+    fn new(link: &str) -> Self {
+        let mut bench = Self {
+            ctx: Context::default(),
+            app: HysteronApp::default(),
+            time: 0.0,
+            frames: Vec::new(),
+        };
+        bench.frame(Vec::new());
+        let opened = bench.app.open_link(&bench.ctx, link);
+        assert_eq!(opened, Ok(()), "{link}");
+        bench.settle();
+        bench
+    }
+
+    /// One frame; its work is noted.
+    fn frame(&mut self, events: Vec<Event>) -> Option<TreeUpdate> {
+        self.time += FRAME.as_secs_f64();
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, WINDOW)),
+            time: Some(self.time),
+            events,
+            ..RawInput::default()
+        };
+        let (begin, waited) = (Instant::now(), waited());
+        let mut output = self.ctx.run_ui(input, |ui| self.app.frame_ui(ui));
+        let triangles = self.ctx.tessellate(output.shapes, output.pixels_per_point);
+        let elapsed = begin.elapsed();
+        self.frames
+            .push(elapsed.saturating_sub(self::waited().saturating_sub(waited)));
+        drop(triangles);
+        // Nothing is painted.
+        output.textures_delta.clear();
+        output.platform_output.accesskit_update
+    }
+
+    /// Waits until nothing is computed any more.
+    fn settle(&mut self) {
+        for _ in 0..SETTLE {
+            self.frame(Vec::new());
+            if self.app.hook_state()["busy"] == false {
+                return;
+            }
+            std::thread::sleep(PAUSE);
+        }
+    }
+
+    /// The controls that can be dragged: their names and places.
+    fn controls(&mut self) -> Vec<(String, Rect)> {
+        self.ctx.enable_accesskit();
+        self.frame(Vec::new());
+        let tree = self.frame(Vec::new());
+        self.ctx.disable_accesskit();
+        let nodes = tree.map(|t| t.nodes).unwrap_or_default();
+        let window = Rect::from_min_size(Pos2::ZERO, WINDOW);
+        // A control is named by itself or by the label beside it.
+        let named = |node: &Node| {
+            let beside = node.labelled_by().first();
+            let label = beside.and_then(|id| nodes.iter().find(|(i, _)| i == id));
+            let name = node
+                .label()
+                .or(label.and_then(|(_, l)| l.value().or(l.label())));
+            format!("{:?} {}", node.role(), name.unwrap_or_default())
+        };
+        let draggable = |node: &Node| matches!(node.role(), Role::Slider | Role::SpinButton);
+        nodes
+            .iter()
+            .filter(|(_, node)| draggable(node))
+            .filter_map(|(_, node)| {
+                let b = node.bounds()?;
+                let [x0, y0, x1, y1] = [b.x0, b.y0, b.x1, b.y1].map(|v| v as f32);
+                let place = Rect::from_min_max(Pos2::new(x0, y0), Pos2::new(x1, y1));
+                window.contains_rect(place).then(|| (named(node), place))
+            })
+            .collect()
+    }
+
+    /// Drags from the left end of a place to its right end; the times of the frames.
+    fn drag(&mut self, place: Rect) -> Vec<Duration> {
+        let at = |share: f32| Pos2::new(place.left() + share * place.width(), place.center().y);
+        let button = |pos, pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        self.frame(vec![Event::PointerMoved(at(0.02))]);
+        self.frame(vec![button(at(0.02), true)]);
+        self.frames.clear();
+        for i in 1..=DRAG {
+            self.frame(vec![Event::PointerMoved(at(
+                0.02 + 0.96 * i as f32 / DRAG as f32
+            ))]);
+        }
+        let frames = std::mem::take(&mut self.frames);
+        self.frame(vec![button(at(0.98), false)]);
+        frames
+    }
+
+    /// The least times of the frames of a drag that is made several times, from the same state each time.
+    fn drags(&mut self, link: &str, place: Rect) -> Vec<Duration> {
+        let mut least = self.drag(place);
+        for _ in 1..REPEATS {
+            let opened = self.app.open_link(&self.ctx, link);
+            assert_eq!(opened, Ok(()), "{link}");
+            self.settle();
+            for (least, again) in least.iter_mut().zip(self.drag(place)) {
+                *least = again.min(*least);
+            }
+        }
+        least
+    }
+}
+
+/// How long this thread has waited for a processor so far (Documentation/scheduler/sched-stats.rst of Linux).
+fn waited() -> Duration {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let waited = stat.split_whitespace().nth(1);
+    Duration::from_nanos(waited.and_then(|w| w.parse().ok()).unwrap_or(0))
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    1e3 * time.as_secs_f64()
+}
+
+fn main() {
+    println!(
+        "{:<22}{:>9}{:>9}{:>10}{:>10}{:>10}{:>9}",
+        "page", "controls", "frames", "median", "95 %", "worst", "> 16 ms"
+    );
+    for (name, link) in PLACES {
+        let controls = Bench::new(link).controls();
+        let mut all = Vec::new();
+        let mut slow = Vec::new();
+        for (label, place) in &controls {
+            // Each on a page of its own: a drag would leave another behind.
+            let frames = Bench::new(link).drags(link, *place);
+            let late = frames
+                .iter()
+                .filter(|f| **f > Duration::from_millis(16))
+                .count();
+            if late > 0 {
+                let worst = frames.iter().max().copied().unwrap_or_default();
+                slow.push(format!(
+                    "    {label}: {late} of {DRAG}, up to {:.1} ms",
+                    milliseconds(worst)
+                ));
+            }
+            all.extend(frames);
+        }
+        all.sort_unstable();
+        let Some(last) = all.last() else {
+            println!("{name:<22}{:>9}", 0);
+            continue;
+        };
+        let at = |share: f64| milliseconds(all[(share * (all.len() - 1) as f64) as usize]);
+        let late = all
+            .iter()
+            .filter(|f| **f > Duration::from_millis(16))
+            .count();
+        println!(
+            "{name:<22}{:>9}{:>9}{:>7.2} ms{:>7.2} ms{:>7.2} ms{late:>9}",
+            controls.len(),
+            all.len(),
+            at(0.5),
+            at(0.95),
+            milliseconds(*last)
+        );
+        for line in slow {
+            println!("{line}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Files that were opened before. Natively their paths are kept; a browser gives none, so that there the text
+//! of small files is kept instead.
+
+use serde::{Deserialize, Serialize};
+
+use crate::hook::Targets;
+use crate::language::tr;
+
+/// Files that are remembered.
+const MOST: usize = 8;
+
+/// Bytes of all texts that are kept in a browser, whose storage has some five million.
+#[cfg(target_arch = "wasm32")]
+const MOST_BYTES: usize = 1_000_000;
+
+/// A file that was opened before.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Recent {
+    /// Its name.
+    pub name: String,
+    /// Where it is; empty in a browser.
+    pub path: String,
+    /// What was in it; empty where it can be read again.
+    text: String,
+}
+
+impl Recent {
+    /// A file that was read.
+    pub fn new(name: &str, path: &str, bytes: &[u8]) -> Self {
+        let again = cfg!(not(target_arch = "wasm32")) && !path.is_empty();
+        Self {
+            name: name.to_owned(),
+            path: if again {
+                path.to_owned()
+            } else {
+                String::new()
+            },
+            text: if again {
+                String::new()
+            } else {
+                String::from_utf8_lossy(bytes).into_owned()
+            },
+        }
+    }
+
+    /// Its bytes.
+    ///
+    /// # Errors
+    /// Why it cannot be read any more.
+    pub fn read(&self) -> Result<Vec<u8>, String> {
+        if self.path.is_empty() {
+            return Ok(self.text.clone().into_bytes());
+        }
+        std::fs::read(&self.path).map_err(|e| e.to_string())
+    }
+}
+
+/// The files that were opened, the last one first.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Recents(Vec<Recent>);
+
+impl Recents {
+    /// Notes a file that was opened.
+    pub fn note(&mut self, recent: Recent) {
+        self.0
+            .retain(|r| (&r.name, &r.path) != (&recent.name, &recent.path));
+        self.0.insert(0, recent);
+        self.0.truncate(MOST);
+        #[cfg(target_arch = "wasm32")]
+        {
+            let mut bytes = 0;
+            self.0.retain(|r| {
+                bytes += r.text.len();
+                bytes <= MOST_BYTES
+            });
+        }
+    }
+
+    /// Draws a button for each whose name ends so; the one that was clicked.
+    pub fn ui(
+        &self,
+        ui: &mut egui::Ui,
+        ending: fn(&str) -> bool,
+        targets: &mut Targets,
+    ) -> Option<Recent> {
+        let mut chosen = None;
+        let shown: Vec<&Recent> = self.0.iter().filter(|r| ending(&r.name)).collect();
+        if shown.is_empty() {
+            return None;
+        }
+        ui.horizontal_wrapped(|ui| {
+            ui.label(tr("Opened before:"));
+            for recent in shown {
+                let button = ui.button(&recent.name);
+                targets.note(format!("recent:{}", recent.name), ui, &button);
+                let button = if recent.path.is_empty() {
+                    button
+                } else {
+                    button.on_hover_text(&recent.path)
+                };
+                if button.clicked() {
+                    chosen = Some(recent.clone());
+                }
+            }
+        });
+        chosen
+    }
+}
+
+/// Whether a file of this name may be a measurement.
+pub fn measurement(name: &str) -> bool {
+    !name.to_ascii_lowercase().ends_with(".toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_file_comes_first_and_once() {
+        let mut recents = Recents::default();
+        for name in ["a.csv", "b.csv", "a.csv"] {
+            recents.note(Recent::new(name, "", b"t [s]"));
+        }
+        let names: Vec<&str> = recents.0.iter().map(|r| r.name.as_str()).collect();
+        assert_eq!(names, ["a.csv", "b.csv"]);
+        assert_eq!(recents.0[0].read(), Ok(b"t [s]".to_vec()));
+        for i in 0..20 {
+            recents.note(Recent::new(&i.to_string(), "", b""));
+        }
+        assert_eq!(recents.0.len(), MOST);
+    }
+
+    #[test]
+    fn a_file_with_a_path_is_read_again_from_there() {
+        let recent = Recent::new("x.csv", "/nowhere/x.csv", b"t [s]");
+        assert!(recent.text.is_empty());
+        assert!(recent.read().is_err(), "it is not there");
+    }
+}
