@@ -25,10 +25,10 @@
 mod support;
 
 use hysteron_core::effect::EffectId;
+use hysteron_core::rig::Random;
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, relay};
 use support::case::{Bench, Case, Hidden};
-use support::drive_rig::{DriveRig, Excitation, Friction, Load, relay};
 use support::process_rig::ProcessRig;
-use support::random::Random;
 use support::score::{NEAR_FLOOR, Outcome, Totals, report, run};
 use support::{drive_cases, process_cases};
 

@@ -15,11 +15,11 @@ use hysteron_core::backlash::{
     GapError, GapEstimate, Quality, Segment, Side, backlash_map, estimate_gap, pelt,
 };
 use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity, import_csv};
-use proptest::prelude::*;
-use support::drive_rig::{
+use hysteron_core::rig::Random;
+use hysteron_core::rig::{
     DriveRig, Excitation, Friction, Load, Recorded, SAMPLING, Stranger, carried_over,
 };
-use support::random::Random;
+use proptest::prelude::*;
 
 /// What the issue of an estimate may be off by.
 const WITHIN: f64 = 0.05;

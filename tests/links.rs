@@ -120,6 +120,14 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
             "v1;compare;compare.file=drive-02;compare.effects=%5B%22magic%22%5D",
             "does not exist",
         ),
+        ("v1;compare;compare.mystery=AAAA", "another version"),
+        ("v1;compare;compare.mystery=AQ-not", "no mystery"),
+        ("v1;compare;compare.mystery=%C3%A4", "letters"),
+        ("v1;compare;compare.mystery=7", "cannot be read"),
+        (
+            "v1;compare;compare.mystery=AQ;compare.file=drive-02",
+            "not both",
+        ),
         ("v1;tune;tune.rule=luck", "rule"),
         ("v1;maps;maps.across.from=9", "must be the larger"),
     ] {
@@ -133,7 +141,7 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
         assert_eq!(state(&harness)["notice"], refused);
         assert_eq!(state(&harness)["link"], before, "{text}");
     }
-    let long = format!("v1;explore;loop.relay.gain={}", "1".repeat(20_000));
+    let long = format!("v1;explore;loop.relay.gain={}", "1".repeat(40_000));
     assert!(through(&long).is_err_and(|e| e.contains("too long")));
     harness.step();
     harness.step();
@@ -261,10 +269,10 @@ proptest! {
     }
 
     #[test]
-    fn no_value_makes_it_panic(value in setting(), which in 0_usize..8) {
+    fn no_value_makes_it_panic(value in setting(), which in 0_usize..9) {
         let path = [
             "loop", "loop.relay.gain", "loop.noise", "loop.plant", "maps.across", "backlash.run",
-            "compare.effects", "tune.step",
+            "compare.effects", "tune.step", "compare.mystery",
         ][which];
         for page in HysteronApp::default().page_ids() {
             let settings = json!({"x": value});

@@ -3,7 +3,7 @@
 mod support;
 
 use hysteron_core::criticism::{DiagnosisJob, MissingPart, Progress, StepReport};
-use support::drive_rig::{DriveRig, Excitation, Stranger};
+use hysteron_core::rig::{DriveRig, Excitation, Stranger};
 
 /// The last model of a diagnosis that must end with `unknown`.
 fn unknown(excitation: Excitation, stranger: Stranger) -> StepReport {

@@ -13,11 +13,11 @@ use hysteron_core::criticism::{
     Progress,
 };
 use hysteron_core::measurement::Measurement;
+use hysteron_core::rig::{self, DriveRig, SAMPLING, relay};
 use hysteron_core::user_model::UserModel;
 use support::diagnosis::{classes, finish};
-use support::drive_rig::{self, DriveRig, SAMPLING, relay};
 use support::process_rig::{self, ProcessRig};
-use support::proposed::Proposed;
+use support::proposed;
 
 /// These two act alike where the input has two opposite levels.
 const OFFSET: [&str; 2] = ["gain_asymmetry", "constant_load"];
@@ -56,7 +56,7 @@ impl Bench for DriveRig {
     fn set(self, proposal: &NextExperiment) -> Self {
         Self {
             seed: self.seed + 1000,
-            excitation: drive_rig::Excitation::Proposed(Proposed::of(proposal)),
+            excitation: rig::Excitation::Proposed(proposed::of(proposal)),
             samples: (proposal.duration / SAMPLING).round() as usize,
             ..self
         }
@@ -71,7 +71,7 @@ impl Bench for ProcessRig {
     fn set(self, proposal: &NextExperiment) -> Self {
         Self {
             seed: self.seed + 1000,
-            excitation: process_rig::Excitation::Proposed(Proposed::of(proposal)),
+            excitation: process_rig::Excitation::Proposed(proposed::of(proposal)),
             samples: (proposal.duration / process_rig::SAMPLING).round() as usize,
             ..self
         }

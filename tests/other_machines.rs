@@ -6,8 +6,8 @@ mod support;
 use std::f64::consts::TAU;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Recorded};
 use support::diagnosis::{classes, finish};
-use support::drive_rig::{DriveRig, Excitation, Friction, Recorded};
 
 /// Friction and load of these machines, N m.
 const FRICTION: f64 = 0.02;

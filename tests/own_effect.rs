@@ -5,10 +5,10 @@ mod support;
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::effect::{EffectId, Formula, registry};
 use hysteron_core::measurement::{Kind, Measurement};
+use hysteron_core::rig::{DriveRig, Excitation, Stranger};
 use hysteron_core::user_model::UserModel;
 use proptest::prelude::*;
 use support::diagnosis::{classes, finish};
-use support::drive_rig::{DriveRig, Excitation, Stranger};
 
 fn diagnose(measurement: &Measurement, model: &UserModel) -> Diagnosis {
     finish(DiagnosisJob::with_model(measurement, model).unwrap())

@@ -1,20 +1,11 @@
 //! The pages, as a user sees and works them: pictures of fixed size, and the way from a file to the answer.
 
-#[path = "support/drive_rig.rs"]
-#[allow(dead_code, clippy::large_types_passed_by_value)]
-mod drive_rig;
-#[path = "support/proposed.rs"]
-#[allow(dead_code)]
-mod proposed;
-#[path = "support/random.rs"]
-#[allow(dead_code)]
-mod random;
-
 #[path = "support/ui.rs"]
 mod ui;
 
 use egui_kittest::kittest::Queryable as _;
 use hysteron::HysteronApp;
+use hysteron_core::rig;
 use ui::{App, WIDE, finish, picture, state, type_over};
 
 /// The app in the window of the pictures, on this page.
@@ -171,14 +162,14 @@ fn an_effect_of_ones_own_is_typed_and_added() {
 
 #[test]
 fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
-    let rig = drive_rig::DriveRig {
-        excitation: drive_rig::Excitation::Multisine { amplitude: 0.08 },
-        stranger: Some(drive_rig::Stranger::SpeedBump {
+    let rig = rig::DriveRig {
+        excitation: rig::Excitation::Multisine { amplitude: 0.08 },
+        stranger: Some(rig::Stranger::SpeedBump {
             torque: 0.05,
             centre: 3.0,
             width: 0.5,
         }),
-        ..drive_rig::DriveRig::default()
+        ..rig::DriveRig::default()
     };
     let mut harness = app("compare");
     let ctx = harness.ctx.clone();

@@ -3,25 +3,28 @@
 /// The whole link for what stands behind `#`. A native app knows of no page on the web: there it is the part
 /// that both take.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn of(link: &str) -> String {
+pub fn whole(link: &str) -> String {
     format!("#{link}")
 }
 
-/// The whole link for what stands behind `#`; the address bar shows it too.
+/// The whole link for what stands behind `#`.
 #[cfg(target_arch = "wasm32")]
+pub fn whole(link: &str) -> String {
+    let address = web_sys::window().and_then(|w| w.location().href().ok());
+    let address = address.unwrap_or_default();
+    let page = address.split('#').next().unwrap_or_default();
+    format!("{page}#{link}")
+}
+
+/// The same; the address bar shows it too.
 pub fn of(link: &str) -> String {
-    let fragment = format!("#{link}");
-    let Some(window) = web_sys::window() else {
-        return fragment;
-    };
-    if let Ok(history) = window.history() {
+    #[cfg(target_arch = "wasm32")]
+    if let Some(history) = web_sys::window().and_then(|w| w.history().ok()) {
         // It only matters to who copies the link from there.
         let null = wasm_bindgen::JsValue::NULL;
-        let _ = history.replace_state_with_url(&null, "", Some(&fragment));
+        let _ = history.replace_state_with_url(&null, "", Some(&format!("#{link}")));
     }
-    let address = window.location().href().unwrap_or_default();
-    let page = address.split('#').next().unwrap_or_default();
-    format!("{page}{fragment}")
+    whole(link)
 }
 
 /// What the address bar last said.

@@ -230,6 +230,15 @@ impl HysteronApp {
                 };
                 self.notice = Some(Notice::done(ctx, saying));
             }
+            Command::CopyOther { link, saying } => {
+                ctx.copy_text(address::whole(&link));
+                self.notice = Some(Notice::done(ctx, saying));
+            }
+            Command::Save(document) => self.save_text(ctx, *document),
+            Command::OpenFile(page, name, bytes) => {
+                self.go(page);
+                self.open(ctx, &name, &bytes);
+            }
             Command::OpenLink(text) => {
                 // A refusal is on the screen.
                 let _ = self.open_link(ctx, &text);

@@ -13,8 +13,8 @@ use serde_json::{Map, Value};
 /// The version that is written, and the only one that is read.
 pub const VERSION: &str = "v1";
 
-/// Length beyond which a text is refused unread, bytes: the longest of ours has a tenth.
-pub const LONGEST: usize = 16_384;
+/// Length beyond which a text is refused unread, bytes: a mystery has half of it, everything else a tenth.
+pub const LONGEST: usize = 32_768;
 
 /// The text for `page` with `settings`; those that equal `defaults` are left out.
 pub fn write(page: &str, settings: &Value, defaults: &Value) -> String {

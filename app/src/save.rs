@@ -3,6 +3,7 @@
 use std::sync::mpsc::Sender;
 
 /// A file to be saved.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Document {
     /// Suggested name, with its ending.
     pub name: String,

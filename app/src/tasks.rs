@@ -7,6 +7,7 @@ use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, Tile};
 use hysteron_core::measurement::Measurement;
+use hysteron_core::mystery::{Answer, Mystery, Request, Reveal};
 use hysteron_core::tuning::{TuningInput, TuningReport};
 use hysteron_core::user_model::UserModel;
 use serde::de::DeserializeOwned;
@@ -111,6 +112,40 @@ pub struct GapReport {
 impl Task for GapTask {
     const NAME: &'static str = "gap";
     type Report = GapReport;
+}
+
+/// Makes a mystery on the bench.
+#[derive(Serialize, Deserialize)]
+pub struct MysteryTask(pub Request);
+
+/// A mystery that was made.
+#[derive(Serialize, Deserialize)]
+pub struct Made {
+    /// The record, with the truth sealed.
+    pub mystery: Mystery,
+    /// The same as a text for a link.
+    pub link: String,
+}
+
+impl Task for MysteryTask {
+    const NAME: &'static str = "mystery";
+    type Report = Made;
+}
+
+/// Opens the sealed truth and judges a model by it.
+#[derive(Serialize, Deserialize)]
+pub struct RevealTask {
+    /// The truth, sealed.
+    pub seal: Vec<u8>,
+    /// The word that opens it.
+    pub word: String,
+    /// The model.
+    pub answer: Answer,
+}
+
+impl Task for RevealTask {
+    const NAME: &'static str = "reveal";
+    type Report = Reveal;
 }
 
 /// What the worker says first, when it listens.

@@ -6,10 +6,14 @@ use hysteron_core::criticism::{ExperimentJob, NextExperiment, Progress, StepJob,
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
 use hysteron_core::measurement::import_csv;
+use hysteron_core::mystery::{Reveal, make};
 use hysteron_core::tuning::{TuningReport, tune};
 use hysteron_core::user_model::UserModel;
 
-use crate::tasks::{ExperimentTask, GapReport, GapTask, MapTask, News, StepTask, Task, TuneTask};
+use crate::tasks::{
+    ExperimentTask, GapReport, GapTask, Made, MapTask, MysteryTask, News, RevealTask, StepTask,
+    Task, TuneTask,
+};
 
 /// Where a task says its news; false when nobody listens any more and it should end.
 pub type Say<'a, R> = &'a mut dyn FnMut(News<R>) -> bool;
@@ -126,6 +130,27 @@ impl Work for GapTask {
                 measurement: keep.then_some(measurement),
             })),
             Err(error) => News::Failed(error),
+        });
+    }
+}
+
+impl Work for MysteryTask {
+    fn run(self, say: Say<'_, Made>) {
+        say(match make(&self.0) {
+            Ok(mystery) => News::Report(Box::new(Made {
+                link: mystery.link(),
+                mystery,
+            })),
+            Err(error) => News::Failed(error.to_string()),
+        });
+    }
+}
+
+impl Work for RevealTask {
+    fn run(self, say: Say<'_, Reveal>) {
+        say(match Reveal::open(&self.seal, &self.word, &self.answer) {
+            Ok(reveal) => News::Report(Box::new(reveal)),
+            Err(error) => News::Failed(error.to_string()),
         });
     }
 }

@@ -22,7 +22,9 @@
 //! | [`backlash`] | how wide is the hidden gap? |
 //! | [`effect`] | which physics can be added? |
 //! | [`user_model`] | what does the user know of the model? |
+//! | [`rig`] | what would a bench measure, by other physics? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
+//! | [`mystery`] | which effect is hidden? |
 //! | [`report`] | what was found, on one page |
 #![warn(missing_docs)]
 
@@ -36,9 +38,11 @@ pub mod limit_cycle;
 pub mod maps;
 pub mod measurement;
 pub mod model;
+pub mod mystery;
 pub mod plant;
 pub mod relay;
 pub mod report;
+pub mod rig;
 pub mod scenario;
 pub mod simulate;
 pub mod tuning;

@@ -2,8 +2,8 @@
 
 use hysteron_core::measurement::Measurement;
 
-use super::drive_rig::DriveRig;
 use super::process_rig::ProcessRig;
+use hysteron_core::rig::DriveRig;
 
 /// A hidden effect.
 #[derive(Clone, Debug)]

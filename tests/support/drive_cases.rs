@@ -2,10 +2,10 @@
 //! visible: they raise the error of the baseline to a few times the noise, seldom beyond twenty times.
 
 use super::case::{Bench, Case, Truth};
-use super::drive_rig::{
+use hysteron_core::rig::Random;
+use hysteron_core::rig::{
     DriveRig, Excitation, Friction, Load, Recorded, Stranger, carried_over, drifting, relay,
 };
-use super::random::Random;
 
 /// With two levels of input, any static map of it is a gain and an offset, and the gain goes into the
 /// inertia: so asymmetry and constant torque are one class.

@@ -14,9 +14,7 @@
 pub mod case;
 pub mod diagnosis;
 pub mod drive_cases;
-pub mod drive_rig;
 pub mod process_cases;
 pub mod process_rig;
 pub mod proposed;
-pub mod random;
 pub mod score;

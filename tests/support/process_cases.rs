@@ -2,7 +2,7 @@
 
 use super::case::{Bench, Case, Truth};
 use super::process_rig::{Excitation, ProcessRig, Stranger};
-use super::random::Random;
+use hysteron_core::rig::Random;
 
 /// With two levels of input, a static map of it is a gain and an offset.
 const OFFSET: &[&str] = &["gain_asymmetry", "constant_load"];

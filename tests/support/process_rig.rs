@@ -5,8 +5,8 @@
 
 use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
 
-use super::proposed::Proposed;
-use super::random::Random;
+use hysteron_core::rig::Proposed;
+use hysteron_core::rig::Random;
 
 /// Sampling time of the controller and the record, s.
 pub const SAMPLING: f64 = 0.2;

@@ -21,7 +21,9 @@ pub const NARROW: [f32; 2] = [420.0, 800.0];
 pub const TALL: [f32; 2] = [1600.0, 2400.0];
 
 /// Where the app can be, so that all its pages, their steps, and what they say in several cases are seen.
-pub const PLACES: [&str; 33] = [
+pub const PLACES: [&str; 35] = [
+    "v1;mystery",
+    "v1;mystery;mystery.by_hand=true;mystery.experiment=relay",
     "v1;start",
     "v1;lessons",
     "v1;explore",

@@ -60,6 +60,10 @@ impl HysteronApp {
         front.map_or_else(Vec::new, |p| p.tables())
     }
 
+    pub(super) fn save_text(&self, ctx: &Context, document: save::Document) {
+        self.exit().text(ctx, document);
+    }
+
     pub(super) fn save_svg(&self, ui: &egui::Ui, name: &str, place: Rect) {
         let document = save::Document {
             name: format!("{name}.svg"),

@@ -25,7 +25,8 @@ mod web {
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
     use crate::tasks::{
-        ExperimentTask, GapTask, MapTask, News, READY, StepTask, Task as _, TuneTask,
+        ExperimentTask, GapTask, MapTask, MysteryTask, News, READY, RevealTask, StepTask,
+        Task as _, TuneTask,
     };
     use crate::work::Work;
 
@@ -63,6 +64,8 @@ mod web {
             ExperimentTask::NAME => run::<ExperimentTask>(scope, task),
             MapTask::NAME => run::<MapTask>(scope, task),
             GapTask::NAME => run::<GapTask>(scope, task),
+            MysteryTask::NAME => run::<MysteryTask>(scope, task),
+            RevealTask::NAME => run::<RevealTask>(scope, task),
             TuneTask::NAME => run::<TuneTask>(scope, task),
             _ => Err(serde::de::Error::custom(format!(
                 "no task is called {name}"

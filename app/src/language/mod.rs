@@ -21,13 +21,14 @@ pub enum Language {
 }
 
 /// The German texts, by the parts of the app.
-const GERMAN: [&str; 6] = [
+const GERMAN: [&str; 7] = [
     include_str!("../../../assets/german/app.txt"),
     include_str!("../../../assets/german/backlash.txt"),
     include_str!("../../../assets/german/compare.txt"),
     include_str!("../../../assets/german/effects.txt"),
     include_str!("../../../assets/german/errors.txt"),
     include_str!("../../../assets/german/loops.txt"),
+    include_str!("../../../assets/german/mystery.txt"),
 ];
 
 impl Language {

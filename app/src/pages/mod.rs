@@ -9,6 +9,7 @@ mod controls;
 mod explore;
 mod lessons;
 mod maps;
+mod mystery;
 mod playback;
 mod start;
 mod tune;
@@ -20,6 +21,7 @@ use crate::hook::Targets;
 use crate::language::Language;
 use crate::lessons::Study;
 use crate::recent::{Recent, Recents};
+use crate::save::Document;
 use crate::theme::Look;
 
 /// A page.
@@ -81,6 +83,7 @@ pub fn registry() -> Vec<Box<dyn View>> {
         Box::<tune::Tune>::default(),
         Box::<compare::Compare>::default(),
         Box::<backlash::Backlash>::default(),
+        Box::<mystery::Bench>::default(),
     ]
 }
 
@@ -115,6 +118,17 @@ pub enum Command {
     Set(&'static str, &'static str, serde_json::Value),
     /// Puts the link to what is on the screen on the clipboard.
     CopyLink,
+    /// Puts another link on the clipboard, and says so.
+    CopyOther {
+        /// What stands behind `#`.
+        link: String,
+        /// What is said.
+        saying: &'static str,
+    },
+    /// Lets the user save a file.
+    Save(Box<Document>),
+    /// Opens the bytes of a file on the page with this id, and brings it to the front.
+    OpenFile(&'static str, String, Vec<u8>),
     /// Takes the last change back, or does it again.
     Undo,
     Redo,

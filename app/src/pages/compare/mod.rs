@@ -11,6 +11,7 @@ mod open;
 mod own;
 mod parameters;
 mod plots;
+mod reveal;
 mod settings;
 mod side;
 mod waterfall;
@@ -77,6 +78,8 @@ pub struct Compare {
     search: Option<(Vec<EffectId>, usize, Job<ExperimentTask>)>,
     /// The finding that is shaded.
     finding: usize,
+    /// The truth that came with the measurement, sealed.
+    sealed: Option<reveal::Sealed>,
     files: Files,
     /// What saving a file has to say.
     saved: (Sender<String>, Receiver<String>),
@@ -104,6 +107,7 @@ impl Default for Compare {
             limits: None,
             search: None,
             finding: 0,
+            sealed: None,
             files: Files::default(),
             saved: channel(),
         }
@@ -120,6 +124,8 @@ enum Look {
     Places,
     /// What an effect would leave.
     Fingerprint,
+    /// The truth of a mystery.
+    Reveal,
 }
 
 /// What a click asks for; carried out once, after drawing.
@@ -143,6 +149,10 @@ enum Command {
     Search(usize, Limits),
     /// Saves the input of a proposal.
     SaveInput(usize),
+    /// The word that opens the seal is being typed.
+    Word(String),
+    /// Opens the seal.
+    Reveal,
     /// What the app is to do.
     Desk(Vec<super::Command>),
     Cancel,
@@ -189,6 +199,9 @@ impl Compare {
             }
         }
         self.take_search();
+        if let Some(sealed) = &mut self.sealed {
+            sealed.update(self.shown.as_deref().unwrap_or_default());
+        }
     }
 
     /// The step on screen.
@@ -206,9 +219,16 @@ impl Compare {
                 egui::CentralPanel::default().show(ui, |ui| {
                     egui::ScrollArea::vertical().show(ui, |ui| {
                         self.answer_ui(ui);
+                        // What was asked for stands where it was asked.
+                        let reveals = self.look == Look::Reveal;
+                        if reveals {
+                            reveal::ui(self, ui, targets, &mut commands);
+                        }
                         side::ui(self, ui, targets, &mut commands);
                         self.looks_ui(ui, targets, &mut commands);
-                        self.evidence_ui(ui, 220.0, targets, &mut commands);
+                        if !reveals {
+                            self.evidence_ui(ui, 220.0, targets, &mut commands);
+                        }
                     });
                 });
             } else {
@@ -250,7 +270,11 @@ impl Compare {
                 (Look::Time, "time", "Over time"),
                 (Look::Places, "places", "Where it fails"),
                 (Look::Fingerprint, "fingerprint", "Fingerprints"),
+                (Look::Reveal, "reveal", "Reveal"),
             ] {
+                if look == Look::Reveal && self.sealed.is_none() {
+                    continue;
+                }
                 let tab = ui.selectable_label(self.look == look, tr(title));
                 targets.note(format!("look:{id}"), ui, &tab);
                 if tab.clicked() {
@@ -258,7 +282,8 @@ impl Compare {
                 }
             }
             let mut before = self.before;
-            let can = self.report_before().is_some() && self.look != Look::Fingerprint;
+            let can =
+                self.report_before().is_some() && matches!(self.look, Look::Time | Look::Places);
             let toggle = ui.add_enabled(
                 can,
                 egui::Checkbox::new(&mut before, tr("Beside the step before")),
@@ -282,6 +307,7 @@ impl Compare {
             Look::Time => plots::ui(self, ui, height),
             Look::Places => atlas::ui(self, ui),
             Look::Fingerprint => fingerprint::ui(self, ui, targets, commands),
+            Look::Reveal => reveal::ui(self, ui, targets, commands),
         }
     }
 
@@ -329,6 +355,12 @@ impl Compare {
                     save(ctx, document, &self.saved.0);
                 }
             }
+            Command::Word(word) => {
+                if let Some(sealed) = &mut self.sealed {
+                    sealed.word = word;
+                }
+            }
+            Command::Reveal => self.reveal(ctx),
             Command::Desk(_) => {}
             Command::Cancel => {
                 self.job = None;
@@ -356,7 +388,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.job.is_some() || self.search.is_some(),
+            "busy": self.job.is_some() || self.search.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
             "progress": self.progress.0,
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
             "effects": report.map(|r| r.step.effects.clone()),
@@ -372,6 +404,7 @@ impl Compare {
             "fingerprint": self.chosen(),
             "model": self.model_file,
             "message": self.message,
+            "sealed": self.sealed.as_ref().map(reveal::Sealed::hook_state),
         })
     }
 }

@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use hysteron_core::measurement::import_csv;
+use hysteron_core::mystery::{Mystery, seal_of};
 use hysteron_core::user_model::UserModel;
 
-use super::{Compare, export, own};
+use super::reveal::Sealed;
+use super::{Compare, Look, export, own};
 use crate::jobs::Job;
 
 impl Compare {
@@ -19,6 +21,10 @@ impl Compare {
                 self.message = measurement.warnings.first().cloned();
                 self.measurement = Some(Arc::new(measurement));
                 self.source = export::Source::of(bytes);
+                self.sealed = seal_of(bytes).map(Sealed::new);
+                if self.look == Look::Reveal {
+                    self.look = Look::default();
+                }
                 let kind = self.measurement.as_ref().map(|m| m.kind);
                 if self.model.as_ref().is_some_and(|m| Some(m.kind) != kind) {
                     self.forget_model();
@@ -26,6 +32,14 @@ impl Compare {
                 self.restart(ctx);
             }
             Err(error) => self.message = Some(error.to_string()),
+        }
+    }
+
+    /// Opens a mystery that came in a link.
+    pub(super) fn open_mystery(&mut self, ctx: &egui::Context, mystery: &Mystery, link: &str) {
+        self.open(ctx, &mystery.name(), mystery.csv().as_bytes());
+        if let Some(sealed) = &mut self.sealed {
+            sealed.link = Some(link.to_owned());
         }
     }
 

@@ -1,6 +1,7 @@
 //! What is set on the page: the measurement by its name, and what was added to the model.
 
 use hysteron_core::effect::{self, EffectId};
+use hysteron_core::mystery::Mystery;
 use hysteron_core::user_model::UserModel;
 use serde::{Deserialize, Serialize};
 
@@ -12,8 +13,10 @@ const MOST_EFFECTS: usize = 12;
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settings {
-    /// Name of the measurement that is open.
+    /// Name of the measurement that is open, unless it is the next.
     file: Option<String>,
+    /// The measurement itself: a mystery that came in a link.
+    mystery: Option<String>,
     /// Name of the file with the user's model.
     model: Option<String>,
     /// Effects of the user's own, as the command line takes them.
@@ -31,8 +34,11 @@ pub fn is_built_in(name: &str) -> bool {
 
 impl Compare {
     pub(super) fn set_to(&self) -> Settings {
+        let mystery = self.sealed.as_ref().and_then(|s| s.link.clone());
+        let file = self.measurement.as_ref().filter(|_| mystery.is_none());
         Settings {
-            file: self.measurement.as_ref().map(|m| m.name.clone()),
+            file: file.map(|m| m.name.clone()),
+            mystery,
             model: self.model_file.clone(),
             own: self.own.clone(),
             effects: self.effects.iter().map(ToString::to_string).collect(),
@@ -50,6 +56,16 @@ impl Compare {
             }
             _ => None,
         };
+        if settings.file.is_some() && settings.mystery.is_some() {
+            return Err("A link may open a file or a mystery, not both.".to_owned());
+        }
+        let mystery = match &settings.mystery {
+            Some(text) if settings.mystery != present.mystery => {
+                let read = Mystery::from_link(text).map_err(|e| e.to_string())?;
+                Some((read, text))
+            }
+            _ => None,
+        };
         if let Some(name) = &settings.model
             && settings.model != present.model
         {
@@ -58,8 +74,8 @@ impl Compare {
         if settings.effects.len() > MOST_EFFECTS || settings.own.len() > MOST_EFFECTS {
             return Err(format!("A link may add {MOST_EFFECTS} effects."));
         }
-        if settings.file.is_none() {
-            if present.file.is_some() {
+        if settings.file.is_none() && settings.mystery.is_none() {
+            if self.measurement.is_some() {
                 self.carry_out(ctx, Command::Close);
             }
             return Ok(());
@@ -67,6 +83,10 @@ impl Compare {
         if let Some(built_in) = built_in {
             self.carry_out(ctx, Command::Close);
             self.open(ctx, built_in.id, built_in.csv);
+        }
+        if let Some((mystery, text)) = &mystery {
+            self.carry_out(ctx, Command::Close);
+            self.open_mystery(ctx, mystery, text);
         }
         if settings.model != present.model {
             self.forget_model();

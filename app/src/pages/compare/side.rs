@@ -69,6 +69,16 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &
             commands.push(Command::ExportReport);
         }
     });
+    if page.sealed.is_some() {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(tr("A mystery: its truth is sealed in it."));
+            let reveal = ui.button(tr("Reveal ..."));
+            targets.note("reveal:go", ui, &reveal);
+            if reveal.clicked() {
+                commands.push(Command::Look(Look::Reveal));
+            }
+        });
+    }
     ui.horizontal_wrapped(|ui| {
         let load = ui.button(tr("Load model ...")).on_hover_text(tr(
             "What is known beforehand: parameters, effects already in the model (TOML)",

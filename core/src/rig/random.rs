@@ -1,6 +1,7 @@
-//! Seeded random numbers of the rigs.
+//! Seeded random numbers of the bench.
 
 /// Uniform and normal numbers (xorshift64*, Box and Muller).
+#[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {

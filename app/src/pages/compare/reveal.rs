@@ -1,0 +1,265 @@
+//! The sealed truth of a mystery, and the model on screen beside it.
+
+use egui::RichText;
+use hysteron_core::criticism::with_error;
+use hysteron_core::effect::{EffectId, VISCOUS_FRICTION};
+use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
+
+use super::{Command, Compare, name_of};
+use crate::hook::Targets;
+use crate::jobs::{Job, News};
+use crate::language::tr;
+use crate::tasks::RevealTask;
+use crate::theme;
+
+/// Width that the table of numbers needs, points; in a narrower window each is a line of its own.
+const TABLE: f32 = 600.0;
+
+/// A sealed truth that came with the measurement, and what was revealed of it.
+#[derive(Default)]
+pub(super) struct Sealed {
+    seal: Vec<u8>,
+    /// The measurement as a text for a link, where it came in one.
+    pub link: Option<String>,
+    pub word: String,
+    job: Option<Job<RevealTask>>,
+    message: Option<String>,
+    /// The truth beside the model with these effects.
+    revealed: Option<(Vec<EffectId>, Reveal)>,
+}
+
+impl Sealed {
+    pub fn new(seal: Vec<u8>) -> Self {
+        Self {
+            seal,
+            ..Self::default()
+        }
+    }
+
+    /// For tests.
+    pub fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "message": self.message,
+            "points": self.revealed.as_ref().map(|(_, r)| r.points()),
+        })
+    }
+
+    pub fn is_busy(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Takes what the job has found.
+    pub fn update(&mut self, shown: &[EffectId]) {
+        for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
+            match news {
+                News::Progress(..) => continue,
+                News::Report(reveal) => self.revealed = Some((shown.to_vec(), *reveal)),
+                News::Failed(text) => self.message = Some(text),
+            }
+            self.job = None;
+        }
+    }
+}
+
+impl Compare {
+    /// The model on screen, with what the record cannot tell from its effects.
+    fn answer_to_judge(&self) -> Option<Answer> {
+        let (report, shown) = (self.report()?, self.shown.as_deref()?);
+        let classes = report.verdict.iter().flat_map(|v| &v.missing);
+        let classes: Vec<&Vec<EffectId>> = classes.collect();
+        let alike = |effect: EffectId| {
+            if let Some(class) = classes.iter().find(|class| class.contains(&effect)) {
+                return (*class).clone();
+            }
+            // Without a verdict: what was said when the effect was added.
+            let place = shown.iter().position(|e| *e == effect);
+            let before = place.and_then(|n| self.reports.get(&shown[..n]));
+            let candidates = before.iter().flat_map(|r| &r.step.candidates);
+            let mut own = candidates.filter(|c| c.effects == [effect]);
+            own.next()
+                .map_or_else(Vec::new, |c| c.equivalent_to.clone())
+        };
+        let effects = report.step.effects.iter().copied();
+        Some(Answer {
+            effects: effects
+                .filter(|e| *e != VISCOUS_FRICTION)
+                .map(|e| (e, alike(e)))
+                .collect(),
+            parameters: report.step.parameters.clone(),
+        })
+    }
+
+    /// Opens the seal with the word that was typed.
+    pub(super) fn reveal(&mut self, ctx: &egui::Context) {
+        let answer = self.answer_to_judge();
+        if let (Some(sealed), Some(answer)) = (&mut self.sealed, answer) {
+            sealed.message = None;
+            let task = RevealTask {
+                seal: sealed.seal.clone(),
+                word: sealed.word.clone(),
+                answer,
+            };
+            sealed.job = Some(Job::run(ctx, task));
+        }
+    }
+}
+
+pub(super) fn ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    let Some(sealed) = &page.sealed else {
+        return;
+    };
+    ui.add_space(6.0);
+    ui.label(tr("The truth about this record lies in it, sealed. Add what is missing until only noise is left; then say the word."));
+    let mut word = sealed.word.clone();
+    ui.horizontal_wrapped(|ui| {
+        let label = ui.label(tr("Word"));
+        ui.add(egui::TextEdit::singleline(&mut word).desired_width(220.0))
+            .labelled_by(label.id);
+        let ready = !word.trim().is_empty() && sealed.job.is_none() && page.report().is_some();
+        let reveal = ui.add_enabled(ready, egui::Button::new(tr("Reveal the truth")));
+        targets.note("reveal", ui, &reveal);
+        if reveal.clicked() {
+            commands.push(Command::Reveal);
+        }
+        if sealed.job.is_some() {
+            ui.spinner();
+        }
+    });
+    if word != sealed.word {
+        commands.push(Command::Word(word));
+    }
+    if let Some(message) = &sealed.message {
+        ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+    }
+    let Some((effects, reveal)) = &sealed.revealed else {
+        return;
+    };
+    ui.add_space(8.0);
+    theme::answer_ui(ui, &format!("{:.0} of 100 points.", reveal.points()));
+    if Some(effects) != page.shown.as_ref() {
+        ui.label(tr(
+            "They are for the model that was on screen then; the model is another one now.",
+        ));
+    }
+    egui::ScrollArea::vertical()
+        .id_salt("truth")
+        .show(ui, |ui| {
+            effects_ui(reveal, ui);
+            numbers_ui(reveal, ui);
+            rule_ui(reveal, ui);
+        });
+}
+
+fn effects_ui(reveal: &Reveal, ui: &mut egui::Ui) {
+    ui.strong(tr("Effects"));
+    if reveal.rows.is_empty() {
+        ui.label(tr("Nothing was hidden, and nothing was added: right."));
+    } else if reveal.truth.hidden.is_empty() {
+        ui.label(tr("Nothing was hidden."));
+    }
+    for Row { effect, mark } in &reveal.rows {
+        let name = name_of(*effect);
+        let (color, text) = match mark {
+            Mark::Right => (theme::NOISE, format!("{name}: found")),
+            Mark::Alike(other) => (
+                theme::NOISE,
+                format!(
+                    "{name}: found as {}, which this record cannot tell from it",
+                    name_of(*other)
+                ),
+            ),
+            Mark::Missed => (theme::MODEL, format!("{name}: missed")),
+            Mark::Wrong => (theme::MODEL, format!("{name}: wrong, it is not there")),
+        };
+        ui.label(RichText::new(tr(text)).color(theme::readable(ui, color)));
+    }
+}
+
+fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
+    if reveal.numbers.is_empty() {
+        return;
+    }
+    ui.add_space(8.0);
+    ui.strong(tr("Numbers"));
+    if ui.available_width() < TABLE {
+        for number in &reveal.numbers {
+            let [name, truth, found, error, marks] = cells(number);
+            ui.strong(tr(name));
+            ui.label(tr(format!("Truth {truth}, your model {found}.")));
+            let error = if error.is_empty() {
+                error
+            } else {
+                format!("Error {error}. ")
+            };
+            ui.label(tr(format!("{error}Marks {marks}.")));
+        }
+        return;
+    }
+    egui::Grid::new("truth_and_model")
+        .num_columns(5)
+        .striped(true)
+        .show(ui, |ui| {
+            for title in ["", "truth", "your model", "error", "marks"] {
+                ui.small(tr(title));
+            }
+            ui.end_row();
+            for number in &reveal.numbers {
+                for cell in cells(number) {
+                    ui.label(tr(cell));
+                }
+                ui.end_row();
+            }
+        });
+}
+
+/// Name, truth, value of the model, error and marks of a number.
+fn cells(number: &Compared) -> [String; 5] {
+    let owner = number.effect.map_or("simplest model", name_of);
+    let found = number.found.map_or_else(
+        || "not in your model".to_owned(),
+        |(value, error)| with_error(value, error, &number.unit),
+    );
+    // 0.0 rather than -0.0.
+    let percent = number.error().map(|e| (1000.0 * e).round() / 10.0 + 0.0);
+    [
+        format!("{} ({owner})", number.symbol),
+        with_unit(number.truth, &number.unit),
+        found,
+        percent.map_or_else(String::new, |p| format!("{p:+.1} %")),
+        format!("{:.0} %", 100.0 * number.mark),
+    ]
+}
+
+/// A true value, four digits.
+fn with_unit(value: f64, unit: &str) -> String {
+    let size = value.abs();
+    let text = if (1e-2..1e4).contains(&size) {
+        let decimals = (3.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.3e}")
+    };
+    if unit.is_empty() || unit == "1" {
+        text
+    } else {
+        format!("{text} {unit}")
+    }
+}
+
+fn rule_ui(reveal: &Reveal, ui: &mut egui::Ui) {
+    let [effects, most_effects] = reveal.effect_points;
+    let [numbers, most_numbers] = reveal.number_points;
+    ui.add_space(8.0);
+    ui.label(tr(format!(
+        "{effects:.0} of {most_effects:.0} points for the effects: the share of right ones among all that are hidden or were added."
+    )));
+    ui.label(tr(format!(
+        "{numbers:.0} of {most_numbers:.0} points for the numbers: full marks within 5 % or two standard errors, none 50 % beyond."
+    )));
+}

@@ -1,0 +1,174 @@
+//! The experiment, and what to hide.
+
+use egui::Ui;
+use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
+
+use super::Bench;
+use crate::language::tr;
+use crate::pages::Desk;
+
+/// Name and story of an experiment.
+fn words(experiment: Experiment) -> (&'static str, &'static str) {
+    match experiment {
+        Experiment::Sines => (
+            "Sum of sines",
+            "Ten sines from 1 to 40 Hz: shows most effects.",
+        ),
+        Experiment::Relay => (
+            "Relay",
+            "A relay on the velocity: shows friction and what comes late.",
+        ),
+        Experiment::Stairs => (
+            "Staircase",
+            "Steps of growing size in both directions: tells offsets from asymmetry.",
+        ),
+    }
+}
+
+const fn strength_name(strength: Strength) -> &'static str {
+    match strength {
+        Strength::Small => "small",
+        Strength::Medium => "medium",
+        Strength::Large => "large",
+    }
+}
+
+/// A unit that is handy to type in, and how many of it are one of the SI unit.
+fn handy(unit: &'static str) -> (f64, &'static str) {
+    match unit {
+        "s" => (1e3, "ms"),
+        "N m" => (1e3, "mN m"),
+        "rad" => (1e3, "mrad"),
+        "1" => (1e2, "%"),
+        "N m s^2/rad^2" => (1e6, "µN m s²/rad²"),
+        other => (1.0, other),
+    }
+}
+
+impl Bench {
+    pub(super) fn choices_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(tr("Experiment:"));
+            for experiment in Experiment::ALL {
+                let (name, story) = words(experiment);
+                ui.selectable_value(&mut self.experiment, experiment, tr(name))
+                    .on_hover_text(tr(story));
+            }
+        });
+        ui.label(tr(words(self.experiment).1));
+        ui.horizontal_wrapped(|ui| {
+            ui.label(tr("Hidden:"));
+            for (by_hand, id, name) in [
+                (false, "surprise", "Surprise me: none, one or two effects"),
+                (true, "choose", "I choose"),
+            ] {
+                let radio = ui.radio_value(&mut self.by_hand, by_hand, tr(name));
+                desk.targets.note(format!("mystery:{id}"), ui, &radio);
+            }
+        });
+        if self.by_hand {
+            self.menu_ui(ui);
+        } else {
+            ui.label(tr(self.surprise()));
+        }
+    }
+
+    /// What the page may choose, in words.
+    fn surprise(&self) -> String {
+        let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
+        let names: Vec<&str> = hideable()
+            .iter()
+            .filter(shown)
+            .map(Hideable::name)
+            .collect();
+        format!(
+            "It may hide: {}. One mystery in five hides nothing, half of them one effect, the others two of different kinds, all between small and large.",
+            names.join(", ")
+        )
+    }
+
+    /// The menu of effects; those that this experiment shows stand first.
+    fn menu_ui(&mut self, ui: &mut Ui) {
+        let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
+        let (shown, others): (Vec<&Hideable>, Vec<_>) = hideable().iter().partition(shown);
+        for effect in shown {
+            self.effect_ui(ui, effect);
+        }
+        let count = others.iter().filter(|h| self.pick(h.id).is_some()).count();
+        let title = match count {
+            0 => "Effects that this experiment hardly shows".to_owned(),
+            n => format!("Effects that this experiment hardly shows ({n} chosen)"),
+        };
+        egui::CollapsingHeader::new(tr(title))
+            .id_salt("hardly_shown")
+            .show(ui, |ui| {
+                for effect in others {
+                    self.effect_ui(ui, effect);
+                }
+            });
+        if self.picks.is_empty() {
+            ui.label(tr("Nothing is chosen: then nothing is missing, which is for your students to find out."));
+        }
+    }
+
+    fn effect_ui(&mut self, ui: &mut Ui, effect: &'static Hideable) {
+        let name = effect.name();
+        let mut chosen = self.pick(effect.id).is_some();
+        let other = hideable()
+            .iter()
+            .find(|o| o.id != effect.id && !o.goes_with(effect) && self.pick(o.id).is_some());
+        ui.horizontal_wrapped(|ui| {
+            let full = self.picks.len() >= MOST && !chosen;
+            let tick = ui.add_enabled(
+                other.is_none() && !full,
+                egui::Checkbox::new(&mut chosen, tr(name)),
+            );
+            if let Some(other) = other {
+                tick.on_disabled_hover_text(tr(format!("Not together with {}", other.name())));
+            } else if tick.changed() {
+                self.picks.retain(|p| p.effect != effect.id);
+                if chosen {
+                    self.picks.push(Pick {
+                        effect: effect.id,
+                        value: effect.value(Strength::default()),
+                    });
+                }
+            }
+            if let Some(pick) = self.picks.iter_mut().find(|p| p.effect == effect.id) {
+                strength_ui(ui, effect, &mut pick.value);
+            }
+        });
+    }
+}
+
+/// Most effects that can be ticked.
+const MOST: usize = 3;
+
+fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
+    for strength in Strength::ALL {
+        let at = effect.value(strength);
+        let button = ui
+            .selectable_label(*value == at, tr(strength_name(strength)))
+            .on_hover_text(tr(format!(
+                "{}: {}",
+                effect.name(),
+                strength_name(strength)
+            )));
+        if button.clicked() {
+            *value = at;
+        }
+    }
+    let (symbol, label, unit) = effect.parameter();
+    let (scale, unit) = handy(unit);
+    let [least, most] = effect.range;
+    let mut shown = *value * scale;
+    let text = ui.label(format!("{} {symbol}", tr(label)));
+    let field = egui::DragValue::new(&mut shown)
+        .range(least * scale..=most * scale)
+        .speed(0.002 * most * scale)
+        .max_decimals(3)
+        .suffix(format!(" {unit}"));
+    if ui.add(field).labelled_by(text.id).changed() {
+        *value = shown / scale;
+    }
+}

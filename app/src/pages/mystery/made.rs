@@ -1,0 +1,120 @@
+//! A mystery that was made: its record, and the ways to hand it on.
+
+use egui_plot::Line;
+use hysteron_core::mystery::Mystery;
+
+use crate::export::Table;
+use crate::language::tr;
+use crate::link::VERSION;
+use crate::pages::chart::{caption_ui, curve, envelope, still};
+use crate::pages::{Command, Desk};
+use crate::save::Document;
+use crate::tasks::Made;
+use crate::theme;
+
+/// Longest link that is offered, characters: browsers take more, but not every message does.
+const LONGEST: usize = 16_384;
+
+/// Most points of a curve.
+const MOST_POINTS: usize = 4000;
+
+/// A mystery, ready to be shown.
+pub(super) struct Product {
+    mystery: Mystery,
+    pub name: String,
+    /// The text of a link that opens it.
+    link: String,
+    samples: usize,
+    /// Length of the record, s.
+    duration: f64,
+    /// Velocity in rad/s over time in s.
+    curve: Vec<[f64; 2]>,
+}
+
+impl Product {
+    pub fn of(made: Made) -> Self {
+        let Made { mystery, link } = made;
+        let step = f64::from(mystery.step) * 1e-6;
+        let [_, _, velocities] = &mystery.columns;
+        let samples = velocities.len();
+        let time: Vec<f64> = (0..samples).map(|i| i as f64 * step).collect();
+        let speed: Vec<f64> = velocities.iter().map(|v| f64::from(*v) * 1e-3).collect();
+        Self {
+            name: mystery.name(),
+            link: format!("{VERSION};compare;compare.mystery={link}"),
+            samples,
+            duration: samples as f64 * step,
+            curve: envelope(&time, &speed, MOST_POINTS),
+            mystery,
+        }
+    }
+}
+
+pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
+    let Product {
+        mystery,
+        name,
+        link,
+        samples,
+        duration,
+        curve: points,
+    } = product;
+    egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.strong(tr(format!("{name} is made.")));
+        ui.label(tr(format!("{samples} samples in {duration:.1} s. What is hidden stands in it, sealed.")));
+        ui.horizontal_wrapped(|ui| {
+            let save = ui.button(tr("Save the file"));
+            desk.targets.note("mystery:save", ui, &save);
+            if save.clicked() {
+                desk.commands.push(Command::Save(Box::new(Document {
+                    name: format!("{name}.csv"),
+                    kind: "Measurement",
+                    media: "text/csv;charset=utf-8",
+                    text: mystery.csv(),
+                })));
+            }
+            let fits = link.len() <= LONGEST;
+            let copy = ui
+                .add_enabled(fits, egui::Button::new(tr("Copy the mystery's link")))
+                .on_hover_text(tr("Opens this record in Compare; the truth is sealed in it"))
+                .on_disabled_hover_text(tr("This record is too long for a link: save the file"));
+            desk.targets.note("mystery:copy", ui, &copy);
+            if copy.clicked() {
+                desk.commands.push(Command::CopyOther {
+                    link: link.clone(),
+                    saying: "The link to the mystery is copied. The record is in it, and the truth, sealed.",
+                });
+            }
+            if !fits {
+                ui.label(tr("It is too long for a link: save the file."));
+            }
+            let open = ui.button(tr("Open it in Compare"));
+            desk.targets.note("mystery:open", ui, &open);
+            if open.clicked() {
+                desk.commands.push(if fits {
+                    Command::OpenLink(link.clone())
+                } else {
+                    Command::OpenFile("compare", format!("{name}.csv"), mystery.csv().into_bytes())
+                });
+            }
+        });
+        caption_ui(ui, "What was measured", &[("velocity", theme::MEASURED)]);
+        still("mystery_record", "time [s]", "v1 [rad/s]", 200.0).show(ui, |plot| {
+            plot.line(Line::new(tr("velocity"), curve(points)).color(theme::MEASURED));
+        });
+    });
+}
+
+/// The record as a table.
+pub(super) fn table(product: &Product) -> Table {
+    let step = u64::from(product.mystery.step);
+    let [u, x, v] = &product.mystery.columns;
+    let time = (0..x.len() as u64).map(|i| (i * step) as f64 * 1e-6);
+    let column = |values: &[i32]| values.iter().map(|v| f64::from(*v)).collect::<Vec<_>>();
+    Table::new("mystery")
+        .with("t [s]", time)
+        .with("u [mN m]", column(u))
+        .with("x1 [counts, 1048576/rev]", column(x))
+        .with("v1 [mrad/s]", column(v))
+}

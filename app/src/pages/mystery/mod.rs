@@ -1,0 +1,241 @@
+//! Which effect is hidden? A bench that makes a measurement whose truth is sealed.
+
+mod choices;
+mod made;
+
+use hysteron_core::effect::EffectId;
+use hysteron_core::mystery::{Choice, Experiment, Pick, Request, SHORTEST_WORD};
+use hysteron_core::report::sha256;
+use serde::{Deserialize, Serialize};
+use web_time::SystemTime;
+
+use super::{Command, Desk, View};
+use crate::document::parsed;
+use crate::export::Table;
+use crate::jobs::{Job, News};
+use crate::language::tr;
+use crate::tasks::MysteryTask;
+use crate::theme;
+use made::Product;
+
+/// Width below which everything stands in one column, points.
+const NARROW: f32 = 700.0;
+
+/// The page. What is chosen and the word are no settings: a link of this page tells neither.
+#[derive(Default)]
+pub struct Bench {
+    experiment: Experiment,
+    /// Whether the page chooses what to hide, or the teacher.
+    by_hand: bool,
+    /// What the teacher chose, in the order of the menu.
+    picks: Vec<Pick>,
+    word: String,
+    job: Option<Job<MysteryTask>>,
+    message: Option<String>,
+    made: Option<Product>,
+    /// Mysteries that were made since the app started.
+    count: u32,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// What the motor is driven with.
+    experiment: Experiment,
+    /// Whether the teacher chooses what to hide.
+    by_hand: bool,
+}
+
+impl Bench {
+    /// Why nothing can be made now.
+    fn obstacle(&self) -> Option<String> {
+        let letters = self.word.trim().chars().count();
+        (letters < SHORTEST_WORD)
+            .then(|| format!("It needs a word of {SHORTEST_WORD} letters or more."))
+    }
+
+    fn make(&mut self, ctx: &egui::Context) {
+        self.message = None;
+        self.count += 1;
+        let choice = if self.by_hand {
+            Choice::Chosen(self.picks.clone())
+        } else {
+            Choice::Surprise
+        };
+        let request = Request {
+            experiment: self.experiment,
+            choice,
+            word: self.word.clone(),
+            salt: salt(self.count),
+        };
+        self.job = Some(Job::run(ctx, MysteryTask(request)));
+    }
+
+    fn pick(&self, effect: EffectId) -> Option<&Pick> {
+        self.picks.iter().find(|p| p.effect == effect)
+    }
+
+    fn page_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        theme::answer_ui(ui, "Which effect is hidden?");
+        ui.label(tr("The bench hides physics in a drive and measures it. The truth travels with the record, sealed with your word: find it, then reveal it."));
+        ui.add_space(6.0);
+        if ui.available_width() < NARROW {
+            self.teacher_ui(ui, desk);
+            self.record_ui(ui, desk);
+        } else {
+            ui.columns_const(|[left, right]| {
+                left.vertical(|ui| self.teacher_ui(ui, desk));
+                right.vertical(|ui| self.record_ui(ui, desk));
+            });
+        }
+    }
+
+    /// What to hide, and in what.
+    fn teacher_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        self.choices_ui(ui, desk);
+        ui.add_space(6.0);
+        self.make_ui(ui, desk);
+        ui.add_space(6.0);
+    }
+
+    /// What came of it, and what a student does with it.
+    fn record_ui(&self, ui: &mut egui::Ui, desk: &mut Desk) {
+        if let Some(made) = &self.made {
+            made::ui(made, ui, desk);
+            ui.add_space(6.0);
+        }
+        student_ui(ui, desk);
+    }
+
+    fn make_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label(tr("Word"));
+            ui.add(
+                egui::TextEdit::singleline(&mut self.word)
+                    .desired_width(220.0)
+                    .hint_text(tr("a few words are better than one")),
+            )
+            .labelled_by(label.id)
+            .on_hover_text(tr(
+                "Whoever has it can open the truth; without it nobody can, you neither",
+            ));
+            let obstacle = self.obstacle();
+            let ready = obstacle.is_none() && self.job.is_none();
+            let make = ui.add_enabled(ready, egui::Button::new(tr("Make the mystery")));
+            desk.targets.note("mystery:make", ui, &make);
+            if make.clicked() {
+                self.make(ui.ctx());
+            }
+            if self.job.is_some() {
+                ui.spinner();
+                ui.label(tr("The bench is running ..."));
+                if ui.button(tr("Cancel")).clicked() {
+                    self.job = None;
+                }
+            } else if let Some(obstacle) = obstacle {
+                ui.label(tr(obstacle));
+            }
+        });
+        if let Some(message) = &self.message {
+            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+        }
+    }
+}
+
+/// What a student does.
+fn student_ui(ui: &mut egui::Ui, desk: &mut Desk) {
+    egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.strong(tr("You were given a mystery?"));
+        ui.label(tr("Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is left. Then say the word under Reveal: the truth stands beside your model, with points for the effects and for the numbers."));
+        let go = ui.button(tr("Go to Compare"));
+        desk.targets.note("mystery:student", ui, &go);
+        if go.clicked() {
+            desk.commands.push(Command::Go("compare"));
+        }
+    });
+}
+
+/// Bytes that were not used before: from the clock and the number of the mystery. They are no secret.
+fn salt(count: u32) -> [u8; hysteron_core::mystery::SALT] {
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let nanos = now.map_or(0, |t| t.as_nanos());
+    let digest = sha256(format!("{nanos} {count}").as_bytes());
+    let mut salt = [0; hysteron_core::mystery::SALT];
+    for (place, byte) in salt.iter_mut().zip(digest.bytes()) {
+        *place = byte;
+    }
+    salt
+}
+
+impl View for Bench {
+    fn id(&self) -> &'static str {
+        "mystery"
+    }
+
+    fn title(&self) -> &'static str {
+        "Mystery"
+    }
+
+    fn update(&mut self, _ctx: &egui::Context) {
+        for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
+            match news {
+                News::Progress(..) => continue,
+                News::Report(made) => self.made = Some(Product::of(*made)),
+                News::Failed(text) => self.message = Some(text),
+            }
+            self.job = None;
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        egui::CentralPanel::default().show(ui, |ui| {
+            egui::ScrollArea::vertical().show(ui, |ui| self.page_ui(ui, desk));
+        });
+    }
+
+    fn hint(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "Never looked for a hidden effect? Begin with a drive that loses its swing.",
+            "v1;compare;compare.file=drive-02",
+        ))
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        self.made.iter().map(|_| "mystery").collect()
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        self.made.iter().map(made::table).collect()
+    }
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(Settings {
+            experiment: self.experiment,
+            by_hand: self.by_hand,
+        })
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        let Settings {
+            experiment,
+            by_hand,
+        } = parsed(settings)?;
+        self.experiment = experiment;
+        self.by_hand = by_hand;
+        Ok(())
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "made": self.made.as_ref().map(|m| m.name.clone()),
+            "message": self.message,
+        })
+    }
+}
