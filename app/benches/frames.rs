@@ -1,8 +1,8 @@
 //! How much work of its own a frame takes while someone drags: every slider and every number of every page in
-//! turn, frame after frame without a pause, and the shapes cut into triangles, as for a software rasteriser.
-//! What paints them is not measured. Each drag is made several times, and the least time of each of its frames
-//! counts, on Linux without the time that it waited for a processor: what else the machine did meanwhile is no
-//! work of the app.
+//! turn, 60 frames a second, so that what runs beside them has time to bring its results; and the shapes cut into
+//! triangles, as for a software rasteriser. What paints them is not measured; nor, on Linux, is the time that the
+//! thread waited for a processor. What else the machine did meanwhile is no work of the app: so a drag with a frame
+//! above 16 ms is made again, and counts as slow if it is so every time.
 //!
 //! ```text
 //! cargo bench -p hysteron --bench frames
@@ -20,11 +20,12 @@ const WINDOW: Vec2 = Vec2::new(1280.0, 1400.0);
 /// Frames of a drag from one end to the other.
 const DRAG: usize = 40;
 
-/// Times that a drag is made.
-const REPEATS: usize = 3;
+/// Times that a drag is made before it counts as slow, and what is slow.
+const TRIES: usize = 4;
+const SLOW: Duration = Duration::from_millis(16);
 
-/// Frames, and the time between them, until what was opened is computed.
-const SETTLE: usize = 2000;
+/// Frames, and the time between them, that what was opened is given to be computed.
+const SETTLE: usize = 400;
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// Time between two pictures at 60 a second.
@@ -91,7 +92,7 @@ impl Bench {
         output.platform_output.accesskit_update
     }
 
-    /// Waits until nothing is computed any more.
+    /// Waits until nothing is computed any more; the estimate of a gap may go on beside the drag.
     fn settle(&mut self) {
         for _ in 0..SETTLE {
             self.frame(Vec::new());
@@ -144,7 +145,10 @@ impl Bench {
         self.frame(vec![Event::PointerMoved(at(0.02))]);
         self.frame(vec![button(at(0.02), true)]);
         self.frames.clear();
+        let begin = Instant::now();
         for i in 1..=DRAG {
+            // The window waits for the next picture.
+            std::thread::sleep((FRAME * i as u32).saturating_sub(begin.elapsed()));
             self.frame(vec![Event::PointerMoved(at(
                 0.02 + 0.96 * i as f32 / DRAG as f32
             ))]);
@@ -153,20 +157,19 @@ impl Bench {
         self.frame(vec![button(at(0.98), false)]);
         frames
     }
+}
 
-    /// The least times of the frames of a drag that is made several times, from the same state each time.
-    fn drags(&mut self, link: &str, place: Rect) -> Vec<Duration> {
-        let mut least = self.drag(place);
-        for _ in 1..REPEATS {
-            let opened = self.app.open_link(&self.ctx, link);
-            assert_eq!(opened, Ok(()), "{link}");
-            self.settle();
-            for (least, again) in least.iter_mut().zip(self.drag(place)) {
-                *least = again.min(*least);
-            }
+/// The frames of the first drag without a slow one, else of the last. Each is on a page of its own: a drag would
+/// leave another behind.
+fn least(link: &str, place: Rect) -> Vec<Duration> {
+    let mut frames = Vec::new();
+    for _ in 0..TRIES {
+        frames = Bench::new(link).drag(place);
+        if frames.iter().all(|f| *f <= SLOW) {
+            break;
         }
-        least
     }
+    frames
 }
 
 /// How long this thread has waited for a processor so far (Documentation/scheduler/sched-stats.rst of Linux).
@@ -190,12 +193,8 @@ fn main() {
         let mut all = Vec::new();
         let mut slow = Vec::new();
         for (label, place) in &controls {
-            // Each on a page of its own: a drag would leave another behind.
-            let frames = Bench::new(link).drags(link, *place);
-            let late = frames
-                .iter()
-                .filter(|f| **f > Duration::from_millis(16))
-                .count();
+            let frames = least(link, *place);
+            let late = frames.iter().filter(|f| **f > SLOW).count();
             if late > 0 {
                 let worst = frames.iter().max().copied().unwrap_or_default();
                 slow.push(format!(
@@ -211,10 +210,7 @@ fn main() {
             continue;
         };
         let at = |share: f64| milliseconds(all[(share * (all.len() - 1) as f64) as usize]);
-        let late = all
-            .iter()
-            .filter(|f| **f > Duration::from_millis(16))
-            .count();
+        let late = all.iter().filter(|f| **f > SLOW).count();
         println!(
             "{name:<22}{:>9}{:>9}{:>7.2} ms{:>7.2} ms{:>7.2} ms{late:>9}",
             controls.len(),

@@ -91,6 +91,12 @@ fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, floor: f6
             bullet(out, &finding.text);
         }
     }
+    if !step.tests.is_empty() {
+        let _ = writeln!(out, "\n  What is left");
+        for test in &step.tests {
+            bullet(out, &test.text);
+        }
+    }
     candidates(out, &step.candidates);
 }
 

@@ -28,6 +28,9 @@ const FIRST_DAMPING: f64 = 1e-3;
 /// Iterations of the baseline before an effect is fitted.
 const BODY_ITERATIONS: usize = 2;
 
+/// Iterations of a fit whose values were put in order.
+const ORDERED_ITERATIONS: usize = 4;
+
 /// Damping above which no step is tried any more.
 const MAX_DAMPING: f64 = 1e9;
 
@@ -465,6 +468,20 @@ impl Fit {
                 fixed[j] = Some(values[j] - self.values[j]);
             }
         }
+    }
+
+    /// Puts values in order that only have each other's roles, and fits on from there; true if any were not.
+    pub fn put_in_order(&mut self, data: &Data, scales: &Scales) -> bool {
+        let mut values = self.values.clone();
+        if !self.structure.order(&mut values) {
+            return false;
+        }
+        let starts = self.starts.clone();
+        *self = Self::new(data, self.structure.clone(), values, starts, scales);
+        for _ in 0..ORDERED_ITERATIONS {
+            self.iterate(data, scales);
+        }
+        true
     }
 
     /// Takes for each window the measured state where that suits the values better than the present one.

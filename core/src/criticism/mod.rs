@@ -14,6 +14,7 @@ mod next_experiment;
 mod noise;
 mod race;
 mod report;
+mod residual_test;
 mod score;
 mod search;
 mod select;
@@ -38,5 +39,6 @@ pub use report::{
     Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
     StepReport, Verdict,
 };
+pub use residual_test::{ResidualTest, ResidualTestKind};
 pub use step::StepJob;
 pub use verdict::with_error;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Fingerprint, MissingPart, NextExperiment, Profile};
+use super::{Fingerprint, MissingPart, NextExperiment, Profile, ResidualTest};
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Quantity};
 use crate::user_model::Status;
@@ -97,6 +97,9 @@ pub struct Step {
     /// Where it fails, strongest first.
     #[serde(rename = "where")]
     pub findings: Vec<Finding>,
+    /// Whether what it leaves is white and no longer follows the input.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tests: Vec<ResidualTest>,
     /// What could be added, best first.
     pub candidates: Vec<Candidate>,
 }

@@ -400,6 +400,9 @@ impl Search {
         let mut best = finalists.into_iter().next()?;
         if best.done && !self.given_up && best.cost.is_finite() {
             best.polish_starts(data, scales);
+            if best.put_in_order(data, scales) {
+                best.polish_starts(data, scales);
+            }
         }
         Some(best)
     }

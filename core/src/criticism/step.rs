@@ -5,6 +5,7 @@ use super::knowledge::contradictions;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::{Piece, Race, one_by_one};
+use super::residual_test::residual_tests;
 use super::score::Score;
 use super::search::Search;
 use super::select::{
@@ -537,6 +538,7 @@ impl StepJob {
                 error_fit: whole.score.error_fit,
                 parameters,
                 findings,
+                tests: residual_tests(self.session.whole(), &whole.fit.motion),
                 candidates,
             },
             noise_floor: NOISE_FLOOR,

@@ -95,6 +95,22 @@ impl Structure {
         model
     }
 
+    /// Puts values of effects and baseline that only have each other's roles in order; true if any were not. What
+    /// the user said of a value stays with it.
+    pub fn order(&self, values: &mut [f64]) -> bool {
+        if self.known().iter().any(Option::is_some) {
+            return false;
+        }
+        let mut swapped = false;
+        for (index, effect) in self.effects.iter().enumerate() {
+            let range = self.range(index);
+            let (body, own) = values.split_at_mut(self.baseline_len());
+            let own = &mut own[range.start - body.len()..range.end - body.len()];
+            swapped |= effect.order(body, own);
+        }
+        swapped
+    }
+
     /// Moves the values into their ranges.
     pub fn clamp(&self, values: &mut [f64], scales: &Scales) {
         baseline::clamp(self.kind, values, scales);

@@ -53,6 +53,11 @@ pub trait Effect: Sync {
     fn contains(&self) -> &'static [EffectId] {
         &[]
     }
+    /// Exchanges `values` with those of the `body` where they only have each other's roles; true if it did. Of
+    /// two equal storages in series, say, the slower one is the process.
+    fn order(&self, _body: &mut [f64], _values: &mut [f64]) -> bool {
+        false
+    }
     /// Puts the effect with these `values` into `model`.
     fn apply(&self, values: &[f64], model: &mut Model);
 }

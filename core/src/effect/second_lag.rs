@@ -47,6 +47,17 @@ impl Effect for SecondLag {
             .collect()
     }
 
+    fn order(&self, body: &mut [f64], values: &mut [f64]) -> bool {
+        let ([_, slow], [fast]) = (body, values) else {
+            return false;
+        };
+        let swapped = fast > slow;
+        if swapped {
+            std::mem::swap(slow, fast);
+        }
+        swapped
+    }
+
     fn apply(&self, values: &[f64], model: &mut Model) {
         model.lag = Some(values[0]);
         // Both storages are the process's: a load fills the one after the other.

@@ -44,6 +44,9 @@ impl Compare {
                 commands.push(Command::Shade(index));
             }
         }
+        for test in &report.step.tests {
+            ui.label(egui::RichText::new(tr(&test.text)).small().weak());
+        }
     }
 }
 

@@ -130,7 +130,7 @@ impl View for Tune {
             self.ask(ui.ctx(), desk);
             egui::ScrollArea::vertical().show(ui, |ui| {
                 self.steps_ui(ui, desk);
-                let height = (ui.max_rect().bottom() - ui.cursor().top() - 110.0).max(300.0);
+                let height = (ui.max_rect().bottom() - ui.cursor().top() - 150.0).max(280.0);
                 self.stage_ui(ui, height);
             });
         });

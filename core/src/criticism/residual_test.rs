@@ -1,0 +1,231 @@
+//! Is what is left white, and does it still follow the input? The two classical tests of a residual.
+//!
+//! L. Ljung, System Identification: Theory for the User, 2nd edition, 1999, section 16.6: for a true model the
+//! autocorrelation of `N` residuals has a standard deviation of `1 / sqrt(N)`, their correlation with the input
+//! one of `sqrt(sum_k rho_e(k) rho_u(k) / N)`.
+
+use serde::{Deserialize, Serialize};
+
+use super::data::{Data, Output};
+use super::fit::{Motion, residuals};
+use crate::measurement::Kind;
+
+/// Lags up to which a residual is compared with itself, and with the input, in samples.
+const LAGS: usize = 20;
+
+/// Lags over which the correlations of residual and input with themselves widen the bound, in samples.
+const MEMORY: usize = 200;
+
+/// Normal quantile that none of [`LAGS`] independent values exceeds in 99 of 100 cases (Bonferroni).
+const QUANTILE: f64 = 3.48;
+
+/// What a residual is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ResidualTestKind {
+    /// With itself some samples earlier.
+    Whiteness,
+    /// With the input some samples earlier.
+    InputCorrelation,
+}
+
+/// A test of the residual of one output.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResidualTest {
+    /// What it was compared with.
+    pub kind: ResidualTestKind,
+    /// Index of the output in the measurement.
+    pub output: usize,
+    /// The correlation, -1 to 1, that is largest against its bound.
+    pub correlation: f64,
+    /// Lag at which it is, s.
+    pub lag: f64,
+    /// What chance alone leaves in 99 of 100 cases.
+    pub bound: f64,
+    /// The correlation is within its bound.
+    pub passed: bool,
+    /// The same as a sentence with numbers.
+    pub text: String,
+}
+
+/// Both tests of every output.
+pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> {
+    let runs = data.runs();
+    let input = centred(&data.input, &runs);
+    let step = data.excitation.mean_step();
+    let outputs = data.outputs.iter().zip(residuals(data, motion)).enumerate();
+    outputs
+        .flat_map(|(output, (channel, residual))| {
+            let residual = centred(&residual, &runs);
+            let test = |kind, (lag, correlation, bound): (usize, f64, f64)| {
+                let lag = lag as f64 * step;
+                let passed = correlation.abs() <= bound;
+                ResidualTest {
+                    kind,
+                    output,
+                    correlation,
+                    lag,
+                    bound,
+                    passed,
+                    text: sentence(kind, name(data.kind, channel), correlation, lag, bound),
+                }
+            };
+            let white = whiteness(&residual, &runs).map(|t| test(ResidualTestKind::Whiteness, t));
+            let follows = input_correlation(&residual, &input, &runs)
+                .map(|t| test(ResidualTestKind::InputCorrelation, t));
+            [white, follows].into_iter().flatten()
+        })
+        .collect()
+}
+
+fn name(kind: Kind, output: &Output) -> &'static str {
+    match (kind, output.is_velocity) {
+        (Kind::Process, _) => "output",
+        (Kind::Drive, true) => "velocity",
+        (Kind::Drive, false) => "position",
+    }
+}
+
+fn sentence(kind: ResidualTestKind, name: &str, correlation: f64, lag: f64, bound: f64) -> String {
+    let lag = if lag >= 1.0 {
+        format!("{lag:.1} s")
+    } else {
+        format!("{:.3} ms", 1e3 * lag)
+    };
+    let passed = correlation.abs() <= bound;
+    match (kind, passed) {
+        (ResidualTestKind::Whiteness, true) => format!(
+            "The residual of the {name} is white: no correlation beyond what chance leaves, {bound:.3}."
+        ),
+        (ResidualTestKind::Whiteness, false) => format!(
+            "The residual of the {name} is not white: {lag} apart it correlates by {correlation:.3}, chance leaves {bound:.3}."
+        ),
+        (ResidualTestKind::InputCorrelation, true) => format!(
+            "The residual of the {name} does not follow the input: no correlation beyond what chance leaves, {bound:.3}."
+        ),
+        (ResidualTestKind::InputCorrelation, false) => format!(
+            "The residual of the {name} still follows the input: {lag} later it correlates by {correlation:.3}, chance leaves {bound:.3}."
+        ),
+    }
+}
+
+/// The values in the runs without their mean; 0 elsewhere.
+fn centred(values: &[f64], runs: &[(usize, usize)]) -> Vec<f64> {
+    let used = || runs.iter().flat_map(|(from, to)| &values[*from..*to]);
+    let mean = used().sum::<f64>() / used().count().max(1) as f64;
+    let mut centred = vec![0.0; values.len()];
+    for (from, to) in runs {
+        for (c, v) in centred[*from..*to].iter_mut().zip(&values[*from..*to]) {
+            *c = v - mean;
+        }
+    }
+    centred
+}
+
+/// Sum over the runs of `a` with `b` a number of samples later.
+fn product(a: &[f64], b: &[f64], runs: &[(usize, usize)], lag: usize) -> f64 {
+    let runs = runs.iter().filter(|(from, to)| to - from > lag);
+    runs.map(|(from, to)| {
+        let pairs = a[*from..to - lag].iter().zip(&b[from + lag..*to]);
+        pairs.map(|(a, b)| a * b).sum::<f64>()
+    })
+    .sum()
+}
+
+fn count(runs: &[(usize, usize)]) -> f64 {
+    runs.iter().map(|(from, to)| to - from).sum::<usize>() as f64
+}
+
+/// Lag, correlation and bound where a residual correlates most with itself.
+fn whiteness(residual: &[f64], runs: &[(usize, usize)]) -> Option<(usize, f64, f64)> {
+    let power = product(residual, residual, runs, 0);
+    let bound = QUANTILE / count(runs).sqrt();
+    let all = (1..=LAGS).map(|lag| (lag, product(residual, residual, runs, lag) / power, bound));
+    strongest(all)
+}
+
+/// Lag, correlation and bound where a residual follows the input most.
+fn input_correlation(
+    residual: &[f64],
+    input: &[f64],
+    runs: &[(usize, usize)],
+) -> Option<(usize, f64, f64)> {
+    let power = |v: &[f64]| product(v, v, runs, 0);
+    let (residual_power, input_power) = (power(residual), power(input));
+    // Both may remember what they were: fewer of the products are then independent.
+    let widened: f64 = (1..=MEMORY)
+        .map(|lag| {
+            product(residual, residual, runs, lag) / residual_power
+                * (product(input, input, runs, lag) / input_power)
+        })
+        .sum();
+    let bound = QUANTILE * ((1.0 + 2.0 * widened.max(0.0)) / count(runs)).sqrt();
+    let norm = (residual_power * input_power).sqrt();
+    strongest((0..=LAGS).map(|lag| (lag, product(input, residual, runs, lag) / norm, bound)))
+}
+
+/// The largest correlation; none where they are no numbers, as of a signal that stands still.
+fn strongest(all: impl Iterator<Item = (usize, f64, f64)>) -> Option<(usize, f64, f64)> {
+    all.filter(|(_, c, b)| c.is_finite() && b.is_finite())
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Even noise without pattern.
+    fn noise(n: usize, seed: u64) -> Vec<f64> {
+        let mut z = seed;
+        (0..n)
+            .map(|_| {
+                z = z
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                (z >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+            })
+            .collect()
+    }
+
+    #[test]
+    fn noise_passes_as_often_as_the_bound_says() {
+        let runs = [(0, 4000)];
+        let input: Vec<f64> = (0..4000)
+            .map(|i| if i / 40 % 2 == 0 { 1.0 } else { -1.0 })
+            .collect();
+        let (mut white, mut follows) = (0, 0);
+        for seed in 0..300 {
+            let residual = noise(4000, seed);
+            let failed = |t: Option<(usize, f64, f64)>| t.is_some_and(|(_, c, b)| c.abs() > b);
+            white += usize::from(failed(whiteness(&residual, &runs)));
+            follows += usize::from(failed(input_correlation(&residual, &input, &runs)));
+        }
+        // One in a hundred; eleven of 300 would come by chance once in ten thousand times.
+        assert!(white <= 10 && follows <= 10, "{white} {follows}");
+    }
+
+    #[test]
+    fn a_residual_that_remembers_or_follows_is_told() {
+        let runs = [(0, 2000), (2200, 4000)];
+        let fresh = noise(4000, 3);
+        let mut residual = fresh.clone();
+        for i in 1..4000 {
+            residual[i] = 0.3 * residual[i - 1] + fresh[i];
+        }
+        let (lag, correlation, bound) = whiteness(&residual, &runs).unwrap();
+        assert!(
+            lag == 1 && (correlation - 0.3).abs() < bound,
+            "{lag} {correlation}"
+        );
+        let input = noise(4000, 4);
+        let residual: Vec<f64> = (0..4000)
+            .map(|i| fresh[i] + 0.5 * input[usize::saturating_sub(i, 7)])
+            .collect();
+        let (lag, correlation, bound) = input_correlation(&residual, &input, &runs).unwrap();
+        // 0.5 of the input beside as much noise: 0.5 / sqrt(1.25).
+        assert!(
+            lag == 7 && (correlation - 0.447).abs() < bound,
+            "{lag} {correlation}"
+        );
+    }
+}
