@@ -1,13 +1,14 @@
 //! Every check and test, stage by stage.
 
+use std::process::Command;
 use std::time::Instant;
 
-use crate::run::run;
+use crate::run::{check, root, run};
 use crate::{browser, setup, web};
 
 type Stage = (&'static str, fn() -> Result<(), String>);
 
-const STAGES: [Stage; 6] = [
+const STAGES: [Stage; 7] = [
     ("set-up", setup::setup),
     ("formatting", || run("cargo", &["fmt", "--all", "--check"])),
     ("lints", || {
@@ -22,6 +23,12 @@ const STAGES: [Stage; 6] = [
                 "warnings",
             ],
         )
+    }),
+    ("documentation", || {
+        let arguments = ["doc", "--no-deps", "--workspace"];
+        let mut command = Command::new("cargo");
+        command.args(arguments).env("RUSTDOCFLAGS", "-D warnings");
+        check(command.current_dir(root()), "cargo", &arguments)
     }),
     ("tests: core, command line, app", || {
         run("cargo", &["test", "--workspace", "--no-fail-fast"])

@@ -1,4 +1,4 @@
-//! The command line: one file per subcommand, one line in [`Command`] and one in [`dispatch`].
+//! The command line: one file per subcommand, one line in `Command` and one in `dispatch`.
 //!
 //! Exit code 0 on success, 2 for bad input with exactly one line on stderr (of many files: one for
 //! each), 1 where the output cannot be written. A reader that closes the pipe early, such as `head`, is a success.

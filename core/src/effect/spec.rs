@@ -95,21 +95,21 @@ pub enum Range {
     Signed,
     /// 0 or more.
     NonNegative,
-    /// Above 0: at least [`LEAST_SHARE`] of its [`Scales::of`].
+    /// Above 0: at least `LEAST_SHARE` of its [`Scales::of`].
     Positive,
     /// -0.9 to 0.9.
     Fraction,
     /// 0 to 1.
     UnitInterval,
-    /// Above 0, up to [`STIFFEST`] times its [`Scales::of`].
+    /// Above 0, up to `STIFFEST` times its [`Scales::of`].
     Stiff,
-    /// At least [`LIGHTEST`] times its [`Scales::of`].
+    /// At least `LIGHTEST` times its [`Scales::of`].
     Sizeable,
-    /// [`RIGID_CROSSINGS`] to [`SHORT_CROSSINGS`] times [`Scales::crossed`], or as far as the position is blurred.
+    /// `RIGID_CROSSINGS` to `SHORT_CROSSINGS` times [`Scales::crossed`], or as far as the position is blurred.
     Short,
-    /// At least [`RIGID_CROSSINGS`] times [`Scales::crossed`].
+    /// At least `RIGID_CROSSINGS` times [`Scales::crossed`].
     Long,
-    /// At least [`WHOLE_TURN`] times its [`Scales::of`]: what repeats over the position does so within
+    /// At least `WHOLE_TURN` times its [`Scales::of`]: what repeats over the position does so within
     /// the travel.
     Repeating,
 }
