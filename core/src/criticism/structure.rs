@@ -106,7 +106,7 @@ impl Structure {
             let range = self.range(index);
             let (body, own) = values.split_at_mut(self.baseline_len());
             let own = &mut own[range.start - body.len()..range.end - body.len()];
-            swapped |= effect.order(body, own);
+            swapped |= effect.order(self.kind, body, own);
         }
         swapped
     }

@@ -55,11 +55,22 @@ pub trait Effect: Sync {
     }
     /// Exchanges `values` with those of the `body` where they only have each other's roles; true if it did. Of
     /// two equal storages in series, say, the slower one is the process.
-    fn order(&self, _body: &mut [f64], _values: &mut [f64]) -> bool {
+    fn order(&self, _kind: Kind, _body: &mut [f64], _values: &mut [f64]) -> bool {
         false
     }
     /// Puts the effect with these `values` into `model`.
     fn apply(&self, values: &[f64], model: &mut Model);
+}
+
+/// [`Effect::order`] of a lag in series with a process: the slower of the two is the process's.
+fn slower_is_the_process(kind: Kind, body: &mut [f64], values: &mut [f64]) -> bool {
+    match (kind, body, values) {
+        (Kind::Process, [_, slow], [fast]) if *fast > *slow => {
+            std::mem::swap(slow, fast);
+            true
+        }
+        _ => false,
+    }
 }
 
 /// Every effect in the library, in the order in which equals are listed.

@@ -1,6 +1,6 @@
 //! A second first-order lag in series with the process.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, slower_is_the_process};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -47,15 +47,8 @@ impl Effect for SecondLag {
             .collect()
     }
 
-    fn order(&self, body: &mut [f64], values: &mut [f64]) -> bool {
-        let ([_, slow], [fast]) = (body, values) else {
-            return false;
-        };
-        let swapped = fast > slow;
-        if swapped {
-            std::mem::swap(slow, fast);
-        }
-        swapped
+    fn order(&self, kind: Kind, body: &mut [f64], values: &mut [f64]) -> bool {
+        slower_is_the_process(kind, body, values)
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -3,7 +3,7 @@
 //! On a drive it is the velocity that lags: an encoder counts without delay, the velocity made from
 //! it is filtered. Where the position is all that is measured, that lags.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, slower_is_the_process};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -55,6 +55,10 @@ impl Effect for SensorLag {
                 .map(|share| vec![share * scales.time_constant])
                 .collect(),
         }
+    }
+
+    fn order(&self, kind: Kind, body: &mut [f64], values: &mut [f64]) -> bool {
+        slower_is_the_process(kind, body, values)
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
