@@ -9,6 +9,7 @@ use super::{Command, Compare, name_of};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::motion;
 use crate::tasks::RevealTask;
 use crate::theme;
 
@@ -128,7 +129,7 @@ pub(super) fn ui(
             commands.push(Command::Reveal);
         }
         if sealed.job.is_some() {
-            ui.spinner();
+            motion::busy_ui(ui);
         }
     });
     if word != sealed.word {

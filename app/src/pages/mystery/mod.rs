@@ -14,6 +14,7 @@ use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::motion;
 use crate::tasks::MysteryTask;
 use crate::theme;
 use made::Product;
@@ -127,7 +128,7 @@ impl Bench {
                 self.make(ui.ctx());
             }
             if self.job.is_some() {
-                ui.spinner();
+                motion::busy_ui(ui);
                 ui.label(tr("The bench is running ..."));
                 if ui.button(tr("Cancel")).clicked() {
                     self.job = None;
