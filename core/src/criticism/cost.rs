@@ -47,11 +47,9 @@ fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
     windows
 }
 
-/// Mean square from which a window is odd, given how far off all are: this many times that of the window which
-/// this share of all do better than, so that a model which is wrong everywhere is fitted everywhere. Windows in
-/// which a body rests fit any model: the median would speak of them alone.
+/// Mean square from which a window is odd, given how far off all are: this many times the median one, so
+/// that a model which is wrong everywhere is fitted everywhere.
 const ODD_TIMES: f64 = 3.0;
-const USUAL: f64 = 0.75;
 
 pub(super) fn oddness(data: &Data, motion: &Motion) -> f64 {
     let mut squares: Vec<f64> = fitted_windows(data, motion)
@@ -60,8 +58,8 @@ pub(super) fn oddness(data: &Data, motion: &Motion) -> f64 {
         .map(|(cost, n)| cost / n)
         .collect();
     squares.sort_by(f64::total_cmp);
-    let usual = (USUAL * squares.len() as f64) as usize;
-    ODD_MEAN_SQUARE.max(ODD_TIMES * squares.get(usual).copied().unwrap_or(0.0))
+    let median = squares.get(squares.len() / 2).copied().unwrap_or(0.0);
+    ODD_MEAN_SQUARE.max(ODD_TIMES * median)
 }
 
 /// Squared residuals as if every window were as far off as usual: the mean over windows of

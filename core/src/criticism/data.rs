@@ -25,9 +25,6 @@ const SCOUT_PART: usize = 5;
 /// ... and on at least this many samples.
 const SCOUT_SAMPLES: usize = 2500;
 
-/// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
 /// Samples around a window start from which its state is first guessed.
 const GUESS_SAMPLES: usize = 5;
 
@@ -63,12 +60,6 @@ pub(super) struct Data {
     pub windows: Vec<usize>,
     pub blocks: Vec<Block>,
     pub has_position: bool,
-}
-
-/// Whether the block at this place is held back: one of every pair, in the order of Thue and Morse, which never
-/// repeats itself. Strictly by turns, a periodic motion could show one phase to the fit and another to the judge.
-fn is_held_back(block: usize) -> bool {
-    block.count_ones() % 2 == 1
 }
 
 impl Data {
@@ -124,7 +115,7 @@ impl Data {
                 from: *from,
                 to: split_end(n, block, k),
                 window: windows.partition_point(|w| w <= from) - 1,
-                held_back: is_held_back(k),
+                held_back: k % 2 == 1,
             })
             .collect();
         let before = if starts_at_rest(&outputs) {
@@ -190,13 +181,12 @@ impl Data {
 
     /// Pairs of windows (fitted and held back) spread over the record, about `samples` in all.
     pub fn thinned(&self, samples: usize) -> Self {
-        let share = samples as f64 / self.used() as f64;
-        if share >= 1.0 || self.kind == Kind::Process {
+        let stride = self.used().div_ceil(samples.max(1)).max(1);
+        if stride == 1 || self.kind == Kind::Process {
             return self.clone();
         }
         let mut part = self.clone();
-        // Evenly spread, but at no fixed distance, which could meet the same phase of a periodic motion each time.
-        let chosen = |window: usize| ((window / 2) as f64 * GOLDEN).fract() < share;
+        let chosen = |window: usize| (window / 2).is_multiple_of(stride);
         part.windows = (0..self.windows.len())
             .filter(|w| chosen(*w))
             .map(|w| self.windows[w])
