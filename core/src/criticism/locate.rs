@@ -258,7 +258,8 @@ fn span_after(from: f64, to: f64, what: &str) -> String {
     }
 }
 
-fn seconds(t: f64) -> String {
+/// A duration in a unit that suits it.
+pub(super) fn seconds(t: f64) -> String {
     let size = t.abs();
     if size == 0.0 || size >= 1.0 {
         format!("{t:.2} s")

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data::{Data, Output};
 use super::fit::{Motion, residuals};
+use super::locate::seconds;
 use crate::measurement::Kind;
 
 /// Lags up to which a residual is compared with itself, and with the input, in samples.
@@ -87,11 +88,7 @@ fn name(kind: Kind, output: &Output) -> &'static str {
 }
 
 fn sentence(kind: ResidualTestKind, name: &str, correlation: f64, lag: f64, bound: f64) -> String {
-    let lag = if lag >= 1.0 {
-        format!("{lag:.1} s")
-    } else {
-        format!("{:.3} ms", 1e3 * lag)
-    };
+    let lag = seconds(lag);
     let passed = correlation.abs() <= bound;
     match (kind, passed) {
         (ResidualTestKind::Whiteness, true) => format!(

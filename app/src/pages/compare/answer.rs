@@ -44,9 +44,6 @@ impl Compare {
                 commands.push(Command::Shade(index));
             }
         }
-        for test in &report.step.tests {
-            ui.label(egui::RichText::new(tr(&test.text)).small().weak());
-        }
     }
 }
 

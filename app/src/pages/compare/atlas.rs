@@ -24,6 +24,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
     if before.is_some() {
         curves.insert(0, ("the step before", theme::MODEL));
     }
+    tests_ui(report, ui);
     caption_ui(ui, "Size of the residual, in units of the noise", &curves);
     let finding = report.step.findings.get(page.finding);
     let many = measurement.outputs.len() > 1;
@@ -49,6 +50,21 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
         let earlier = before.and_then(|b| twin(b, profile));
         picture_ui(profile, earlier, finding, ui);
     });
+}
+
+/// Whether what is left is white and no longer follows the input, in words.
+fn tests_ui(report: &StepReport, ui: &mut egui::Ui) {
+    if report.step.tests.is_empty() {
+        return;
+    }
+    ui.collapsing(
+        tr("Is what is left only noise? Two tests of each output"),
+        |ui| {
+            for test in &report.step.tests {
+                ui.label(tr(&test.text));
+            }
+        },
+    );
 }
 
 /// Draws each profile in a cell of a grid that fits the width.
