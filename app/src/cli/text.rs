@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hysteron_core::criticism::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
-use hysteron_core::effect::{self, EffectId};
+use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
 
 const WIDTH: usize = 80;
@@ -106,7 +106,7 @@ fn change(step: &Step, before: &Step) -> String {
         a.effects
             .iter()
             .filter(|e| !b.effects.contains(e))
-            .map(|e| format!("{sign} {}", title_of(*e)))
+            .map(|e| format!("{sign} {}", name_of(*e)))
             .collect()
     };
     let mut parts = only_in(step, before, "+");
@@ -116,10 +116,6 @@ fn change(step: &Step, before: &Step) -> String {
     } else {
         parts.join(" ")
     }
-}
-
-fn title_of(id: EffectId) -> &'static str {
-    effect::find(id).map_or(id.as_str(), effect::Effect::name)
 }
 
 fn names(ids: &[EffectId]) -> String {

@@ -127,9 +127,7 @@ pub struct DiagnosisJob {
     /// Ways not taken yet.
     detours: Vec<Detour>,
     detours_taken: usize,
-    /// What in the last model explains less than it leaves, and the model without it.
-    imitation: Option<(EffectId, Scored)>,
-    /// Effects that were taken out in the end because of that.
+    /// Effects that were taken out in the end because they explained less than they left.
     barred: Vec<EffectId>,
     /// Whether the present way began with an effect that was not seen clearly.
     bold: bool,
@@ -174,7 +172,6 @@ impl DiagnosisJob {
             },
             detours: Vec::new(),
             detours_taken: 0,
-            imitation: None,
             barred: Vec::new(),
             bold: false,
             unfinished: None,
@@ -227,26 +224,14 @@ impl DiagnosisJob {
             return Progress::Done(self.diagnosis.clone());
         };
         if before < DETOUR_STEPS && self.detours_taken == 0 {
-            let steps = &self.diagnosis.steps;
-            let noted = job.alternatives(DETOURS_PER_STEP).into_iter();
-            self.detours.extend(noted.map(|model| Detour {
-                steps: steps.clone(),
-                model,
-                bold: false,
-            }));
+            self.note(job.alternatives(DETOURS_PER_STEP), false);
         }
         let ways = !self.bold && self.barred.is_empty();
         if ways && report.verdict.as_ref().is_some_and(|v| !v.complete) {
-            let steps = &self.diagnosis.steps;
-            let noted = job.faint(BOLD_DETOURS).into_iter();
-            self.detours.extend(noted.map(|model| Detour {
-                steps: steps.clone(),
-                model,
-                bold: true,
-            }));
+            self.note(job.faint(BOLD_DETOURS), true);
         }
-        let unknown = report.verdict.as_ref().is_some_and(|v| v.unknown);
-        self.imitation = if unknown { job.imitation() } else { None };
+        let unknown = report.verdict.as_ref().filter(|v| v.unknown);
+        let imitation = unknown.and_then(|_| job.imitation(report.step.error));
         let (session, next) = job.successor();
         let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
         let verdict = report.verdict.clone();
@@ -258,15 +243,13 @@ impl DiagnosisJob {
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended && !self.falls_short(&model) => {
-                let job = StepJob::from_fit(session, model, self.limits);
-                let job = job.following(&self.diagnosis.steps);
-                self.job = Some(job.barring(&self.barred));
+                self.go_on(session, model);
             }
             (verdict, _) => {
                 self.diagnosis.verdict = verdict.unwrap_or_else(|| {
                     super::verdict::undecided(&self.diagnosis.steps, session.knowledge.present())
                 });
-                if let Some(done) = self.end_of_way(session) {
+                if let Some(done) = self.end_of_way(session, imitation) {
                     return Progress::Done(done);
                 }
             }
@@ -289,7 +272,11 @@ impl DiagnosisJob {
 
     /// Takes the diagnosis that came to an end, or another way if there is one and this one explains too
     /// little.
-    fn end_of_way(&mut self, session: Session) -> Option<Diagnosis> {
+    fn end_of_way(
+        &mut self,
+        session: Session,
+        imitation: Option<(EffectId, Scored)>,
+    ) -> Option<Diagnosis> {
         let error = |d: &Diagnosis| d.steps.last().map_or(f64::INFINITY, |s| s.error);
         let better = self.unfinished.take().filter(|other| {
             self.bold || DETOUR_GAIN * error(&other.diagnosis) <= error(&self.diagnosis)
@@ -297,7 +284,7 @@ impl DiagnosisJob {
         let here = End {
             diagnosis: self.diagnosis.clone(),
             last: self.last.take(),
-            imitation: self.imitation.take(),
+            imitation,
         };
         let best = match better {
             Some(other) if !self.diagnosis.verdict.complete => other,
@@ -323,10 +310,25 @@ impl DiagnosisJob {
             self.bold = detour.bold;
             detour.model
         };
-        let job = StepJob::from_fit(session, next, self.limits);
+        self.go_on(session, next);
+        None
+    }
+
+    /// Notes ways to try later, which branch off here.
+    fn note(&mut self, models: Vec<Scored>, bold: bool) {
+        let steps = &self.diagnosis.steps;
+        self.detours.extend(models.into_iter().map(|model| Detour {
+            steps: steps.clone(),
+            model,
+            bold,
+        }));
+    }
+
+    /// Begins the next step.
+    fn go_on(&mut self, session: Session, model: Scored) {
+        let job = StepJob::from_fit(session, model, self.limits);
         let job = job.following(&self.diagnosis.steps);
         self.job = Some(job.barring(&self.barred));
-        None
     }
 
     /// Once it is done: the reports on the baseline (without its curves) and on the last model.

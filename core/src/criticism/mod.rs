@@ -2,6 +2,7 @@
 
 mod atlas;
 mod baseline;
+mod correlation;
 mod cost;
 mod data;
 mod fingerprint;

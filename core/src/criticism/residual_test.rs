@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::correlation::product;
 use super::data::{Data, Output};
 use super::fit::{Motion, residuals};
 use super::locate::seconds;
@@ -52,12 +53,12 @@ pub struct ResidualTest {
 /// Both tests of every output.
 pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> {
     let runs = data.runs();
-    let input = centred(&data.input, &runs);
+    let input = Series::new(&data.input, &runs);
     let step = data.excitation.mean_step();
     let outputs = data.outputs.iter().zip(residuals(data, motion)).enumerate();
     outputs
         .flat_map(|(output, (channel, residual))| {
-            let residual = centred(&residual, &runs);
+            let residual = Series::new(&residual, &runs);
             let test = |kind, (lag, correlation, bound): (usize, f64, f64)| {
                 let lag = lag as f64 * step;
                 let passed = correlation.abs() <= bound;
@@ -119,46 +120,55 @@ fn centred(values: &[f64], runs: &[(usize, usize)]) -> Vec<f64> {
     centred
 }
 
-/// Sum over the runs of `a` with `b` a number of samples later.
-fn product(a: &[f64], b: &[f64], runs: &[(usize, usize)], lag: usize) -> f64 {
-    let runs = runs.iter().filter(|(from, to)| to - from > lag);
-    runs.map(|(from, to)| {
-        let pairs = a[*from..to - lag].iter().zip(&b[from + lag..*to]);
-        pairs.map(|(a, b)| a * b).sum::<f64>()
-    })
-    .sum()
-}
-
 fn count(runs: &[(usize, usize)]) -> f64 {
     runs.iter().map(|(from, to)| to - from).sum::<usize>() as f64
 }
 
+/// A series with what it remembers of itself.
+struct Series {
+    values: Vec<f64>,
+    /// Sum of squares.
+    power: f64,
+    /// Correlation with itself, 1 to [`MEMORY`] samples later.
+    memory: Vec<f64>,
+}
+
+impl Series {
+    fn new(values: &[f64], runs: &[(usize, usize)]) -> Self {
+        let values = centred(values, runs);
+        let power = product(&values, &values, runs, 0);
+        let memory = (1..=MEMORY).map(|lag| product(&values, &values, runs, lag) / power);
+        Self {
+            power,
+            memory: memory.collect(),
+            values,
+        }
+    }
+}
+
 /// Lag, correlation and bound where a residual correlates most with itself.
-fn whiteness(residual: &[f64], runs: &[(usize, usize)]) -> Option<(usize, f64, f64)> {
-    let power = product(residual, residual, runs, 0);
+fn whiteness(residual: &Series, runs: &[(usize, usize)]) -> Option<(usize, f64, f64)> {
     let bound = QUANTILE / count(runs).sqrt();
-    let all = (1..=LAGS).map(|lag| (lag, product(residual, residual, runs, lag) / power, bound));
-    strongest(all)
+    strongest(
+        (1..=LAGS)
+            .zip(&residual.memory)
+            .map(|(lag, c)| (lag, *c, bound)),
+    )
 }
 
 /// Lag, correlation and bound where a residual follows the input most.
 fn input_correlation(
-    residual: &[f64],
-    input: &[f64],
+    residual: &Series,
+    input: &Series,
     runs: &[(usize, usize)],
 ) -> Option<(usize, f64, f64)> {
-    let power = |v: &[f64]| product(v, v, runs, 0);
-    let (residual_power, input_power) = (power(residual), power(input));
     // Both may remember what they were: fewer of the products are then independent.
-    let widened: f64 = (1..=MEMORY)
-        .map(|lag| {
-            product(residual, residual, runs, lag) / residual_power
-                * (product(input, input, runs, lag) / input_power)
-        })
-        .sum();
+    let both = residual.memory.iter().zip(&input.memory);
+    let widened: f64 = both.map(|(r, u)| r * u).sum();
     let bound = QUANTILE * ((1.0 + 2.0 * widened.max(0.0)) / count(runs)).sqrt();
-    let norm = (residual_power * input_power).sqrt();
-    strongest((0..=LAGS).map(|lag| (lag, product(input, residual, runs, lag) / norm, bound)))
+    let norm = (residual.power * input.power).sqrt();
+    let correlation = |lag| product(&input.values, &residual.values, runs, lag) / norm;
+    strongest((0..=LAGS).map(|lag| (lag, correlation(lag), bound)))
 }
 
 /// The largest correlation; none where they are no numbers, as of a signal that stands still.
@@ -170,18 +180,12 @@ fn strongest(all: impl Iterator<Item = (usize, f64, f64)>) -> Option<(usize, f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig::Random;
 
     /// Even noise without pattern.
     fn noise(n: usize, seed: u64) -> Vec<f64> {
-        let mut z = seed;
-        (0..n)
-            .map(|_| {
-                z = z
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695_040_888_963_407);
-                (z >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-            })
-            .collect()
+        let mut random = Random::new(seed);
+        (0..n).map(|_| random.between(-0.5, 0.5)).collect()
     }
 
     #[test]
@@ -190,9 +194,10 @@ mod tests {
         let input: Vec<f64> = (0..4000)
             .map(|i| if i / 40 % 2 == 0 { 1.0 } else { -1.0 })
             .collect();
+        let input = Series::new(&input, &runs);
         let (mut white, mut follows) = (0, 0);
         for seed in 0..300 {
-            let residual = noise(4000, seed);
+            let residual = Series::new(&noise(4000, seed), &runs);
             let failed = |t: Option<(usize, f64, f64)>| t.is_some_and(|(_, c, b)| c.abs() > b);
             white += usize::from(failed(whiteness(&residual, &runs)));
             follows += usize::from(failed(input_correlation(&residual, &input, &runs)));
@@ -209,7 +214,7 @@ mod tests {
         for i in 1..4000 {
             residual[i] = 0.3 * residual[i - 1] + fresh[i];
         }
-        let (lag, correlation, bound) = whiteness(&residual, &runs).unwrap();
+        let (lag, correlation, bound) = whiteness(&Series::new(&residual, &runs), &runs).unwrap();
         assert!(
             lag == 1 && (correlation - 0.3).abs() < bound,
             "{lag} {correlation}"
@@ -218,6 +223,7 @@ mod tests {
         let residual: Vec<f64> = (0..4000)
             .map(|i| fresh[i] + 0.5 * input[usize::saturating_sub(i, 7)])
             .collect();
+        let (residual, input) = (Series::new(&residual, &runs), Series::new(&input, &runs));
         let (lag, correlation, bound) = input_correlation(&residual, &input, &runs).unwrap();
         // 0.5 of the input beside as much noise: 0.5 / sqrt(1.25).
         assert!(

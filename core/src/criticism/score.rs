@@ -1,5 +1,6 @@
 //! How well a fit explains the record, on the part that it saw and on the part that it did not.
 
+use super::correlation::product;
 use super::cost::{cost_between, fit_cost, informed_windows};
 use super::data::Data;
 use super::fit::{Fit, Motion, residuals};
@@ -100,11 +101,7 @@ fn correlation_inflation(data: &Data, motion: &Motion) -> f64 {
     let (mut weighted, mut weights) = (0.0, 0.0);
     let runs = data.runs();
     for r in residuals(data, motion) {
-        let power: f64 = runs
-            .iter()
-            .flat_map(|(from, to)| &r[*from..*to])
-            .map(|r| r * r)
-            .sum();
+        let power = product(&r, &r, &runs, 0);
         if power == 0.0 {
             continue;
         }
@@ -112,12 +109,7 @@ fn correlation_inflation(data: &Data, motion: &Motion) -> f64 {
         let white = 2.0 / (count as f64).sqrt();
         let mut sum = 1.0;
         for lag in 1..MAX_LAG.min(count / 4) {
-            let product: f64 = runs
-                .iter()
-                .flat_map(|(from, to)| r[*from..*to].windows(lag + 1))
-                .map(|w| w[0] * w[lag])
-                .sum();
-            let rho = product / power;
+            let rho = product(&r, &r, &runs, lag) / power;
             if rho < white {
                 break;
             }

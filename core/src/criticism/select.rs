@@ -86,10 +86,10 @@ pub(super) fn matters(before: &Score, after: &Score, first: &Score) -> bool {
     gain > SMALL_SHARE * first.error
 }
 
-/// Whether the step from `before` to `after` explains more than it leaves beyond the noise.
-pub(super) fn outweighs(before: &Score, after: &Score) -> bool {
-    let explained = before.error.powi(2) - after.error.powi(2);
-    explained > after.error.powi(2) - 1.0
+/// Whether the step from the error `before` to that `after` it explains more than it leaves beyond the noise.
+pub(super) fn outweighs(before: f64, after: f64) -> bool {
+    let explained = before.powi(2) - after.powi(2);
+    explained > after.powi(2) - 1.0
 }
 
 /// Whether what is left looks like noise in itself.

@@ -625,25 +625,18 @@ impl StepJob {
         (self.session, next)
     }
 
-    /// In a last model that leaves more than noise, the effect that explains least, if that is less than what is
-    /// left, and the model without it: it may as well imitate a part of what no effect explains.
-    pub(super) fn imitation(&self) -> Option<(EffectId, Scored)> {
-        let model = self.model.as_ref()?;
-        if !self.contradicted.is_empty() {
-            return None;
-        }
-        // Where a long record was thinned, all of it decides.
-        let whole = self.session.completed(model);
-        if is_noise(&whole.score, self.session.first(&whole)) {
-            return None;
-        }
+    /// In a last model that leaves more than noise, this `error` on the whole record, the effect that explains
+    /// least, if that is less than what is left, and the model without it: it may as well imitate a part of what
+    /// no effect explains.
+    pub(super) fn imitation(&self, error: f64) -> Option<(EffectId, Scored)> {
         self.wanted
             .iter()
             .zip(&self.without)
             .filter(|(e, _)| !self.session.knowledge.has(e.id()))
-            .map(|(e, without)| (e.id(), without, self.session.completed(without).score))
-            .filter(|(_, _, score)| !outweighs(score, &whole.score))
-            .min_by(|a, b| a.2.error.total_cmp(&b.2.error))
+            // Where a long record was thinned, all of it decides.
+            .map(|(e, without)| (e.id(), without, self.session.completed(without).score.error))
+            .filter(|(_, _, without)| !outweighs(*without, error))
+            .min_by(|a, b| a.2.total_cmp(&b.2))
             .map(|(id, without, _)| (id, without.clone()))
     }
 

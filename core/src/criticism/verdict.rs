@@ -6,7 +6,7 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::Scored;
 use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
-use crate::effect::{self, Effect, EffectId};
+use crate::effect::{self, Effect, EffectId, name_of};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -103,8 +103,8 @@ pub(super) fn add_rest(verdict: &mut Verdict, score: &Score, first: f64, finding
         return;
     }
     let error = score.error;
+    let share = 100.0 * error / first;
     if verdict.complete {
-        let share = 100.0 * error / first;
         let _ = write!(
             verdict.text,
             " That is, but for short stretches or a trifle: the error is {error:.2} times the noise, {share:.2} % of what \
@@ -114,7 +114,6 @@ pub(super) fn add_rest(verdict: &mut Verdict, score: &Score, first: f64, finding
     }
     let _ = write!(verdict.text, " The error is {error:.2} times the noise");
     if !verdict.missing.is_empty() {
-        let share = 100.0 * error / first;
         let digits = if share < 1.0 { 2 } else { 0 };
         let _ = write!(verdict.text, ", {share:.digits$} % of what it was at first");
     }
@@ -129,14 +128,10 @@ pub(super) fn add_imitations(verdict: &mut Verdict, imitations: &[EffectId]) {
     if imitations.is_empty() || verdict.complete {
         return;
     }
-    let names: Vec<&str> = imitations
-        .iter()
-        .map(|id| effect::find(*id).map_or(id.as_str(), |e| e.name()))
-        .collect();
     let _ = write!(
         verdict.text,
         " Not named, since it would explain less than it leaves and may only imitate what is missing: {}.",
-        names.join(", ")
+        names(imitations, ", ")
     );
 }
 
@@ -145,14 +140,10 @@ pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId]) {
     if idle.is_empty() {
         return;
     }
-    let names: Vec<&str> = idle
-        .iter()
-        .map(|id| effect::find(*id).map_or(id.as_str(), |e| e.name()))
-        .collect();
     let _ = write!(
         verdict.text,
         " In the model, but without a trace in these data: {}.",
-        names.join(", ")
+        names(idle, ", ")
     );
 }
 
@@ -204,14 +195,17 @@ pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
     }
 }
 
+fn names(ids: &[EffectId], between: &str) -> String {
+    let names: Vec<&str> = ids.iter().map(|id| name_of(*id)).collect();
+    names.join(between)
+}
+
 /// `Coulomb friction, friction level 0.0406 ± 0.0002 N m`.
 fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
-    let name = |id: EffectId| effect::find(id).map_or(id.as_str(), |e| e.name());
     if class.len() > 1 {
-        let names: Vec<&str> = class.iter().map(|id| name(*id)).collect();
         return format!(
             "{} (this measurement cannot tell them apart)",
-            names.join(" or ")
+            names(class, " or ")
         );
     }
     let Some(id) = class.first() else {
@@ -219,11 +213,11 @@ fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
     };
     let main = parameters.iter().find(|p| p.effect == Some(*id));
     main.map_or_else(
-        || name(*id).to_owned(),
+        || name_of(*id).to_owned(),
         |p| {
             format!(
                 "{}, {} {}",
-                name(*id),
+                name_of(*id),
                 p.label,
                 with_error(p.value, p.std_error, &p.unit)
             )

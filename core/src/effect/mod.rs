@@ -101,6 +101,11 @@ pub fn find(id: EffectId) -> Option<&'static dyn Effect> {
     registry().iter().copied().find(|e| e.id() == id)
 }
 
+/// The name of the effect with this id on screen; that of an unknown one, such as a user's own, is its id.
+pub fn name_of(id: EffectId) -> &'static str {
+    find(id).map_or(id.as_str(), Effect::name)
+}
+
 /// The effects that make sense for this kind of system.
 pub fn for_kind(kind: Kind) -> impl Iterator<Item = &'static dyn Effect> {
     registry()

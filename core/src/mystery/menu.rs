@@ -2,7 +2,7 @@
 
 use super::Experiment::{self, Relay, Sines, Stairs};
 use super::{Hidden, MysteryError};
-use crate::effect::{Effect, EffectId, Motion, find};
+use crate::effect::{Effect, EffectId, Motion, find, name_of};
 use crate::rig::{DriveRig, Friction, Load, Random};
 
 /// A strength by name.
@@ -60,7 +60,7 @@ impl Hideable {
 
     /// Its name on screen.
     pub fn name(&self) -> &'static str {
-        self.effect().map_or(self.id.as_str(), Effect::name)
+        name_of(self.id)
     }
 
     /// Symbol, name and SI unit of the main parameter.

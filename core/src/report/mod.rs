@@ -12,7 +12,6 @@ mod svg;
 use std::fmt::Write as _;
 
 use crate::criticism::{Profile, Step, StepReport, Verdict};
-use crate::effect::{self, Effect, EffectId};
 use crate::measurement::{Kind, Measurement};
 use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
@@ -274,11 +273,4 @@ fn short(value: f64) -> String {
     } else {
         format!("{value:.2}")
     }
-}
-
-/// Name of an effect on screen.
-fn name_of(id: EffectId) -> String {
-    effect::find(id)
-        .map_or(id.as_str(), Effect::name)
-        .to_owned()
 }

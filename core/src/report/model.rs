@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use super::html::{Cell, escape, table};
-use super::{ReportInput, name_of, short};
+use super::{ReportInput, short};
 use crate::criticism::{NextExperiment, Parameter, Step, with_error};
-use crate::effect::{self, EffectId, VISCOUS_FRICTION};
+use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
 use crate::user_model::Status;
 
@@ -27,7 +27,7 @@ pub(super) fn equations(input: &ReportInput) -> String {
     }
     out.push_str("</code></pre>\n<p class=\"small\">u_acting is the input that reaches the body (u, unless an effect changes it); F the forces of the effects.</p>\n");
     for id in added(&input.last.step) {
-        let _ = writeln!(out, "<h3>{}</h3>", escape(&name_of(id)));
+        let _ = writeln!(out, "<h3>{}</h3>", escape(name_of(id)));
         let Some(effect) = effect::find(id) else {
             if let Some(formula) = input.model.and_then(|m| m.formula(id)) {
                 let _ = writeln!(
@@ -94,7 +94,8 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
                 Cell::Text(
                     p.effect
                         .filter(|id| *id != VISCOUS_FRICTION)
-                        .map_or_else(|| "baseline".to_owned(), name_of),
+                        .map_or("baseline", name_of)
+                        .to_owned(),
                 ),
             ]
         })
@@ -120,7 +121,7 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
 pub(super) fn candidates(steps: &[Step]) -> String {
     let mut out = String::new();
     for step in steps.iter().filter(|s| !s.candidates.is_empty()) {
-        let names: Vec<String> = added(step).into_iter().map(name_of).collect();
+        let names: Vec<&str> = added(step).into_iter().map(name_of).collect();
         let on = if names.is_empty() {
             "On top of the baseline".to_owned()
         } else {
@@ -136,9 +137,9 @@ pub(super) fn candidates(steps: &[Step]) -> String {
             .candidates
             .iter()
             .map(|c| {
-                let ids: Vec<String> = c.effects.iter().map(|e| name_of(*e)).collect();
+                let ids: Vec<&str> = c.effects.iter().map(|e| name_of(*e)).collect();
                 let note = if !c.equivalent_to.is_empty() {
-                    let others: Vec<String> = c.equivalent_to.iter().map(|e| name_of(*e)).collect();
+                    let others: Vec<&str> = c.equivalent_to.iter().map(|e| name_of(*e)).collect();
                     format!("cannot be told from {}", others.join(", "))
                 } else if c.significant {
                     "helps".to_owned()

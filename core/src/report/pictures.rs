@@ -1,10 +1,10 @@
 //! The pictures of a report.
 
 use super::html::figure;
+use super::short;
 use super::svg::{Axis, Bar, Chart, bars, range};
-use super::{name_of, short};
 use crate::criticism::{Finding, MissingPart, Profile, ReplayChannel, Step};
-use crate::effect::StepPart;
+use crate::effect::{StepPart, name_of};
 use crate::measurement::{Channel, Measurement};
 
 /// Size of a wide picture.

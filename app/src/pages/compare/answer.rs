@@ -1,7 +1,7 @@
 //! The page's answer, where the model fails, and messages, in words.
 
 use hysteron_core::criticism::{StepReport, with_error};
-use hysteron_core::effect::{self, Effect, EffectId};
+use hysteron_core::effect::{self, EffectId, name_of};
 use hysteron_core::user_model::UserModel;
 
 use super::{Command, Compare};
@@ -45,11 +45,6 @@ impl Compare {
             }
         }
     }
-}
-
-/// Name of an effect on screen.
-pub(super) fn name_of(id: EffectId) -> &'static str {
-    effect::find(id).map_or(id.as_str(), Effect::name)
 }
 
 /// An error in noise units, three digits.

@@ -1,9 +1,10 @@
 //! What these data cannot tell apart, and the experiment that can.
 
 use hysteron_core::criticism::{Limits, NextExperiment, Opening, Program, Trial};
+use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
 
-use super::{Command, Compare, name_of};
+use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::pages;

@@ -2,10 +2,11 @@
 
 use egui_plot::{Line, LineStyle};
 use hysteron_core::criticism::{Fingerprint, Profile, StepReport};
+use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Measurement;
 
 use super::atlas::{axis_label, grid_ui, points, small, words};
-use super::{Command, Compare, name_of};
+use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::pages::chart::{Chart, caption_ui};

@@ -38,7 +38,7 @@ use crate::language::tr;
 use crate::recent::Recent;
 use crate::save::save;
 use crate::tasks::ExperimentTask;
-use answer::{name_of, times_noise};
+use answer::times_noise;
 use welcome::BUILT_IN;
 
 /// Longest time without a new frame while a job runs.

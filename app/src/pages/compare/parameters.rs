@@ -1,8 +1,8 @@
 //! Every parameter of the model with its uncertainty.
 
 use hysteron_core::criticism::{Parameter, StepReport, with_error};
+use hysteron_core::effect::name_of;
 
-use super::name_of;
 use crate::language::tr;
 use crate::theme;
 

@@ -2,10 +2,10 @@
 
 use egui::RichText;
 use hysteron_core::criticism::with_error;
-use hysteron_core::effect::{EffectId, VISCOUS_FRICTION};
+use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 
-use super::{Command, Compare, name_of};
+use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;

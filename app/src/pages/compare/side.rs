@@ -3,11 +3,10 @@
 use egui::RichText;
 use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
+use hysteron_core::effect::name_of;
 
 use super::waterfall::{BAR_WIDTH, bar_ui};
-use super::{
-    Command, Compare, Look, experiment, missing, name_of, own, parameters, times_noise, waterfall,
-};
+use super::{Command, Compare, Look, experiment, missing, own, parameters, times_noise, waterfall};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;

@@ -2,8 +2,9 @@
 
 use egui::Color32;
 use hysteron_core::criticism::StepReport;
+use hysteron_core::effect::name_of;
 
-use super::{Command, Compare, name_of, times_noise};
+use super::{Command, Compare, times_noise};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;

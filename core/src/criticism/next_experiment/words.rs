@@ -2,15 +2,11 @@
 
 use super::NextExperiment;
 use super::program::short;
-use crate::effect::{self, Effect, EffectId};
+use crate::effect::name_of;
 
 /// Separation below which two models do the same for all that can be computed or measured: it would take some two
 /// million samples to see it, and a slow sensor is computed as if its signal were straight between samples.
 const THE_SAME: f64 = 5e-3;
-
-fn name(id: EffectId) -> &'static str {
-    effect::find(id).map_or(id.as_str(), Effect::name)
-}
 
 /// Times the noise, with as many digits as count.
 pub(super) fn times(separation: f64) -> String {
@@ -23,7 +19,7 @@ pub(super) fn times(separation: f64) -> String {
 
 /// What to do and what to expect.
 pub(super) fn text(proposal: &NextExperiment) -> String {
-    let names: Vec<&str> = proposal.class.iter().map(|id| name(*id)).collect();
+    let names: Vec<&str> = proposal.class.iter().map(|id| name_of(*id)).collect();
     let names = names.join(" and ");
     let program = proposal
         .program
