@@ -44,6 +44,7 @@ pub mod relay;
 pub mod report;
 pub mod rig;
 pub mod scenario;
+mod simplex;
 pub mod simulate;
 pub mod tuning;
 pub mod user_model;

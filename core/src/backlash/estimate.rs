@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
+use crate::model::{SeenContact, SeenLoad};
 
 use super::contacts::{Touch, touches};
 use super::cycles::{Cycles, median, range};
 use super::drift::Drift;
 use super::free_motor::FreeMotor;
-use super::likelihood::{Event, Fit, Scales, fit};
+use super::likelihood::{Fit, Scales, fit};
 use super::record::Record;
 use super::verdict;
 
@@ -190,12 +191,20 @@ pub enum GapError {
 /// not read. The module says how. Errors say what is wrong with the measurement; a sound one in which no
 /// gap is seen gives an estimate without a gap and the reason.
 pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> {
+    sighted(measurement).map(|(estimate, _)| estimate)
+}
+
+/// The same with the load as its contacts show it, where both ends of the gap were met.
+pub(crate) fn sighted(
+    measurement: &Measurement,
+) -> Result<(GapEstimate, Option<SeenLoad>), GapError> {
     let record = Record::new(measurement)?;
+    let none = |record: &Record| Ok((nothing(record, Quality::NoDriftingTest), None));
     let Some(cycles) = Cycles::new(&record) else {
-        return Ok(nothing(&record, Quality::NoDriftingTest));
+        return none(&record);
     };
     let Some(motor) = FreeMotor::new(&record, &cycles) else {
-        return Ok(nothing(&record, Quality::NoDriftingTest));
+        return none(&record);
     };
     let drift = Drift::new(&cycles, &motor.unexplained, motor.noise, &record.position);
     let (touches, disturbed) = touches(&record, &cycles, &motor, &drift);
@@ -227,15 +236,18 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
     let both = [Side::Positive, Side::Negative]
         .iter()
         .all(|side| touches.iter().any(|t| t.side == *side));
+    let mut load = None;
+    let events: Vec<SeenContact> = touches.iter().map(|t| seen(t, &record)).collect();
+    let (low, high) = range(&record.position);
+    let scales = Scales {
+        step: record.step,
+        speed: cycles.speed,
+        acceleration: motor.acceleration,
+        travel: high - low,
+    };
     if both {
-        two_sided(
-            &mut estimate,
-            &record,
-            &cycles,
-            &motor,
-            &touches,
-            place_error,
-        );
+        let period = cycles.length * record.step;
+        load = two_sided(&mut estimate, events, &scales, period, place_error);
     } else if touches.len() >= FEWEST_CONTACTS {
         one_sided(&mut estimate, &record, &cycles, place_error);
     } else {
@@ -245,7 +257,7 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
         }
     }
     estimate.text = verdict::text(&estimate, cycles.flips.iter().any(|f| *f));
-    Ok(estimate)
+    Ok((estimate, load))
 }
 
 fn nothing(record: &Record, quality: Quality) -> GapEstimate {
@@ -266,52 +278,29 @@ fn nothing(record: &Record, quality: Quality) -> GapEstimate {
     estimate
 }
 
-/// Both ends were met: the likelihood decides.
+/// Both ends were met: the likelihood decides. `period` is that of a cycle, s.
 fn two_sided(
     estimate: &mut GapEstimate,
-    record: &Record,
-    cycles: &Cycles,
-    motor: &FreeMotor,
-    touches: &[Touch],
+    events: Vec<SeenContact>,
+    scales: &Scales,
+    period: f64,
     place_error: f64,
-) {
-    let events: Vec<Event> = touches
-        .iter()
-        .zip(&estimate.contacts)
-        .map(|(t, c)| {
-            Event::new(
-                t,
-                c.time,
-                c.position,
-                record.velocity_at(t.begin),
-                record.step,
-            )
-        })
-        .collect();
-    let (low, high) = range(&record.position);
-    let scales = Scales {
-        step: record.step,
-        speed: cycles.speed,
-        acceleration: motor.acceleration,
-        travel: high - low,
-    };
+) -> Option<SeenLoad> {
     estimate.quality = Quality::Undecided;
-    let Some(fit) = fit(&events, &scales) else {
-        return;
-    };
+    let fit = fit(&events, scales)?;
     estimate.traverses = traverses(&estimate.contacts, &fit);
-    let gap = 2.0 * fit.half_gap;
-    let rattles = rattles(&estimate.traverses, cycles.length * record.step);
+    let gap = 2.0 * fit.play.half_gap;
+    let rattles = rattles(&estimate.traverses, period);
     let systematic = if rattles { RATTLE_ERROR * gap } else { 0.0 };
     let error = (2.0 * fit.error).hypot(2.0 * place_error).hypot(systematic);
     let agree = disagreement(&estimate.traverses, gap) < AGREE;
-    if !(error < STATED * gap && gap < 2.0 * (high - low) && agree) {
-        return;
+    if !(error < STATED * gap && gap < 2.0 * scales.travel && agree) {
+        return None;
     }
     estimate.load = Some(LoadMotion {
-        inertia_ratio: 1.0 / fit.inertia_ratio,
-        viscous: fit.slowing.viscous,
-        dry: fit.slowing.dry,
+        inertia_ratio: 1.0 / fit.play.ratio,
+        viscous: fit.play.slowing.viscous,
+        dry: fit.play.slowing.dry,
     });
     estimate.quality = if error <= GOOD * gap && estimate.traverses.len() >= GOOD_TRAVERSES {
         Quality::Good
@@ -321,6 +310,22 @@ fn two_sided(
         Quality::Poor
     };
     state(estimate, gap, error);
+    SeenLoad::new(events, fit.play, fit.sharpness)
+}
+
+/// A touch in SI units.
+fn seen(touch: &Touch, record: &Record) -> SeenContact {
+    SeenContact {
+        begin: record.time(touch.begin),
+        end: record.time(touch.begin + touch.length),
+        centre: touch.centre * record.step,
+        position: record.position_at(touch.begin),
+        velocity: record.velocity_at(touch.begin),
+        side: touch.side.sign(),
+        jump: touch.jump,
+        jump_noise: touch.jump_noise,
+        free: touch.free,
+    }
 }
 
 /// Median deviation of the traverses from the gap, relative, as far as the load's motion does not explain it.
@@ -355,7 +360,7 @@ fn traverses(contacts: &[Contact], fit: &Fit) -> Vec<Traverse> {
         .map(|(pair, innovation)| Traverse {
             from: pair[0],
             to: pair[1],
-            gap: 2.0 * fit.half_gap + pair[1].side.sign() * innovation.value,
+            gap: 2.0 * fit.play.half_gap + pair[1].side.sign() * innovation.value,
             std_error: innovation.deviation,
         })
         .collect()

@@ -4,10 +4,8 @@ use rand::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
 use rand_pcg::Pcg64;
 
-use super::contacts::Touch;
-use super::estimate::Side;
-use super::flight::Slowing;
-use super::simplex::minimise;
+use crate::model::{LoadState, Play, SeenContact, Sharpness, Slowing};
+use crate::simplex::minimise;
 
 /// Unknowns: logarithms of half gap, motor inertia over load inertia, viscous and dry slowing of the
 /// load, noise of a contact's place, relative noise of its momentum. The second and the fourth are
@@ -54,37 +52,6 @@ struct Prior {
     deviation: Point,
 }
 
-/// A contact in SI units.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Event {
-    pub time: f64,
-    pub position: f64,
-    /// From the begin to the centre of the push, s.
-    pub centre: f64,
-    pub side: Side,
-    /// Velocity of the motor at the begin.
-    pub velocity: f64,
-    pub jump: f64,
-    pub jump_noise: f64,
-    /// Whether the load flew before, so that its place is told by the begin; else the push goes on.
-    pub free: bool,
-}
-
-impl Event {
-    pub fn new(touch: &Touch, time: f64, position: f64, velocity: f64, step: f64) -> Self {
-        Self {
-            time,
-            position,
-            velocity,
-            centre: touch.centre * step,
-            side: touch.side,
-            jump: touch.jump,
-            jump_noise: touch.jump_noise,
-            free: touch.free,
-        }
-    }
-}
-
 /// Sizes that the prior needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scales {
@@ -109,17 +76,17 @@ pub(super) struct Innovation {
 /// The best explanation.
 #[derive(Clone, Debug)]
 pub(super) struct Fit {
-    pub half_gap: f64,
-    /// Standard error of `half_gap`.
+    pub play: Play,
+    /// Standard error of the half gap.
     pub error: f64,
-    pub inertia_ratio: f64,
-    pub slowing: Slowing,
+    /// How well the contacts tell.
+    pub sharpness: Sharpness,
     /// One for each event but the first.
     pub innovations: Vec<Innovation>,
 }
 
 /// Most likely half gap; `None` where the contacts do not tell.
-pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
+pub(super) fn fit(events: &[SeenContact], scales: &Scales) -> Option<Fit> {
     let prior = Prior {
         mean: [
             0.0,
@@ -177,18 +144,30 @@ pub(super) fn fit(events: &[Event], scales: &Scales) -> Option<Fit> {
     let point = posterior.mean;
     let mut innovations = Vec::new();
     filter(events, &point, errors, Some(&mut innovations));
-    let half_gap = point[0].exp();
+    let (play, sharpness) = meaning(&point, errors.1);
     let relative = posterior.covariance[(0, 0)].max(0.0).sqrt();
     Some(Fit {
-        half_gap,
-        error: half_gap * relative,
-        inertia_ratio: plain(&point)[1].exp(),
-        slowing: Slowing {
-            viscous: point[2].exp(),
-            dry: plain(&point)[3].exp(),
-        },
+        error: play.half_gap * relative,
+        play,
+        sharpness,
         innovations,
     })
+}
+
+/// What the logarithms stand for; `late` is the error of the begin of a contact, s.
+fn meaning(point: &Point, late: f64) -> (Play, Sharpness) {
+    let [half_gap, ratio, viscous, dry, place, momentum] = plain(point).map(f64::exp);
+    let play = Play {
+        half_gap,
+        ratio,
+        slowing: Slowing { viscous, dry },
+    };
+    let sharpness = Sharpness {
+        place,
+        late,
+        momentum,
+    };
+    (play, sharpness)
 }
 
 /// The logarithms themselves, no longer divided by the half gap.
@@ -200,51 +179,24 @@ fn plain(point: &Point) -> Point {
 }
 
 /// Minus the logarithm of the likelihood of the innovations, up to a constant.
-///
-/// State: position and velocity of the load. A contact says that the motor's position is that of the
-/// load plus or minus the half gap; it gives the load the momentum that the motor loses.
 fn filter(
-    events: &[Event],
+    events: &[SeenContact],
     point: &Point,
     (slow, late): (f64, f64),
     mut innovations: Option<&mut Vec<Innovation>>,
 ) -> f64 {
-    let [half_gap, ratio, viscous, dry, place, relative] = plain(point).map(f64::exp);
-    let slowing = Slowing { viscous, dry };
+    let (play, sharpness) = meaning(point, late);
     let Some(first) = events.first() else {
         return 0.0;
     };
-    let place = place * place;
-    let mut x = first.position - first.side.sign() * half_gap;
-    let mut v = 0.0;
-    // Covariance of position and velocity: xx, xv, vv.
-    let mut c = [place, 0.0, 0.0];
+    let mut state = LoadState::at_rest(first.load_at(play.half_gap), &sharpness);
     let mut total = 0.0;
-    let fly = |x: &mut f64, v: &mut f64, c: &mut [f64; 3], time: f64| {
-        let f = slowing.flight(*v, time.max(0.0));
-        *x += f.way;
-        *v = f.velocity;
-        let (a, b) = (f.way_by_velocity, f.velocity_by_velocity);
-        *c = [
-            c[0] + 2.0 * a * c[1] + a * a * c[2],
-            b * (c[1] + a * c[2]),
-            b * b * c[2],
-        ];
-    };
     for (k, event) in events.iter().enumerate() {
         if k > 0 {
             let before = &events[k - 1];
-            fly(
-                &mut x,
-                &mut v,
-                &mut c,
-                event.time - before.time - before.centre,
-            );
-            // A contact is placed in time, so that its place is the less certain the faster they meet.
-            let place = place + (late * (event.velocity - v)).powi(2);
-            let variance = c[0] + place;
-            let value = event.position - event.side.sign() * half_gap - x;
-            let square = value * value / variance;
+            state.fly(&play.slowing, event.begin - before.begin - before.centre);
+            let surprise = state.surprise(event, play.half_gap, &sharpness);
+            let (value, variance) = (surprise.value, surprise.variance);
             if let Some(list) = innovations.as_deref_mut() {
                 list.push(Innovation {
                     value,
@@ -252,19 +204,16 @@ fn filter(
                 });
             }
             if event.free {
+                let square = value * value / variance;
                 total += 0.5 * variance.ln() + 0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p();
                 // What is random is when they meet, not where: density in time, not in position.
-                let approach = event.side.sign() * (event.velocity - v);
+                let approach = event.side * (event.velocity - state.v);
                 total -= (slow * softplus(approach / slow)).ln();
-                let (gx, gv) = (c[0] / variance, c[1] / variance);
-                x += gx * value;
-                v += gv * value;
-                c = [c[0] - gx * c[0], c[1] - gx * c[1], c[2] - gv * c[1]];
+                state.meet(&surprise);
             }
         }
-        fly(&mut x, &mut v, &mut c, event.centre);
-        v += ratio * event.jump;
-        c[2] += (ratio * relative * event.jump).powi(2) + (ratio * event.jump_noise).powi(2);
+        state.fly(&play.slowing, event.centre);
+        state.push(event, play.ratio, &sharpness);
     }
     total
 }

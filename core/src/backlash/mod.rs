@@ -25,15 +25,14 @@ mod contacts;
 mod cycles;
 mod drift;
 mod estimate;
-mod flight;
 mod free_motor;
 mod likelihood;
 mod map;
 mod record;
-mod simplex;
 mod verdict;
 
 pub use change_points::{Segment, pelt};
+pub(crate) use estimate::sighted;
 pub use estimate::{
     Contact, CycleDrift, GapError, GapEstimate, LoadMotion, Quality, Side, Traverse, estimate_gap,
 };

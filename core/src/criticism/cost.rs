@@ -27,11 +27,8 @@ pub(super) fn cost_between(data: &Data, motion: &Motion, from: usize, to: usize)
 
 /// Squared residuals on the fitted part.
 pub(super) fn fit_cost(data: &Data, motion: &Motion) -> f64 {
-    data.blocks
-        .iter()
-        .filter(|b| !b.held_back)
-        .map(|b| cost_between(data, motion, b.from, b.to))
-        .sum()
+    let windows = fitted_windows(data, motion);
+    windows.into_iter().map(|(cost, _)| cost).sum()
 }
 
 /// Mean square of a window, in noise units, from which on it counts by the logarithm.
@@ -43,6 +40,11 @@ fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
     for b in data.blocks.iter().filter(|b| !b.held_back) {
         windows[b.window].0 += cost_between(data, motion, b.from, b.to);
         windows[b.window].1 += ((b.to - b.from) * data.outputs.len()) as f64;
+    }
+    for ((cost, n), prior) in windows.iter_mut().zip(&motion.priors) {
+        if *n > 0.0 {
+            *cost += prior;
+        }
     }
     windows
 }
@@ -100,7 +102,7 @@ pub(super) fn window_weights(data: &Data, motion: &Motion, scale: f64) -> Vec<f6
 /// Squared residuals of each window on what informs it: the fitted part, or all of a held-back window.
 pub(super) fn window_costs(data: &Data, motion: &Motion) -> Vec<f64> {
     let informed = informed_windows(data);
-    let mut costs = vec![0.0; data.windows.len()];
+    let mut costs = motion.priors.clone();
     for block in data
         .blocks
         .iter()

@@ -5,7 +5,7 @@ use super::noise::{Noise, noise};
 use super::window::drive_window;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
-use crate::model::{Excitation, Sensor, Start};
+use crate::model::{Excitation, SeenLoad, Sensor, Start};
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
@@ -24,6 +24,9 @@ const SCOUT_PART: usize = 5;
 
 /// ... and on at least this many samples.
 const SCOUT_SAMPLES: usize = 2500;
+
+/// Samples before a contact at which a window begins.
+const BEFORE_CONTACT: usize = 2;
 
 /// Samples around a window start from which its state is first guessed.
 const GUESS_SAMPLES: usize = 5;
@@ -152,6 +155,33 @@ impl Data {
         })
     }
 
+    /// The same with a load that the motor felt. Windows near a contact then begin just before it: from farther
+    /// away it may be met one swing of the motor too early or too late.
+    pub fn with_seen_load(self, seen: Option<SeenLoad>) -> Self {
+        let mut data = Self {
+            excitation: self.excitation.with_seen_load(seen),
+            ..self
+        };
+        let felt = data.excitation.felt();
+        let length = data.len() / data.windows.len().max(1);
+        for k in 1..data.windows.len() {
+            let regular = data.windows[k];
+            let before = felt.partition_point(|s| *s < regular);
+            let near = felt[before.saturating_sub(1)..felt.len().min(before + 1)].iter();
+            let moved = near
+                .map(|s| s.saturating_sub(BEFORE_CONTACT))
+                .filter(|s| s.abs_diff(regular) <= length / 2)
+                .min_by_key(|s| s.abs_diff(regular));
+            let room = data.windows[k - 1] + MIN_WINDOW..data.len() - MIN_WINDOW;
+            if let Some(sample) = moved.filter(|s| room.contains(s)) {
+                data.windows[k] = sample;
+                data.blocks[k - 1].to = sample;
+                data.blocks[k].from = sample;
+            }
+        }
+        data
+    }
+
     /// Samples that are used.
     pub fn used(&self) -> usize {
         self.blocks.iter().map(|b| b.to - b.from).sum()
@@ -185,8 +215,10 @@ impl Data {
         if stride == 1 || self.kind == Kind::Process {
             return self.clone();
         }
+        let felt = self.felt_pairs(samples / 2);
         let mut part = self.clone();
-        let chosen = |window: usize| (window / 2).is_multiple_of(stride);
+        let chosen =
+            |window: usize| (window / 2).is_multiple_of(stride) || felt.contains(&(window / 2));
         part.windows = (0..self.windows.len())
             .filter(|w| chosen(*w))
             .map(|w| self.windows[w])
@@ -205,6 +237,18 @@ impl Data {
             .collect();
         part.excitation = self.excitation.within(part.spans());
         part
+    }
+
+    /// Pairs of windows in which the motor felt a load, spread over the record, about `samples` in all: where it
+    /// is felt now and then only, the other windows tell nothing of it.
+    fn felt_pairs(&self, samples: usize) -> Vec<usize> {
+        let window = |sample: usize| self.windows.partition_point(|w| *w <= sample) - 1;
+        let felt = self.excitation.felt();
+        let mut pairs: Vec<usize> = felt.into_iter().map(|s| window(s) / 2).collect();
+        pairs.dedup();
+        let length = 2 * self.used() / self.windows.len().max(1);
+        let stride = (pairs.len() * length).div_ceil(samples.max(1)).max(1);
+        pairs.into_iter().step_by(stride).collect()
     }
 
     /// A small part of the record, for trying starting points quickly; all of it if it is short.
@@ -252,6 +296,7 @@ impl Data {
                     || position.map_or(0.0, |p| self.slope(&p.values, sample)),
                     |v| v.values[sample],
                 ),
+                load: [0.0; 2],
             })
             .collect()
     }

@@ -5,7 +5,7 @@
 //! and found again by back-substitution, so that cost grows linearly with the record. Windows that
 //! are held back never inform `theta`; they estimate their own state only.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Vector4};
 
 use super::cost::{
     ODD_MEAN_SQUARE, informed_windows, oddness, robust_cost, robust_share, window_costs,
@@ -13,6 +13,7 @@ use super::cost::{
 };
 use super::data::Data;
 use super::structure::Structure;
+use super::window_sums::{BODY_STATES, STATES, WindowSums, changed, inverse, reduced, state};
 use crate::effect::Scales;
 use crate::model::Start;
 
@@ -41,6 +42,17 @@ const DAMPING_GROWTH: f64 = 6.0;
 const MAX_STALLS: usize = 2;
 const RESTART_DAMPING: f64 = 1e-3;
 
+/// Step for differences with respect to where a seen load is, in its standard deviations.
+const LOAD_DIFFERENCE: f64 = 0.1;
+
+/// Times that the states of windows are improved: with a seen load as long as that lowers the cost below this share.
+const FEWEST_POLISHINGS: usize = 2;
+const POLISHINGS: usize = 6;
+const POLISHED_ENOUGH: f64 = 0.999;
+
+/// Shares of the step of a window's state that are tried where a contact bends the motion.
+const POLISHED: [f64; 3] = [1.0, 0.3, 0.1];
+
 /// Smallest step for finite differences, as a share of the first one.
 const LEAST_DIFFERENCE: f64 = 1e-4;
 
@@ -49,6 +61,8 @@ const LEAST_DIFFERENCE: f64 = 1e-4;
 pub(super) struct Motion {
     pub position: Vec<f64>,
     pub velocity: Vec<f64>,
+    /// For each window, what its state costs by itself: how far a seen load is off what was seen of it.
+    pub priors: Vec<f64>,
 }
 
 impl Motion {
@@ -57,6 +71,7 @@ impl Motion {
         Self {
             position: vec![0.0; n],
             velocity: vec![0.0; n],
+            priors: Vec::new(),
         }
     }
 
@@ -99,14 +114,6 @@ pub(super) struct Fit {
     information: DMatrix<f64>,
 }
 
-/// Sums of one window.
-struct WindowSums {
-    state: Matrix2<f64>,
-    gradient: Vector2<f64>,
-    /// One column of mixed second derivatives per value.
-    mixed: Vec<Vector2<f64>>,
-}
-
 impl Fit {
     pub fn new(
         data: &Data,
@@ -119,7 +126,7 @@ impl Fit {
         let motion = simulate(data, &structure, &values, &starts);
         let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE) + structure.prior_cost(&values);
         let p = values.len();
-        Self {
+        let mut fit = Self {
             structure,
             values,
             starts,
@@ -131,7 +138,22 @@ impl Fit {
             stalls: 0,
             done: !cost.is_finite(),
             information: DMatrix::identity(p, p),
+        };
+        fit.take_felt_loads(data);
+        fit
+    }
+
+    /// Takes for each window the state of a seen load in which it meets what was felt, where that is better; true if
+    /// there is a seen load.
+    fn take_felt_loads(&mut self, data: &Data) -> bool {
+        let model = self.structure.model(&self.values);
+        if !data.excitation.sees_load_of(&model) {
+            return false;
         }
+        let mut trial = self.starts.clone();
+        data.excitation.guess_loads(&model, &mut trial);
+        self.take_better(data, trial);
+        true
     }
 
     /// One iteration: derivatives, then steps with growing damping until one lowers the cost.
@@ -144,7 +166,7 @@ impl Fit {
         let steps = self.difference_steps(data, scales);
         let columns = self.columns(data, &steps, scales);
         let scale = oddness(data, &self.motion);
-        let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns, scale);
+        let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns, p, scale);
         let present = self.objective(data, &self.motion, &self.values, scale);
         let priors = self.structure.priors();
         // The equations of the data stand for their cost divided by this.
@@ -167,7 +189,7 @@ impl Fit {
             {
                 break;
             }
-            let (starts, motion) = self.motion_from(data, &values, starts, scale, present);
+            let (starts, motion) = self.motion_from(data, &values, starts, scale, present, scales);
             let cost = self.objective(data, &motion, &values, scale);
             if cost <= present {
                 let fall = (present - cost) / present.max(f64::MIN_POSITIVE);
@@ -219,8 +241,23 @@ impl Fit {
         mut starts: Vec<Start>,
         scale: f64,
         present: f64,
+        scales: &Scales,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
+        if data.excitation.sees_load_of(&self.structure.model(values)) {
+            // A contact that a window misses leaves no slope that would lead back to it, and one that it meets
+            // bends the motion too much for one linear step of the state.
+            let mut trial = Self {
+                values: values.to_vec(),
+                starts,
+                motion: moved,
+                ..self.clone()
+            };
+            trial.take_better(data, self.starts.clone());
+            trial.take_measured_starts(data);
+            trial.polish_starts(data, scales);
+            return (trial.starts, trial.motion);
+        }
         if self.objective(data, &moved, values, scale) <= present {
             return (starts, moved);
         }
@@ -273,15 +310,13 @@ impl Fit {
             .zip(informed_windows(data))
             .zip(starts.iter().zip(&self.starts))
             .filter(|((_, informed), _)| *informed)
-            .map(|((sums, _), (to, from))| {
-                sums.gradient[0] * (to.position - from.position)
-                    + sums.gradient[1] * (to.velocity - from.velocity)
-            })
+            .map(|((sums, _), (to, from))| sums.gradient.dot(&(state(to) - state(from))))
             .sum();
         2.0 * (shared + own)
     }
 
-    /// Derivatives of the motion: one column per value, then position and velocity of the starts.
+    /// Derivatives of the motion: one column per value, then position and velocity of the starts, then those of a
+    /// load that was seen.
     fn columns(&self, data: &Data, steps: &[f64], scales: &Scales) -> Vec<Motion> {
         let spans = data.spans();
         let difference = |moved: Motion, step: f64| difference(moved, &self.motion, step, &spans);
@@ -301,28 +336,27 @@ impl Fit {
                 )
             })
             .collect();
-        let moved = |position: f64, velocity: f64| -> Motion {
-            let starts: Vec<Start> = self
-                .starts
-                .iter()
-                .map(|s| Start {
-                    position: s.position + position,
-                    velocity: s.velocity + velocity,
-                    ..*s
-                })
-                .collect();
+        let moved = |change: [f64; STATES]| -> Motion {
+            let change = Vector4::from(change);
+            let starts: Vec<Start> = self.starts.iter().map(|s| changed(s, &change)).collect();
             simulate(data, &self.structure, &self.values, &starts)
         };
+        let model = self.structure.model(&self.values);
         let dx = 1e-6 * scales.travel.max(f64::MIN_POSITIVE);
         let dv = 1e-6 * scales.speed.max(f64::MIN_POSITIVE);
         columns.push(if !data.has_position {
             Motion::still(data.len())
-        } else if self.structure.model(&self.values).is_same_everywhere() {
+        } else if model.is_same_everywhere() {
             Motion::shifted(data)
         } else {
-            difference(moved(dx, 0.0), dx)
+            difference(moved([dx, 0.0, 0.0, 0.0]), dx)
         });
-        columns.push(difference(moved(0.0, dv), dv));
+        columns.push(difference(moved([0.0, dv, 0.0, 0.0]), dv));
+        if data.excitation.sees_load_of(&model) {
+            let d = LOAD_DIFFERENCE;
+            columns.push(difference(moved([0.0, 0.0, d, 0.0]), d));
+            columns.push(difference(moved([0.0, 0.0, 0.0, d]), d));
+        }
         columns
     }
 
@@ -330,21 +364,15 @@ impl Fit {
         &self,
         data: &Data,
         columns: &[Motion],
+        p: usize,
         scale: f64,
     ) -> (DMatrix<f64>, DVector<f64>, Vec<WindowSums>) {
-        // The last two columns are those of the starts.
-        let p = columns.len() - 2;
+        // The columns after those of the values are those of the starts.
+        let sees_load = columns.len() == p + STATES;
         let mut matrix = DMatrix::zeros(p, p);
         let mut gradient = DVector::zeros(p);
-        let mut windows: Vec<WindowSums> = data
-            .windows
-            .iter()
-            .map(|_| WindowSums {
-                state: Matrix2::zeros(),
-                gradient: Vector2::zeros(),
-                mixed: vec![Vector2::zeros(); p],
-            })
-            .collect();
+        let mut windows: Vec<WindowSums> =
+            data.windows.iter().map(|_| WindowSums::new(p)).collect();
         let informed = informed_windows(data);
         let robust = window_weights(data, &self.motion, scale);
         let mut row = vec![0.0; p];
@@ -363,11 +391,11 @@ impl Fit {
                     for (value, part) in row.iter_mut().zip(&parts) {
                         *value = part[i] * weight;
                     }
-                    let s = Vector2::new(parts[p][i] * weight, parts[p + 1][i] * weight);
-                    sums.state += s * s.transpose();
-                    sums.gradient += s * r;
-                    for (mixed, value) in sums.mixed.iter_mut().zip(&row) {
-                        *mixed += s * *value;
+                    let state = |k: usize| parts[p + k][i] * weight;
+                    if sees_load {
+                        sums.add([state(0), state(1), state(2), state(3)], &row, r);
+                    } else {
+                        sums.add([state(0), state(1)], &row, r);
                     }
                     if !block.held_back {
                         for a in 0..p {
@@ -383,6 +411,15 @@ impl Fit {
         for a in 0..p {
             for b in 0..a {
                 matrix[(b, a)] = matrix[(a, b)];
+            }
+        }
+        if sees_load {
+            for ((sums, start), weight) in windows.iter_mut().zip(&self.starts).zip(&robust) {
+                for (k, deviation) in start.load.iter().enumerate() {
+                    let k = BODY_STATES + k;
+                    sums.state[(k, k)] += weight;
+                    sums.gradient[k] -= weight * deviation;
+                }
             }
         }
         (matrix, gradient, windows)
@@ -414,12 +451,7 @@ impl Fit {
                 for (mixed, d) in sums.mixed.iter().zip(&moved) {
                     g -= mixed * *d;
                 }
-                let change = inverse(&sums.state) * g;
-                Start {
-                    position: start.position + change[0],
-                    velocity: start.velocity + change[1],
-                    ..*start
-                }
+                changed(start, &(inverse(&sums.state) * g))
             })
             .collect();
         Some((values, starts))
@@ -486,28 +518,38 @@ impl Fit {
 
     /// Takes for each window the measured state where that suits the values better than the present one.
     pub fn take_measured_starts(&mut self, data: &Data) {
-        self.take_better(data, data.guessed_starts());
+        let mut trial = data.guessed_starts();
+        for (guessed, present) in trial.iter_mut().zip(&self.starts) {
+            guessed.load = present.load;
+        }
+        self.take_better(data, trial.clone());
+        let model = self.structure.model(&self.values);
+        if data.excitation.sees_load_of(&model) {
+            data.excitation.guess_loads(&model, &mut trial);
+            self.take_better(data, trial);
+        }
     }
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
-        for _ in 0..2 {
+        for round in 0..POLISHINGS {
+            let before = self.cost;
             let columns = self.columns(data, &[], scales);
-            let (_, _, windows) = self.normal_equations(data, &columns, f64::INFINITY);
-            let trial = self
-                .starts
-                .iter()
-                .zip(&windows)
-                .map(|(s, sums)| {
-                    let change = inverse(&sums.state) * sums.gradient;
-                    Start {
-                        position: s.position + change[0],
-                        velocity: s.velocity + change[1],
-                        ..*s
-                    }
-                })
-                .collect();
-            self.take_better(data, trial);
+            let (_, _, windows) = self.normal_equations(data, &columns, 0, f64::INFINITY);
+            let sees_load = columns.len() == STATES;
+            let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
+            for share in shares {
+                let changes = windows
+                    .iter()
+                    .map(|sums| inverse(&sums.state) * sums.gradient * *share);
+                let trial = self.starts.iter().zip(changes);
+                let trial = trial.map(|(s, change)| changed(s, &change)).collect();
+                self.take_better(data, trial);
+            }
+            let worthwhile = sees_load && self.cost < POLISHED_ENOUGH * before;
+            if round + 1 >= FEWEST_POLISHINGS && !worthwhile {
+                return;
+            }
         }
     }
 
@@ -567,6 +609,15 @@ pub(super) fn simulate(
     let model = structure.model(values);
     data.excitation
         .replay(&model, starts, &mut motion.position, &mut motion.velocity);
+    let sees_load = data.excitation.sees_load_of(&model);
+    let prior = |s: &Start| {
+        if sees_load {
+            s.load[0].powi(2) + s.load[1].powi(2)
+        } else {
+            0.0
+        }
+    };
+    motion.priors = starts.iter().map(prior).collect();
     motion
 }
 
@@ -599,43 +650,4 @@ fn difference(mut moved: Motion, base: &Motion, step: f64, spans: &[(usize, usiz
         }
     }
     moved
-}
-
-/// Inverse of a window's matrix, with a little damping where the state leaves no trace.
-fn inverse(m: &Matrix2<f64>) -> Matrix2<f64> {
-    let mut damped = *m;
-    for j in 0..2 {
-        damped[(j, j)] += 1e-10 * m[(j, j)];
-        if damped[(j, j)] <= 0.0 {
-            damped[(j, j)] = 1.0;
-        }
-    }
-    damped.try_inverse().unwrap_or_else(Matrix2::zeros)
-}
-
-/// Normal equations of the values alone, the states eliminated.
-fn reduced(
-    matrix: &DMatrix<f64>,
-    gradient: &DVector<f64>,
-    windows: &[WindowSums],
-    data: &Data,
-    p: usize,
-) -> (DMatrix<f64>, DVector<f64>) {
-    let (mut schur, mut g) = (matrix.clone(), gradient.clone());
-    let informed = informed_windows(data);
-    for (sums, _) in windows
-        .iter()
-        .zip(&informed)
-        .filter(|(_, informed)| **informed)
-    {
-        let inv = inverse(&sums.state);
-        for a in 0..p {
-            let left = inv * sums.mixed[a];
-            g[a] -= left.dot(&sums.gradient);
-            for b in 0..p {
-                schur[(a, b)] -= left.dot(&sums.mixed[b]);
-            }
-        }
-    }
-    (schur, g)
 }

@@ -23,7 +23,12 @@ const RELEASED_ITERATIONS: usize = 8;
 pub(super) struct Knowledge {
     entries: Arc<[(Option<EffectId>, Known)]>,
     present: Arc<[EffectId]>,
+    /// Half gap that the contacts in the record tell, and its tolerance.
+    felt_gap: Option<(f64, f64)>,
 }
+
+/// The half gap of a backlash.
+const HALF_GAP: (Option<EffectId>, &str) = (Some(EffectId::new("backlash")), "beta");
 
 impl Knowledge {
     /// What `model` knows.
@@ -38,7 +43,13 @@ impl Knowledge {
         Self {
             entries: entries.into(),
             present: model.present().into(),
+            felt_gap: None,
         }
+    }
+
+    /// The same with the half gap that contacts tell, and its tolerance.
+    pub fn with_felt_gap(self, felt_gap: Option<(f64, f64)>) -> Self {
+        Self { felt_gap, ..self }
     }
 
     /// The same where no value is held: every parameter is free.
@@ -46,6 +57,7 @@ impl Knowledge {
         Self {
             entries: Arc::from([]),
             present: Arc::clone(&self.present),
+            felt_gap: self.felt_gap,
         }
     }
 
@@ -117,13 +129,21 @@ impl Structure {
 
     /// Known value and standard deviation of each prior, by index.
     pub fn priors(&self) -> Vec<(usize, f64, f64)> {
-        let known = self.known().into_iter().enumerate();
-        known
-            .filter_map(|(j, k)| match k?.status {
-                Status::Prior(tolerance) => Some((j, k?.value, tolerance)),
+        let known = self.known();
+        let mut priors: Vec<(usize, f64, f64)> = known
+            .iter()
+            .enumerate()
+            .filter_map(|(j, k)| match k.as_ref()?.status {
+                Status::Prior(tolerance) => Some((j, k.as_ref()?.value, tolerance)),
                 _ => None,
             })
-            .collect()
+            .collect();
+        if let Some((half_gap, tolerance)) = self.knowledge.felt_gap {
+            let at = self.symbols().iter().position(|s| *s == HALF_GAP);
+            let unsaid = at.filter(|j| known[*j].is_none());
+            priors.extend(unsaid.map(|j| (j, half_gap, tolerance)));
+        }
+        priors
     }
 
     /// Squared deviations from the priors, in units of their tolerance.

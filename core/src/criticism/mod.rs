@@ -24,6 +24,7 @@ mod step;
 mod structure;
 mod verdict;
 mod window;
+mod window_sums;
 
 pub use atlas::{Profile, ProfileBin};
 pub use fingerprint::Fingerprint;

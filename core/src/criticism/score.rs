@@ -47,7 +47,16 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
         .blocks
         .iter()
         .filter(|b| b.held_back)
-        .map(|b| cost_between(data, &fit.motion, b.from, b.to))
+        .map(|b| {
+            // What a window's own states cost belongs to it.
+            let own = !informed[b.window];
+            let prior = if own {
+                fit.motion.priors[b.window]
+            } else {
+                0.0
+            };
+            cost_between(data, &fit.motion, b.from, b.to) + prior
+        })
         .collect();
     let sizes = data
         .blocks

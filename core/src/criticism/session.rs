@@ -9,11 +9,13 @@ use super::locate::locate;
 use super::score::{Score, score};
 use super::select::is_noise;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
-use crate::backlash::estimate_gap;
+use crate::backlash::sighted;
 use crate::effect::{
-    self, Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Scales, SeenGap,
+    self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Scales,
+    SeenGap,
 };
 use crate::measurement::{Kind, Measurement, Quantity};
+use crate::model::SeenLoad;
 use crate::user_model::{Status, UserModel};
 
 /// A fit with its score.
@@ -25,6 +27,10 @@ pub(super) struct Scored {
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
+
+/// Tolerance of a half gap that was felt in its standard errors, and the least of these as a share of it.
+const GAP_TOLERANCE: f64 = 3.0;
+const LEAST_GAP_ERROR: f64 = 0.01;
 
 /// Iterations of a fit of the whole record from that of a part of it.
 const WHOLE_ITERATIONS: usize = 2;
@@ -54,7 +60,8 @@ pub(super) struct Session {
 impl Session {
     pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
         knowledge::check(model, measurement)?;
-        let data = Data::new(measurement)?;
+        let (gap, seen) = seen_gap(measurement).unzip();
+        let data = Data::new(measurement)?.with_seen_load(seen.flatten());
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
         let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| vec![1.0, 1.0]);
@@ -64,7 +71,7 @@ impl Session {
         Ok(Self {
             scales,
             scout: compared.scout(),
-            knowledge: Knowledge::of(model),
+            knowledge: Knowledge::of(model).with_felt_gap(gap.map(felt_gap)),
             own: model
                 .formulas()
                 .map(|formula| {
@@ -78,7 +85,7 @@ impl Session {
             full: (compared.used() < data.used()).then_some(data),
             data: compared,
             motion: measurement.motion(),
-            gap: seen_gap(measurement),
+            gap,
             input_unit: measurement.input.unit.clone(),
             outputs: measurement
                 .outputs
@@ -344,17 +351,32 @@ impl Session {
     }
 }
 
-/// The gap that the motor's columns give away by themselves, if they are those of a drifting test.
-fn seen_gap(measurement: &Measurement) -> Option<SeenGap> {
+/// The half gap that contacts tell, with a tolerance wide enough to add little to what a fit sees of it, so that
+/// it only keeps a trial from losing the contacts.
+fn felt_gap(gap: SeenGap) -> (f64, f64) {
+    let error = gap.error.max(LEAST_GAP_ERROR * gap.half_gap);
+    (gap.half_gap, GAP_TOLERANCE * error)
+}
+
+/// The gap, and the load behind it, that the motor's columns give away if they are those of a drifting test.
+fn seen_gap(measurement: &Measurement) -> Option<(SeenGap, Option<SeenLoad>)> {
     if measurement.kind != Kind::Drive {
         return None;
     }
-    let estimate = estimate_gap(measurement).ok()?;
-    let load = estimate.load.map(|load| (load.viscous, load.dry));
-    estimate.gap.map(|gap| SeenGap {
-        half_gap: 0.5 * gap,
-        load_friction: load,
-    })
+    let (estimate, seen) = sighted(measurement).ok()?;
+    let load = seen.as_ref().map(|seen| GapLoad {
+        inertia_ratio: 1.0 / seen.play().ratio,
+        viscous: seen.play().slowing.viscous,
+        dry: seen.play().slowing.dry,
+        push: seen.usual_push(),
+    });
+    let half_gap = 0.5 * estimate.gap?;
+    let gap = SeenGap {
+        half_gap,
+        error: 0.5 * estimate.std_error.unwrap_or(0.0),
+        load,
+    };
+    Some((gap, seen))
 }
 
 /// A product of powers of units, such as `N m s^2/rad`.

@@ -3,9 +3,12 @@
 //! The contact is a stiff spring with damping that pushes and cannot pull; the rigid play with
 //! momentum-conserving impact, equations (10) and (11) of the paper, is its limit for large stiffness.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, SeenGap};
+use std::f64::consts::FRAC_PI_2;
+
+use super::{Dimension, Effect, EffectId, GapLoad, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
+use crate::simplex::minimise;
 
 pub(super) struct Backlash;
 
@@ -26,6 +29,22 @@ const STIFFNESS: [f64; 3] = [0.03, 0.01, 0.2];
 /// Damping ratio of the contact.
 const DAMPING_RATIO: f64 = 0.3;
 
+/// Stiffness of a contact that was felt, in times of what the length of its push tells.
+const FELT_STIFFNESS: [f64; 10] = [0.01, 0.018, 0.032, 0.056, 0.1, 0.18, 0.32, 0.56, 1.0, 3.2];
+
+/// Damping ratio of such a contact.
+const FELT_DAMPING: [f64; 2] = [0.05, 0.25];
+
+/// Dry friction of the load, in units of the typical input, that stands for none.
+const LEAST_DRY: f64 = 1e-4;
+
+/// Trials that are refined; sides of the simplex (logarithms), its evaluations, and share of the unexplained force
+/// that is not worth more of them.
+const FOLLOWED: usize = 2;
+const SIDE: f64 = 0.4;
+const EVALUATIONS: usize = 120;
+const ENOUGH: f64 = 1e-4;
+
 /// Gaps that are tried with every friction and stiffness, and combinations that are followed.
 const REFINED: usize = 5;
 const BEST: usize = 3;
@@ -40,35 +59,99 @@ fn gap_shares() -> impl Iterator<Item = f64> {
     .take_while(|share| *share < LARGEST_GAP)
 }
 
+/// A load that is tried.
+#[derive(Clone, Copy)]
+struct Guess {
+    half_gap: f64,
+    /// Rate at which viscous friction slows the free load down, per sample.
+    viscous: f64,
+    /// Dry friction in units of the typical input, for a load as heavy as the body.
+    dry: f64,
+    /// Squared radians of the contact's oscillation in a sample.
+    stiffness: f64,
+    /// Damping ratio of the contact.
+    damping: f64,
+}
+
+impl Guess {
+    fn new(half_gap: f64, (viscous, dry): (f64, f64), stiffness: f64) -> Self {
+        Self {
+            half_gap,
+            viscous,
+            dry,
+            stiffness,
+            damping: DAMPING_RATIO,
+        }
+    }
+
+    fn logarithms(&self) -> [f64; 5] {
+        [
+            self.half_gap,
+            self.viscous,
+            self.dry.max(LEAST_DRY),
+            self.stiffness,
+            self.damping,
+        ]
+        .map(f64::ln)
+    }
+
+    fn from_logarithms(point: &[f64; 5]) -> Self {
+        let [half_gap, viscous, dry, stiffness, damping] = point.map(f64::exp);
+        Self {
+            half_gap,
+            viscous,
+            dry,
+            stiffness,
+            damping,
+        }
+    }
+}
+
 /// A starting point with the share of the unexplained force that it leaves.
 #[derive(Clone)]
 struct Trial {
     left: f64,
+    guess: Guess,
     load: Load,
     /// By how much the load must be scaled.
     scale: f64,
 }
 
 impl Trial {
-    fn new(probe: &Probe, half_gap: f64, friction: (f64, f64), stiffness: f64) -> Option<Self> {
+    fn new(probe: &Probe, guess: Guess) -> Option<Self> {
         let (inertia, step) = (probe.scales.inertia.abs(), probe.scales.step);
         let load = Load {
             inertia,
-            viscous: friction.0 * inertia / step,
-            dry_friction: friction.1 * probe.scales.force,
+            viscous: guess.viscous * inertia / step,
+            dry_friction: guess.dry * probe.scales.force,
             coupling: Coupling {
-                half_gap,
-                stiffness: stiffness * inertia / (step * step),
-                damping: 2.0 * DAMPING_RATIO * stiffness.sqrt() * inertia / step,
+                half_gap: guess.half_gap,
+                stiffness: guess.stiffness * inertia / (step * step),
+                damping: 2.0 * guess.damping * guess.stiffness.sqrt() * inertia / step,
             },
         };
         let fit = probe.regress(&[&probe.load_torque(&load)])?;
         let scale = -fit.coefficients[0];
         (scale > 0.0).then_some(Self {
             left: fit.left,
+            guess,
             load,
             scale,
         })
+    }
+
+    /// The best nearby.
+    fn refined(self, probe: &Probe) -> Self {
+        let left = |point: &[f64; 5]| {
+            let guess = Guess::from_logarithms(point);
+            Self::new(probe, guess).map_or(1.0, |trial| trial.left)
+        };
+        let start = self.guess.logarithms();
+        let (point, _) = minimise(left, start, SIDE, EVALUATIONS, ENOUGH);
+        let better = Self::new(probe, Guess::from_logarithms(&point));
+        better
+            .filter(|trial| trial.left < self.left)
+            .unwrap_or(self)
     }
 
     fn values(&self) -> Vec<f64> {
@@ -91,21 +174,43 @@ fn best(mut trials: Vec<Trial>, count: usize) -> Vec<Trial> {
     trials
 }
 
-/// The best starting points about a gap that was seen: only its contact is to be found.
-fn about(probe: &Probe, gap: SeenGap) -> Vec<Trial> {
-    let scales = &probe.scales;
-    let friction = match gap.load_friction {
-        Some((viscous, dry)) => vec![(
-            viscous * scales.step,
-            dry * scales.inertia.abs() / scales.force,
-        )],
-        None => LOAD_FRICTION.to_vec(),
+/// Starting points where the motor felt the load: only the contact is to be found.
+fn felt(probe: &Probe, half_gap: f64, load: GapLoad) -> Vec<Vec<f64>> {
+    let body = probe.scales.inertia.abs();
+    let inertia = load.inertia_ratio * body;
+    let joined = body * inertia / (body + inertia);
+    // A push is half an oscillation.
+    let push = load.push.max(0.5 * probe.scales.step);
+    let stiffness = joined * (FRAC_PI_2 / push).powi(2);
+    let contact = |(share, damping): (f64, f64)| {
+        let stiffness = share * stiffness;
+        vec![
+            half_gap,
+            inertia,
+            load.viscous * inertia,
+            load.dry * inertia,
+            stiffness,
+            2.0 * damping * (stiffness * joined).sqrt(),
+        ]
     };
-    let trials = friction
-        .into_iter()
-        .flat_map(|friction| STIFFNESS.map(|k| (friction, k)))
-        .filter_map(|(friction, k)| Trial::new(probe, gap.half_gap, friction, k))
-        .collect();
+    let shares = FELT_STIFFNESS.iter();
+    shares
+        .flat_map(|share| FELT_DAMPING.map(|damping| contact((*share, damping))))
+        .collect()
+}
+
+/// The best loads behind these gaps, refined.
+fn behind(probe: &Probe, gaps: &[f64]) -> Vec<Trial> {
+    let guesses = gaps.iter().flat_map(|half_gap| {
+        LOAD_FRICTION
+            .into_iter()
+            .flat_map(|friction| STIFFNESS.map(|k| Guess::new(*half_gap, friction, k)))
+    });
+    let trials = guesses.filter_map(|guess| Trial::new(probe, guess));
+    let mut trials: Vec<Trial> = best(trials.collect(), BEST);
+    for trial in trials.iter_mut().take(FOLLOWED) {
+        *trial = trial.clone().refined(probe);
+    }
     best(trials, BEST)
 }
 
@@ -180,27 +285,26 @@ impl Effect for Backlash {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        let seen = probe.gap().map_or_else(Vec::new, |gap| about(probe, gap));
+        if let Some((half_gap, load)) = probe.gap().and_then(|g| Some((g.half_gap, g.load?))) {
+            return felt(probe, half_gap, load);
+        }
+        let seen = probe
+            .gap()
+            .map_or_else(Vec::new, |gap| behind(probe, &[gap.half_gap]));
         if seen.first().is_some_and(|trial| trial.left < WELL_SEEN) {
             return seen.iter().map(Trial::values).collect();
         }
         let scanned = gap_shares()
             .filter_map(|share| {
                 let half_gap = share * probe.scales.travel;
-                Trial::new(probe, half_gap, LOAD_FRICTION[0], STIFFNESS[0])
+                Trial::new(probe, Guess::new(half_gap, LOAD_FRICTION[0], STIFFNESS[0]))
             })
             .collect();
-        let refined = best(scanned, REFINED)
+        let gaps: Vec<f64> = best(scanned, REFINED)
             .iter()
-            .flat_map(|trial| {
-                let half_gap = trial.load.coupling.half_gap;
-                LOAD_FRICTION
-                    .iter()
-                    .flat_map(|friction| STIFFNESS.map(|k| (*friction, k)))
-                    .filter_map(move |(friction, k)| Trial::new(probe, half_gap, friction, k))
-            })
+            .map(|trial| trial.guess.half_gap)
             .collect();
-        best(refined, BEST).iter().map(Trial::values).collect()
+        behind(probe, &gaps).iter().map(Trial::values).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -115,8 +115,23 @@ pub struct ProbeOutput {
 pub struct SeenGap {
     /// Half of the gap, rad or m.
     pub half_gap: f64,
-    /// Viscous friction (1/s) and dry friction (rad/s^2 or m/s^2) of the load over its inertia, where they show.
-    pub load_friction: Option<(f64, f64)>,
+    /// Standard error of the half gap, rad or m.
+    pub error: f64,
+    /// The load, where its motion shows.
+    pub load: Option<GapLoad>,
+}
+
+/// The load of a [`SeenGap`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GapLoad {
+    /// Its inertia over that of the motor.
+    pub inertia_ratio: f64,
+    /// Viscous friction over its inertia, 1/s.
+    pub viscous: f64,
+    /// Dry friction over its inertia, rad/s^2 or m/s^2.
+    pub dry: f64,
+    /// From the begin of a contact to the centre of its push, s.
+    pub push: f64,
 }
 
 /// What a [`Probe`] is made from.

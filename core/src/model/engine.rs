@@ -96,13 +96,18 @@ impl State {
         }
     }
 
-    /// The same with the load as `follower` found it; `position` is where the body was measured.
+    /// The same with the load as `follower` found it, shifted in position and velocity; `position` is where the
+    /// body was measured.
     #[must_use]
-    pub(super) fn with_load(&self, follower: &Follower, position: f64) -> Self {
+    pub(super) fn with_load(&self, follower: &Follower, position: f64, shift: [f64; 2]) -> Self {
         let mut next = *self;
-        next.twist = position - follower.motion.x;
+        next.twist = position - follower.motion.x - shift[0];
         next.load = follower.motion;
         next.load_mode = follower.mode;
+        if shift[1] != 0.0 {
+            next.load.v += shift[1];
+            next.load_mode = Mode::of(next.load.v);
+        }
         next
     }
 }

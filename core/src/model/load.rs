@@ -108,6 +108,13 @@ impl<'m> Follower<'m> {
         }
     }
 
+    /// Moves the load to position `x` with velocity `v` at a sample.
+    pub fn place(&mut self, x: f64, v: f64, sample: usize) {
+        (self.motion.x, self.motion.v) = (x, v);
+        self.mode = Mode::of(v);
+        self.sample = sample;
+    }
+
     /// Follows up to a sample, not before the last one asked for; `h` tells the time from a sample to the
     /// next. A long way is cut short: the load then begins as if it had gone with the body.
     pub fn reach(&mut self, position: &[f64], sample: usize, h: impl Fn(usize) -> f64) {

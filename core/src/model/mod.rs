@@ -9,16 +9,20 @@
 mod closed_loop;
 mod contact;
 mod engine;
+mod flight;
 mod flow;
 mod friction;
 mod load;
 mod replay;
+mod seen_load;
 
 pub use closed_loop::{Run, run_controlled};
 pub use engine::{Engine, State};
+pub(crate) use flight::Slowing;
 pub(crate) use flow::free_body;
 pub use load::{Coupling, Load, load_torque};
 pub use replay::{Excitation, Sensor, Start};
+pub(crate) use seen_load::{LoadState, Play, SeenContact, SeenLoad, Sharpness};
 
 /// Static map of the input or the output, applied sample by sample.
 pub type StaticMap = Box<dyn Fn(f64) -> f64 + Send + Sync>;

@@ -2,6 +2,7 @@
 
 use super::contact::Contact;
 use super::load::Follower;
+use super::seen_load::{SeenLoad, Sight, Tracker};
 use super::{DryFriction, Engine, Model, State};
 
 /// A time step within this share of the mean one counts as equal: files round their time column.
@@ -16,6 +17,9 @@ pub struct Start {
     pub position: f64,
     /// Velocity there, rad/s or m/s; the output of a process.
     pub velocity: f64,
+    /// By how much the load is off what its contacts tell: its position, and what is then left of its velocity, in
+    /// standard deviations of what they tell.
+    pub load: [f64; 2],
 }
 
 /// A measured input, held between samples.
@@ -32,6 +36,8 @@ pub struct Excitation {
     position: Vec<f64>,
     /// The same without its trembling, where it is measured.
     steady: Option<Steady>,
+    /// The load, where the motor felt its contacts.
+    seen: Option<SeenLoad>,
     /// Sample ranges that are simulated, ascending; between them only hidden states go on.
     runs: Vec<(usize, usize)>,
 }
@@ -70,8 +76,47 @@ impl Excitation {
             slow_sensor,
             steady: position_noise.map(|noise| Steady::new(&position, noise)),
             position,
+            seen: None,
             runs: vec![(0, time.len())],
         }
+    }
+
+    /// The same with a load that the motor felt.
+    #[must_use]
+    pub(crate) fn with_seen_load(self, seen: Option<SeenLoad>) -> Self {
+        Self { seen, ..self }
+    }
+
+    /// Whether the load of `model` is told by contacts that the motor felt.
+    pub(crate) fn sees_load_of(&self, model: &Model) -> bool {
+        self.tracker(model).is_some()
+    }
+
+    /// Gives `starts` the states of a seen load with which it meets the contacts that were felt; the last window ends
+    /// with the record.
+    pub(crate) fn guess_loads(&self, model: &Model, starts: &mut [Start]) {
+        let Some(mut tracker) = self.tracker(model) else {
+            return;
+        };
+        for k in 0..starts.len() {
+            let until = starts.get(k + 1).map_or(self.len() - 1, |s| s.sample);
+            let guess = tracker.next_met(self.time[starts[k].sample], self.time[until]);
+            if let Some(guess) = guess {
+                starts[k].load = guess;
+            }
+        }
+    }
+
+    /// Sample before each contact that the motor felt.
+    pub(crate) fn felt(&self) -> Vec<usize> {
+        let times = self.seen.iter().flat_map(SeenLoad::times);
+        times
+            .map(|t| self.time.partition_point(|at| *at <= t).saturating_sub(1))
+            .collect()
+    }
+
+    fn tracker(&self, model: &Model) -> Option<Tracker<'_>> {
+        Tracker::new(self.seen.as_ref()?, model)
     }
 
     /// The same, to be simulated in these sample ranges (ascending, apart) only; each begins at a start.
@@ -91,6 +136,7 @@ impl Excitation {
             input: self.input[..n].to_vec(),
             position: self.position.iter().take(n).copied().collect(),
             steady: self.steady.as_ref().map(|s| s.head(n)),
+            seen: self.seen.clone(),
             runs: vec![(0, n)],
             ..*self
         }
@@ -133,6 +179,7 @@ impl Excitation {
             .as_ref()
             .filter(|_| self.position.len() == self.len())
             .map(|load| Follower::new(load, self.position[0], self.mean_step()));
+        let mut tracker = self.tracker(model);
         let mut bristle = engine
             .contact()
             .zip(self.steady.as_ref())
@@ -151,10 +198,15 @@ impl Excitation {
                 if let Some(start) = next.next_if(|s| s.sample == i) {
                     state = state.restarted(start.position, start.velocity);
                     if let Some(follower) = &mut follower {
-                        follower.reach(&self.position, i, |k| {
-                            self.step.unwrap_or_else(|| self.time[k + 1] - self.time[k])
-                        });
-                        state = state.with_load(follower, self.position[i]);
+                        let shift = match &mut tracker {
+                            Some(tracker) => {
+                                self.take_sight(follower, &tracker.at(self.time[i]), i);
+                                tracker.shift(self.time[i], start.load)
+                            }
+                            None => [0.0; 2],
+                        };
+                        follower.reach(&self.position, i, |k| self.step_after(k));
+                        state = state.with_load(follower, self.position[i], shift);
                     }
                     if let Some(bristle) = &mut bristle {
                         state = state.with_deflection(bristle.at(i, &self.time));
@@ -182,6 +234,23 @@ impl Excitation {
                 Sensor::Position => position,
             };
             self.slow_down(slowed, lag);
+        }
+    }
+
+    /// Time from a sample to the next, s.
+    fn step_after(&self, i: usize) -> f64 {
+        self.step.unwrap_or_else(|| self.time[i + 1] - self.time[i])
+    }
+
+    /// Puts `follower` where the load was seen at sample `i`, or before the contact in which it is.
+    fn take_sight(&self, follower: &mut Follower, sight: &Sight, i: usize) {
+        match *sight {
+            Sight::Free(x, v) => follower.place(x, v, i),
+            Sight::Touching { begin, x, v } => {
+                let before = self.time[..i].partition_point(|t| *t <= begin);
+                let before = before.saturating_sub(1);
+                follower.place(x + v * (self.time[before] - begin), v, before);
+            }
         }
     }
 

@@ -8,7 +8,7 @@ const SHRINK: f64 = 0.5;
 
 /// Where `function` is least near `start`, and its value there: a simplex with sides `step`, at most
 /// `evaluations`, or until all its corners are within `tolerance` of the best in value.
-pub(super) fn minimise<const N: usize>(
+pub(crate) fn minimise<const N: usize>(
     function: impl Fn(&[f64; N]) -> f64,
     start: [f64; N],
     step: f64,

@@ -2,7 +2,7 @@
 
 /// Friction of the free load, divided by its inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Slowing {
+pub struct Slowing {
     /// Viscous, 1/s.
     pub viscous: f64,
     /// Dry, rad/s^2 or m/s^2.
@@ -11,10 +11,14 @@ pub(super) struct Slowing {
 
 /// Way and end of a free flight, and how they follow the velocity at its begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Flight {
+pub struct Flight {
+    /// Way, rad or m.
     pub way: f64,
+    /// Velocity at its end.
     pub velocity: f64,
+    /// Derivative of the way by the velocity at the begin, s.
     pub way_by_velocity: f64,
+    /// The same of the velocity at its end.
     pub velocity_by_velocity: f64,
 }
 
