@@ -352,3 +352,89 @@ impl<'s> Tracker<'s> {
         self.v = flight.velocity;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SLOWING: Slowing = Slowing {
+        viscous: 2.0,
+        dry: 0.05,
+    };
+    const PLAY: Play = Play {
+        half_gap: 0.005,
+        ratio: 0.8,
+        slowing: SLOWING,
+    };
+    const SHARPNESS: Sharpness = Sharpness {
+        place: 1e-5,
+        late: 1e-4,
+        momentum: 0.01,
+    };
+
+    fn contact(begin: f64, side: f64, load: f64, jump: f64) -> SeenContact {
+        SeenContact {
+            begin,
+            end: begin,
+            centre: 0.0,
+            position: load + side * PLAY.half_gap,
+            velocity: 0.0,
+            side,
+            jump,
+            jump_noise: 1e-4,
+            free: true,
+        }
+    }
+
+    /// The load is pushed at 0 s from rest at 0.01, flies for 0.2 s and meets the other end.
+    fn seen() -> (SeenLoad, f64) {
+        let speed = PLAY.ratio * 0.05;
+        let met = 0.01 + SLOWING.flight(speed, 0.2).way;
+        let contacts = vec![contact(0.0, 1.0, 0.01, 0.05), contact(0.2, -1.0, met, -0.02)];
+        (SeenLoad::new(contacts, PLAY, SHARPNESS).unwrap(), speed)
+    }
+
+    #[test]
+    fn a_load_is_where_its_flight_led() {
+        let (seen, speed) = seen();
+        let mut tracker = Tracker::with(&seen, PLAY);
+        let flight = SLOWING.flight(speed, 0.1);
+        let Sight::Free(x, v) = tracker.at(0.1) else {
+            panic!("no contact is on");
+        };
+        assert!((x - 0.01 - flight.way).abs() < 1e-15, "{x}");
+        assert!((v - flight.velocity).abs() < 1e-15, "{v}");
+        assert_eq!(tracker.next_met(0.1, 0.15), None);
+        let deviations = tracker.next_met(0.1, 0.3).unwrap();
+        assert!(deviations.iter().all(|d| d.abs() < 1e-9), "{deviations:?}");
+    }
+
+    #[test]
+    fn with_a_wrong_gap_the_deviations_lead_to_the_contact() {
+        let (seen, _) = seen();
+        let wrong = Play {
+            half_gap: 0.0052,
+            ..PLAY
+        };
+        let mut tracker = Tracker::with(&seen, wrong);
+        let Sight::Free(x, v) = tracker.at(0.1) else {
+            panic!("no contact is on");
+        };
+        let [dx, dv] = {
+            let deviations = tracker.next_met(0.1, 0.3).unwrap();
+            tracker.shift(0.1, deviations)
+        };
+        let reached = x + dx + SLOWING.flight(v + dv, 0.1).way;
+        let asked = seen.contacts[1].load_at(wrong.half_gap);
+        // As far as the place of the contact is known better than the flight.
+        assert!((reached - asked).abs() < 0.02 * 0.0004, "{reached} {asked}");
+    }
+
+    #[test]
+    fn what_is_known_of_a_load_fades_until_the_next_contact() {
+        let (seen, _) = seen();
+        let place = |time: f64| seen.covariance(time)[0];
+        assert!(place(0.1) > place(0.05) && place(0.05) > place(0.01));
+        assert!(place(0.21) < place(0.19));
+    }
+}
