@@ -4,7 +4,7 @@ use egui::Ui;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
-use crate::language::tr;
+use crate::language::{tr, typed};
 use crate::pages::Desk;
 
 /// Name and story of an experiment.
@@ -167,6 +167,7 @@ fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
         .range(least * scale..=most * scale)
         .speed(0.002 * most * scale)
         .max_decimals(3)
+        .custom_parser(typed)
         .suffix(format!(" {unit}"));
     if ui.add(field).labelled_by(text.id).changed() {
         *value = shown / scale;
