@@ -67,7 +67,7 @@ impl Bench {
             }
         });
         if self.by_hand {
-            self.menu_ui(ui);
+            self.menu_ui(ui, desk);
         } else {
             ui.label(tr(self.surprise()));
         }
@@ -88,11 +88,11 @@ impl Bench {
     }
 
     /// The menu of effects; those that this experiment shows stand first.
-    fn menu_ui(&mut self, ui: &mut Ui) {
+    fn menu_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
         let (shown, others): (Vec<&Hideable>, Vec<_>) = hideable().iter().partition(shown);
         for effect in shown {
-            self.effect_ui(ui, effect);
+            self.effect_ui(ui, effect, desk);
         }
         let count = others.iter().filter(|h| self.pick(h.id).is_some()).count();
         let title = match count {
@@ -103,7 +103,7 @@ impl Bench {
             .id_salt("hardly_shown")
             .show(ui, |ui| {
                 for effect in others {
-                    self.effect_ui(ui, effect);
+                    self.effect_ui(ui, effect, desk);
                 }
             });
         if self.picks.is_empty() {
@@ -111,7 +111,7 @@ impl Bench {
         }
     }
 
-    fn effect_ui(&mut self, ui: &mut Ui, effect: &'static Hideable) {
+    fn effect_ui(&mut self, ui: &mut Ui, effect: &'static Hideable, desk: &mut Desk) {
         let name = effect.name();
         let mut chosen = self.pick(effect.id).is_some();
         let other = hideable()
@@ -123,6 +123,8 @@ impl Bench {
                 other.is_none() && !full,
                 egui::Checkbox::new(&mut chosen, tr(name)),
             );
+            desk.targets
+                .note(format!("mystery:hide:{}", effect.id), ui, &tick);
             if let Some(other) = other {
                 tick.on_disabled_hover_text(tr(format!("Not together with {}", other.name())));
             } else if tick.changed() {

@@ -111,15 +111,13 @@ impl Bench {
     fn make_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(tr("Word"));
-            ui.add(
-                egui::TextEdit::singleline(&mut self.word)
-                    .desired_width(220.0)
-                    .hint_text(tr("a few words are better than one")),
-            )
-            .labelled_by(label.id)
-            .on_hover_text(tr(
+            let field = egui::TextEdit::singleline(&mut self.word)
+                .desired_width(220.0)
+                .hint_text(tr("a few words are better than one"));
+            let word = ui.add(field).labelled_by(label.id).on_hover_text(tr(
                 "Whoever has it can open the truth; without it nobody can, you neither",
             ));
+            desk.targets.note("mystery:word", ui, &word);
             let obstacle = self.obstacle();
             let ready = obstacle.is_none() && self.job.is_none();
             let make = ui.add_enabled(ready, egui::Button::new(tr("Make the mystery")));
