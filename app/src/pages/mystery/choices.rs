@@ -47,8 +47,8 @@ fn handy(unit: &'static str) -> (f64, &'static str) {
 
 impl Bench {
     pub(super) fn choices_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
+        ui.heading(tr("1. How is the drive driven?"));
         ui.horizontal_wrapped(|ui| {
-            ui.label(tr("Experiment:"));
             for experiment in Experiment::ALL {
                 let (name, story) = words(experiment);
                 ui.selectable_value(&mut self.experiment, experiment, tr(name))
@@ -56,8 +56,9 @@ impl Bench {
             }
         });
         ui.label(tr(words(self.experiment).1));
+        ui.add_space(10.0);
+        ui.heading(tr("2. What is hidden in it?"));
         ui.horizontal_wrapped(|ui| {
-            ui.label(tr("Hidden:"));
             for (by_hand, id, name) in [
                 (false, "surprise", "Surprise me: none, one or two effects"),
                 (true, "choose", "I choose"),
