@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::{Node, TreeUpdate};
 use egui::{
-    Context, Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, RawInput, Rect, Role,
-    TouchPhase, Vec2,
+    Context, Event, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, RawInput,
+    Rect, Role, TouchPhase, Vec2,
 };
 use hysteron::HysteronApp;
 
@@ -213,6 +213,7 @@ impl Bench {
         self.paced(|share| Event::MouseWheel {
             unit: MouseWheelUnit::Point,
             delta: Vec2::new(0.0, if share < 0.5 { -WHEEL } else { WHEEL }),
+            source: MouseWheelSource::Wheel,
             phase: TouchPhase::Move,
             modifiers: Modifiers::NONE,
         })

@@ -8,6 +8,11 @@ pub fn with_comma(text: &str) -> String {
     }
     let chars: Vec<char> = text.chars().collect();
     let digit = |i: usize| chars.get(i).is_some_and(char::is_ascii_digit);
+    // Past the digits that stand from here on.
+    let past = |from: usize| {
+        let digits = chars[from..].iter().take_while(|c| c.is_ascii_digit());
+        from + digits.count()
+    };
     let mut out: Vec<char> = chars.clone();
     let mut start = 0;
     while start < chars.len() {
@@ -15,13 +20,9 @@ pub fn with_comma(text: &str) -> String {
             start += 1;
             continue;
         }
-        let end = (start..).find(|i| !digit(*i)).unwrap_or(start);
+        let end = past(start);
         let point = chars.get(end) == Some(&'.') && digit(end + 1);
-        let last = if point {
-            (end + 1..).find(|i| !digit(*i)).unwrap_or(end)
-        } else {
-            end
-        };
+        let last = if point { past(end + 1) } else { end };
         let further = chars.get(last) == Some(&'.') && digit(last + 1);
         if point && !further && begins_a_number(&chars[..start]) {
             out[end] = ',';

@@ -17,9 +17,7 @@ pub fn journey(session: &Session, page: &str) -> Result<(), String> {
     wait(session, "the end of the page", |s| {
         s["targets"]["mystery:make"].is_array()
     })?;
-    std::thread::sleep(Duration::from_secs(1));
-    click(session, "mystery:word")?;
-    session.type_text(WORD)?;
+    type_word(session, "mystery:word")?;
     click(session, "mystery:make")?;
     let made = wait(session, "the mystery", |s| s["mystery"]["made"].is_string())?;
     click(session, "mystery:open")?;
@@ -40,8 +38,7 @@ pub fn journey(session: &Session, page: &str) -> Result<(), String> {
         s["busy"] == false && s["effects"].to_string().contains("coulomb_friction")
     })?;
     click(session, "look:reveal")?;
-    click(session, "reveal:word")?;
-    session.type_text(WORD)?;
+    type_word(session, "reveal:word")?;
     click(session, "reveal")?;
     let revealed = wait(session, "the truth", |s| s["sealed"]["points"].is_number())?;
     let points = revealed["sealed"]["points"].as_f64().unwrap_or(0.0);
@@ -55,5 +52,16 @@ pub fn journey(session: &Session, page: &str) -> Result<(), String> {
     if points < 90.0 {
         return Err(format!("the right effect has {points} points only"));
     }
+    Ok(())
+}
+
+/// Types the word where it belongs, once the page stands still and the keyboard is there.
+fn type_word(session: &Session, field: &str) -> Result<(), String> {
+    let pause = || std::thread::sleep(Duration::from_secs(1));
+    pause();
+    click(session, field)?;
+    pause();
+    session.type_text(WORD)?;
+    pause();
     Ok(())
 }
