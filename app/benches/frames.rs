@@ -1,5 +1,5 @@
 //! How much work of its own a frame takes while someone drags: every slider and every number of every page in
-//! turn, 60 frames a second, so that what runs beside them has time to bring its results; and the shapes cut into
+//! turn, and the pointer and the wheel over a finished diagnosis, 60 frames a second, so that what runs beside them has time to bring its results; and the shapes cut into
 //! triangles, as for a software rasteriser. What paints them is not measured; nor, on Linux, is the time that the
 //! thread waited for a processor. What else the machine did meanwhile is no work of the app: so a drag with a frame
 //! above 16 ms is made again, and counts as slow if it is so every time.
@@ -11,7 +11,10 @@
 use std::time::{Duration, Instant};
 
 use egui::accesskit::{Node, TreeUpdate};
-use egui::{Context, Event, Modifiers, PointerButton, Pos2, RawInput, Rect, Role, Vec2};
+use egui::{
+    Context, Event, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, RawInput,
+    Rect, Role, TouchPhase, Vec2,
+};
 use hysteron::HysteronApp;
 
 /// The window: so tall that most controls are in view, points.
@@ -31,8 +34,8 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// Time between two pictures at 60 a second.
 const FRAME: Duration = Duration::from_micros(16_667);
 
-/// What is opened: a name, a link, and whether something of it is dragged besides its controls.
-const PLACES: [(&str, &str); 13] = [
+/// What is opened: a name and a link.
+const PLACES: [(&str, &str); 12] = [
     ("start", "v1;start"),
     ("explore", "v1;explore"),
     ("explore, Fig. 5", "v1;explore;explore.figure=5"),
@@ -45,8 +48,22 @@ const PLACES: [(&str, &str); 13] = [
     ("tune, loops", "v1;tune;tune.step=loops"),
     ("backlash", "v1;backlash"),
     ("backlash, measured", "v1;backlash;backlash.file=drive-10"),
-    ("compare", "v1;compare;compare.file=drive-02"),
 ];
+
+/// A measurement with its model, and what is looked at: a name, and the button that shows it. There is nothing to
+/// drag on it; the pointer goes over it, and the wheel turns.
+const DIAGNOSIS: &str =
+    "v1;compare;compare.file=drive-02;compare.effects=%5B%22coulomb_friction%22%5D";
+const LOOKS: [(&str, &str); 4] = [
+    ("compare, over time", "look:time"),
+    ("compare, beside before", "before"),
+    ("compare, places", "look:places"),
+    ("compare, fingerprint", "look:fingerprint"),
+];
+
+/// Lines from the left to the right on which the pointer goes over a page, and how far the wheel turns in a frame.
+const LINES: usize = 8;
+const WHEEL: f32 = 30.0;
 
 /// An app in a window of its own.
 struct Bench {
@@ -144,27 +161,70 @@ impl Bench {
         };
         self.frame(vec![Event::PointerMoved(at(0.02))]);
         self.frame(vec![button(at(0.02), true)]);
+        let frames = self.paced(|share| Event::PointerMoved(at(0.02 + 0.96 * share)));
+        self.frame(vec![button(at(0.98), false)]);
+        frames
+    }
+
+    /// The frames of a movement: an event for every picture.
+    fn paced(&mut self, event: impl Fn(f32) -> Event) -> Vec<Duration> {
         self.frames.clear();
         let begin = Instant::now();
         for i in 1..=DRAG {
             // The window waits for the next picture.
             std::thread::sleep((FRAME * i as u32).saturating_sub(begin.elapsed()));
-            self.frame(vec![Event::PointerMoved(at(
-                0.02 + 0.96 * i as f32 / DRAG as f32
-            ))]);
+            self.frame(vec![event(i as f32 / DRAG as f32)]);
         }
-        let frames = std::mem::take(&mut self.frames);
-        self.frame(vec![button(at(0.98), false)]);
-        frames
+        std::mem::take(&mut self.frames)
+    }
+
+    /// Presses a button by its name in the state for tests.
+    fn press(&mut self, name: &str) {
+        let at = self.app.hook_state()["targets"][name].clone();
+        let [x, y] = [0, 1].map(|i| at[i].as_f64().expect("a button") as f32);
+        let button = |pressed| Event::PointerButton {
+            pos: Pos2::new(x, y),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        for event in [
+            Event::PointerMoved(Pos2::new(x, y)),
+            button(true),
+            button(false),
+        ] {
+            self.frame(vec![event]);
+        }
+        self.settle();
+    }
+
+    /// The pointer goes over the page on a line.
+    fn hover(&mut self, line: usize) -> Vec<Duration> {
+        let y = WINDOW.y * (line as f32 + 0.5) / LINES as f32;
+        self.paced(|share| Event::PointerMoved(Pos2::new(share * WINDOW.x, y)))
+    }
+
+    /// The wheel turns where the pointer is, down and up again.
+    fn turn(&mut self, at: f32) -> Vec<Duration> {
+        self.frame(vec![Event::PointerMoved(Pos2::new(
+            at * WINDOW.x,
+            0.6 * WINDOW.y,
+        ))]);
+        self.paced(|share| Event::MouseWheel {
+            unit: MouseWheelUnit::Point,
+            delta: Vec2::new(0.0, if share < 0.5 { -WHEEL } else { WHEEL }),
+            source: MouseWheelSource::Wheel,
+            phase: TouchPhase::Move,
+            modifiers: Modifiers::NONE,
+        })
     }
 }
 
-/// The frames of the first drag without a slow one, else of the last. Each is on a page of its own: a drag would
-/// leave another behind.
-fn least(link: &str, place: Rect) -> Vec<Duration> {
+/// The frames of the first movement without a slow one, else of the last.
+fn least(mut movement: impl FnMut() -> Vec<Duration>) -> Vec<Duration> {
     let mut frames = Vec::new();
     for _ in 0..TRIES {
-        frames = Bench::new(link).drag(place);
+        frames = movement();
         if frames.iter().all(|f| *f <= SLOW) {
             break;
         }
@@ -183,44 +243,70 @@ fn milliseconds(time: Duration) -> f64 {
     1e3 * time.as_secs_f64()
 }
 
-fn main() {
+/// What is said of a place: a line, and a line for each movement with slow frames.
+fn report(name: &str, movements: &[(String, Vec<Duration>)]) {
+    let mut all: Vec<Duration> = movements.iter().flat_map(|m| m.1.clone()).collect();
+    all.sort_unstable();
+    let Some(last) = all.last() else {
+        println!("{name:<24}{:>9}", 0);
+        return;
+    };
+    let at = |share: f64| milliseconds(all[(share * (all.len() - 1) as f64) as usize]);
+    let late = |frames: &[Duration]| frames.iter().filter(|f| **f > SLOW).count();
     println!(
-        "{:<22}{:>9}{:>9}{:>10}{:>10}{:>10}{:>9}",
-        "page", "controls", "frames", "median", "95 %", "worst", "> 16 ms"
+        "{name:<24}{:>9}{:>9}{:>7.2} ms{:>7.2} ms{:>7.2} ms{:>9}{:>9.2}",
+        movements.len(),
+        all.len(),
+        at(0.5),
+        at(0.95),
+        milliseconds(*last),
+        late(&all),
+        milliseconds(*last) / milliseconds(SLOW)
     );
-    for (name, link) in PLACES {
-        let controls = Bench::new(link).controls();
-        let mut all = Vec::new();
-        let mut slow = Vec::new();
-        for (label, place) in &controls {
-            let frames = least(link, *place);
-            let late = frames.iter().filter(|f| **f > SLOW).count();
-            if late > 0 {
-                let worst = frames.iter().max().copied().unwrap_or_default();
-                slow.push(format!(
-                    "    {label}: {late} of {DRAG}, up to {:.1} ms",
-                    milliseconds(worst)
-                ));
-            }
-            all.extend(frames);
-        }
-        all.sort_unstable();
-        let Some(last) = all.last() else {
-            println!("{name:<22}{:>9}", 0);
-            continue;
-        };
-        let at = |share: f64| milliseconds(all[(share * (all.len() - 1) as f64) as usize]);
-        let late = all.iter().filter(|f| **f > SLOW).count();
+    for (label, frames) in movements.iter().filter(|m| late(&m.1) > 0) {
+        let worst = frames.iter().max().copied().unwrap_or_default();
+        let late = late(frames);
         println!(
-            "{name:<22}{:>9}{:>9}{:>7.2} ms{:>7.2} ms{:>7.2} ms{late:>9}",
-            controls.len(),
-            all.len(),
-            at(0.5),
-            at(0.95),
-            milliseconds(*last)
+            "    {label}: {late} of {DRAG}, up to {:.1} ms",
+            milliseconds(worst)
         );
-        for line in slow {
-            println!("{line}");
-        }
+    }
+}
+
+/// The pointer on every line of a page, and the wheel on both sides of it; they leave it as it was.
+fn looked_at(button: &str) -> Vec<(String, Vec<Duration>)> {
+    let mut bench = Bench::new(DIAGNOSIS);
+    while bench.app.hook_state()["busy"] == true {
+        bench.settle();
+    }
+    bench.press(button);
+    let mut movements: Vec<_> = (0..LINES)
+        .map(|line| (format!("line {line}"), least(|| bench.hover(line))))
+        .collect();
+    for (side, at) in [("left", 0.3), ("right", 0.85)] {
+        movements.push((format!("wheel, {side}"), least(|| bench.turn(at))));
+    }
+    movements
+}
+
+fn main() {
+    // A word chooses the places whose names have it.
+    let chosen = std::env::args().skip(1).find(|a| !a.starts_with('-'));
+    let wanted = |name: &str| chosen.as_ref().is_none_or(|word| name.contains(word));
+    println!(
+        "{:<24}{:>9}{:>9}{:>10}{:>10}{:>10}{:>9}{:>9}",
+        "page", "drags", "frames", "median", "95 %", "worst", "> 16 ms", "worst/16"
+    );
+    for (name, link) in PLACES.into_iter().filter(|p| wanted(p.0)) {
+        // Each drag is on a page of its own: it would leave another behind.
+        let controls = Bench::new(link).controls();
+        let drag = |(label, place): (String, Rect)| {
+            let frames = least(|| Bench::new(link).drag(place));
+            (label, frames)
+        };
+        report(name, &controls.into_iter().map(drag).collect::<Vec<_>>());
+    }
+    for (name, button) in LOOKS.into_iter().filter(|p| wanted(p.0)) {
+        report(name, &looked_at(button));
     }
 }

@@ -7,8 +7,12 @@ use crate::language::{Language, tr};
 use crate::pages::{Command, Desk};
 use crate::theme::Look;
 
-/// Width below which the pages stand in a menu, points.
-const NARROW: f32 = 700.0;
+/// Between two buttons where the usual gap would break the line, points.
+const GAP: f32 = 4.0;
+
+/// What can be taken back, and what concerns the page as a whole.
+const UNDO: [&str; 2] = ["Undo", "Redo"];
+const TOOLS: [&str; 4] = ["Copy link", "Export", "Look", "Keys"];
 
 /// What the bar shows.
 pub struct Bar<'a> {
@@ -32,8 +36,18 @@ impl Bar<'_> {
     /// Draws it; clicks become commands.
     pub fn ui(&self, ui: &mut Ui, desk: &mut Desk) {
         let (targets, commands) = (&mut desk.targets, &mut desk.commands);
-        if ui.available_width() < NARROW {
-            ui.horizontal(|ui| {
+        let room = ui.available_width();
+        let all = |ui: &Ui| {
+            let pages = heading(ui) + buttons(ui, self.pages.iter().map(|p| p.1));
+            [pages, buttons(ui, UNDO), buttons(ui, TOOLS)]
+        };
+        if all(ui).iter().sum::<f32>() > room {
+            ui.spacing_mut().item_spacing.x = GAP;
+        }
+        let [pages, undo, tools] = all(ui);
+        let more = buttons(ui, ["More"]);
+        ui.horizontal(|ui| {
+            if pages + more > room {
                 let title = self.pages.get(self.front).map_or("Hysteron", |p| p.1);
                 ui.menu_button(tr(format!("Menu: {title}")), |ui| {
                     self.pages_ui(ui, targets, commands);
@@ -41,16 +55,28 @@ impl Bar<'_> {
                     self.tools_ui(ui, targets, commands);
                 });
                 self.undo_ui(ui, targets, commands);
-            });
-        } else {
-            ui.horizontal_wrapped(|ui| {
-                ui.heading(tr("Hysteron"));
-                self.pages_ui(ui, targets, commands);
-                ui.separator();
+                return;
+            }
+            ui.heading(tr("Hysteron"));
+            self.pages_ui(ui, targets, commands);
+            ui.separator();
+            if pages + undo + tools <= room {
                 self.undo_ui(ui, targets, commands);
                 self.tools_ui(ui, targets, commands);
+                return;
+            }
+            let together = pages + undo + more > room;
+            if !together {
+                self.undo_ui(ui, targets, commands);
+            }
+            ui.menu_button(tr("More"), |ui| {
+                if together {
+                    self.undo_ui(ui, targets, commands);
+                    ui.separator();
+                }
+                self.tools_ui(ui, targets, commands);
             });
-        }
+        });
     }
 
     fn pages_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
@@ -65,7 +91,8 @@ impl Bar<'_> {
 
     fn undo_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
         let [undo, redo] = self.undo;
-        for (name, can, command) in [("Undo", undo, Command::Undo), ("Redo", redo, Command::Redo)] {
+        let commanded = [Command::Undo, Command::Redo];
+        for ((name, can), command) in UNDO.into_iter().zip([undo, redo]).zip(commanded) {
             let button = ui.add_enabled(can, egui::Button::new(tr(name)));
             targets.note(name, ui, &button);
             if button.clicked() {
@@ -134,4 +161,30 @@ impl Bar<'_> {
             ui.close();
         }
     }
+}
+
+/// Width of the heading and of the line behind the pages, points.
+fn heading(ui: &Ui) -> f32 {
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    width(ui, "Hysteron", font) + 2.0 * ui.spacing().item_spacing.x + SEPARATOR
+}
+
+/// What egui gives a line between buttons, points.
+const SEPARATOR: f32 = 6.0;
+
+/// Width of buttons with their gaps, points.
+fn buttons<'a>(ui: &Ui, names: impl IntoIterator<Item = &'a str>) -> f32 {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let around = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
+    names
+        .into_iter()
+        .map(|name| width(ui, name, font.clone()) + around)
+        .sum()
+}
+
+fn width(ui: &Ui, name: &str, font: egui::FontId) -> f32 {
+    let text = ui
+        .painter()
+        .layout_no_wrap(tr(name), font, egui::Color32::PLACEHOLDER);
+    text.size().x
 }

@@ -2,7 +2,7 @@
 
 use egui::Color32;
 
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 
 /// What was measured.
 pub const MEASURED: Color32 = Color32::from_rgb(0x56, 0xB4, 0xE9);
@@ -110,6 +110,9 @@ pub fn apply(ctx: &egui::Context) {
         ] {
             style.text_styles.insert(text, FontId::proportional(size));
         }
+        style.number_formatter = egui::style::NumberFormatter::new(|value, decimals| {
+            tr_number(egui::emath::format_with_decimals_in_range(value, decimals))
+        });
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(10.0, 4.0);
         style.spacing.slider_width = 150.0;

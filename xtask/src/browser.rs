@@ -1,7 +1,9 @@
 //! The page in a real headless Chromium: loads, opens a measurement, adds the effect, reads the error.
 
 mod driver;
+mod mystery;
 mod speed;
+mod watch;
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -11,6 +13,7 @@ use serde_json::Value;
 use crate::run::root;
 use crate::serve;
 use driver::Session;
+use watch::Busy;
 
 /// How long to wait for any one thing; software rendering on a small machine is slow.
 const PATIENCE: Duration = Duration::from_mins(3);
@@ -25,25 +28,31 @@ pub fn test() -> Result<(), String> {
     let port = serve::in_background()?;
     let session = Session::start(&folder.join("profile"))?;
     let page = format!("http://127.0.0.1:{port}/");
+    watch::install(&session)?;
     session.open(&page)?;
-    wait(&session, "the page to start", |s| {
-        s["ready"] == true && s["page"] == "start"
-    })?;
+    let interactive = watch::interactive(&session, "lessons")?;
+    click(&session, "page:start")?;
+    wait(&session, "the page to start", |s| s["page"] == "start")?;
     look(&session, &folder.join("start.png"))?;
     click(&session, "door:compare")?;
     wait(&session, "the compare page", |s| {
         s["page"] == "compare" && !s["targets"]["builtin:drive-02"].is_null()
     })?;
+    let mut busy = Busy::default();
+    Busy::begin(&session)?;
     click(&session, "builtin:drive-02")?;
     let before = wait_drawing(&session, "the candidates", |s| {
         s["busy"] == false && has_candidate(s)
     })?;
+    busy.read(&session)?;
     let error = before["error"].as_f64().ok_or("no error is shown")?;
     look(&session, &folder.join("compare.png"))?;
+    Busy::begin(&session)?;
     click(&session, "add:coulomb_friction")?;
     let after = wait_drawing(&session, "the model with Coulomb friction", |s| {
         s["busy"] == false && s["effects"].to_string().contains("coulomb_friction")
     })?;
+    busy.read(&session)?;
     let fallen = after["error"].as_f64().ok_or("no error is shown")?;
     println!("error {error:.2} -> {fallen:.2}");
     println!("verdict: {}", after["verdict"]);
@@ -53,7 +62,9 @@ pub fn test() -> Result<(), String> {
     look(&session, &folder.join("added.png"))?;
     share(&session, &page, &after)?;
     offline(&session, &page)?;
+    mystery::journey(&session, &page)?;
     speed::report(&session)?;
+    println!("{interactive}\n{}", busy.report());
     session.quiet()
 }
 
@@ -119,6 +130,19 @@ fn has_candidate(state: &Value) -> bool {
 }
 
 fn wait(session: &Session, what: &str, done: impl Fn(&Value) -> bool) -> Result<Value, String> {
+    wait_and(session, what, done, || {
+        std::thread::sleep(Duration::from_millis(200));
+        Ok(())
+    })
+}
+
+/// Waits, and does something between the looks.
+fn wait_and(
+    session: &Session,
+    what: &str,
+    done: impl Fn(&Value) -> bool,
+    between: impl Fn() -> Result<(), String>,
+) -> Result<Value, String> {
     let started = Instant::now();
     loop {
         let state = session.state()?;
@@ -131,11 +155,23 @@ fn wait(session: &Session, what: &str, done: impl Fn(&Value) -> bool) -> Result<
                 session.quiet()
             ));
         }
-        std::thread::sleep(Duration::from_millis(200));
+        between()?;
     }
 }
 
-/// Waits, and checks that the page goes on drawing while a job runs.
+/// Where the pointer goes while a job runs: over the plots.
+const SWAY: [(f64, f64); 8] = [
+    (300.0, 500.0),
+    (360.0, 510.0),
+    (420.0, 520.0),
+    (480.0, 530.0),
+    (540.0, 530.0),
+    (480.0, 520.0),
+    (420.0, 510.0),
+    (360.0, 500.0),
+];
+
+/// Waits with a pointer that moves, and checks that the page goes on drawing while a job runs.
 fn wait_drawing(
     session: &Session,
     what: &str,
@@ -143,7 +179,7 @@ fn wait_drawing(
 ) -> Result<Value, String> {
     let last = Cell::new(0);
     let (busy, drawn) = (Cell::new(0), Cell::new(0));
-    let state = wait(session, what, |s| {
+    let look = |s: &Value| {
         let frame = s["frame"].as_u64().unwrap_or(0);
         if s["busy"] == true {
             busy.set(busy.get() + 1);
@@ -151,7 +187,8 @@ fn wait_drawing(
         }
         last.set(frame);
         done(s)
-    })?;
+    };
+    let state = wait_and(session, what, look, || session.hover(&SWAY))?;
     let (busy, drawn) = (busy.get(), drawn.get());
     println!("{what}: seen busy {busy} times, with new frames {drawn} times");
     if busy > 4 && drawn * 4 < busy {

@@ -2,6 +2,7 @@
 
 mod browser;
 mod offline;
+mod release;
 mod run;
 mod serve;
 mod setup;
@@ -18,6 +19,7 @@ const HELP: &str = "cargo xtask COMMAND
   web             build the page into dist/
   serve [--port N]  serve dist/ on http://127.0.0.1:N (8080)
   browser-test    drive dist/ in headless Chromium
+  release         pack the program and the page into target/archives/
 ";
 
 fn main() -> ExitCode {
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
             .map_err(|_| format!("'{port}' is not a port; expected a number such as 8080"))
             .and_then(serve::forever),
         ["browser-test"] => browser::test(),
+        ["release"] => release::build(),
         [] | ["help" | "--help" | "-h"] => {
             print!("{HELP}");
             Ok(())

@@ -10,11 +10,13 @@
 //! ```
 //!
 //! Two lines each, English first, an empty line between them. `{}` stands for a part that is translated on its
-//! own: a number, a name, a sentence that the core has made. `{*}` stands for what stays as it is: a name that
+//! own: a number (it gets a decimal comma), a name, a sentence that the core has made. `{*}` stands for what stays as it is: a name that
 //! the user has given. The translation has the same number of them; `{1}`, `{2}` say which, where their order
 //! is another. `\n` is a new line.
 
 use std::collections::HashMap;
+
+use super::number::with_comma;
 
 /// Texts nested in each other, at most.
 const DEEPEST: usize = 8;
@@ -167,11 +169,17 @@ impl Catalogue {
                 complete: true,
             };
         }
+        if is_plain(text) {
+            return Translated {
+                text: with_comma(text),
+                complete: true,
+            };
+        }
         let unknown = Translated {
             text: text.to_owned(),
-            complete: is_plain(text),
+            complete: false,
         };
-        if unknown.complete || depth >= DEEPEST {
+        if depth >= DEEPEST {
             return unknown;
         }
         let mut partly = None;
@@ -361,7 +369,8 @@ e^{-0.5s} ist eine Totzeit
     #[test]
     fn texts_are_found_with_what_stands_in_them() {
         check("friction", "Reibung");
-        check("0.5 rad/s", "0.5 rad/s");
+        check("0.5 rad/s", "0,5 rad/s");
+        check("friction and 0.5 rad/s", "Reibung und 0,5 rad/s");
         check("friction and load", "Reibung und Last");
         check(
             "It drifts by 3 mm because of friction or load.",

@@ -4,11 +4,13 @@
 //! A language is a folder of texts in `assets/` and a line in [`Language::ALL`]; see `docs/translation.md`.
 
 mod catalogue;
+mod number;
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
 pub use catalogue::{Catalogue, is_plain};
+pub use number::typed;
 
 /// A language that the app speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -132,6 +134,14 @@ pub fn tr(text: impl AsRef<str>) -> String {
         return text.to_owned();
     }
     SPEAKER.with_borrow_mut(|speaker| speaker.say(language, text))
+}
+
+/// Numbers of the interface, with a decimal comma where the language has one; names stay as they are.
+pub fn tr_number(text: impl AsRef<str>) -> String {
+    match spoken() {
+        Language::English => text.as_ref().to_owned(),
+        Language::German => number::with_comma(text.as_ref()),
+    }
 }
 
 /// What was said since the language was chosen and had no translation.

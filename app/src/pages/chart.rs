@@ -5,13 +5,13 @@ use std::ops::{Deref, DerefMut, RangeInclusive};
 use egui::{AsIdSalt, IdSalt};
 use egui_plot::{
     AxisHints, GridInput, GridMark, Line, Plot, PlotGeometry, PlotItem, PlotPoints, PlotResponse,
-    PlotUi, Points, uniform_grid_spacer,
+    PlotUi, Points, default_label_formatter, uniform_grid_spacer,
 };
 
 use super::chart_menu;
 use crate::export::Table;
 
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 use crate::theme;
 
 /// Points between labels of an axis, where they begin to show and where they are full.
@@ -71,6 +71,7 @@ impl<'a> Chart<'a> {
         let plot = Plot::new(salt)
             .height(height)
             .allow_scroll(false)
+            .label_formatter(|place| default_label_formatter(place).map(tr_number))
             .custom_x_axes(vec![axis(AxisHints::new_x().label(x))])
             .custom_y_axes(vec![axis(AxisHints::new_y().label(y).min_thickness(width))])
             .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
@@ -197,7 +198,7 @@ fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
     } else {
         mark.value
     };
-    format!("{value:.decimals$}")
+    tr_number(format!("{value:.decimals$}"))
 }
 
 /// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use hysteron_core::figures::Check;
 
-use crate::language::tr;
+use crate::language::{tr, typed};
 use crate::theme;
 
 /// A slider over `value * scale`, reset by a double click or by Delete. A value from elsewhere (a map, a dragged line, a
@@ -22,6 +22,7 @@ pub fn slider(
         egui::Slider::new(&mut shown, range)
             .text(tr(label))
             .max_decimals(3)
+            .custom_parser(typed)
             .clamping(egui::SliderClamping::Edits),
     );
     if track_double_clicked(ui, &response) || reset_by_key(ui, &response) {

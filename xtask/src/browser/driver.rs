@@ -104,17 +104,25 @@ impl Session {
     /// Takes the network from the page, or gives it back.
     pub fn network(&self, there: bool) -> Result<(), String> {
         let limits = json!({"offline": !there, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1});
-        for (command, params) in [
-            ("Network.enable", json!({})),
-            ("Network.emulateNetworkConditions", limits),
-        ] {
-            let body = json!({"cmd": command, "params": params});
-            self.command("POST", "goog/cdp/execute", &body)?;
-        }
-        Ok(())
+        self.devtools("Network.enable", &json!({}))?;
+        self.devtools("Network.emulateNetworkConditions", &limits)
     }
 
-    fn script(&self, script: &str) -> Result<Value, String> {
+    /// Runs a script before those of every page that is opened from now on.
+    pub fn before_every_page(&self, script: &str) -> Result<(), String> {
+        self.devtools(
+            "Page.addScriptToEvaluateOnNewDocument",
+            &json!({"source": script}),
+        )
+    }
+
+    fn devtools(&self, command: &str, params: &Value) -> Result<(), String> {
+        let body = json!({"cmd": command, "params": params});
+        self.command("POST", "goog/cdp/execute", &body).map(|_| ())
+    }
+
+    /// Runs a script in the page.
+    pub fn script(&self, script: &str) -> Result<Value, String> {
         self.command(
             "POST",
             "execute/sync",
@@ -125,23 +133,47 @@ impl Session {
     /// A click as a hand makes it: move, press, release.
     pub fn click(&self, x: f64, y: f64) -> Result<(), String> {
         let pause = json!({"type": "pause", "duration": 150});
-        let actions = json!({"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": [
-            {"type": "pointerMove", "duration": 50, "x": x.round() as i64, "y": y.round() as i64},
-            pause, {"type": "pointerDown", "button": 0}, pause, {"type": "pointerUp", "button": 0},
-        ]}]});
-        self.command("POST", "actions", &actions).map(|_| ())
+        self.pointer(&[go(x, y, 50), pause.clone(), press(), pause, release()])
+    }
+
+    /// A click without a pause.
+    pub fn tap(&self, x: f64, y: f64) -> Result<(), String> {
+        self.pointer(&[go(x, y, 0), press(), release()])
     }
 
     /// A drag from one place through others.
     pub fn drag(&self, places: &[(f64, f64)]) -> Result<(), String> {
-        let go = |(x, y): &(f64, f64)| json!({"type": "pointerMove", "duration": 100, "x": x.round() as i64, "y": y.round() as i64});
-        let mut actions: Vec<Value> = places.iter().map(go).collect();
-        actions.insert(
-            1.min(actions.len()),
-            json!({"type": "pointerDown", "button": 0}),
-        );
-        actions.push(json!({"type": "pointerUp", "button": 0}));
+        let mut actions: Vec<Value> = places.iter().map(|(x, y)| go(*x, *y, 100)).collect();
+        actions.insert(1.min(actions.len()), press());
+        actions.push(release());
+        self.pointer(&actions)
+    }
+
+    /// The pointer goes from place to place.
+    pub fn hover(&self, places: &[(f64, f64)]) -> Result<(), String> {
+        let actions: Vec<Value> = places.iter().map(|(x, y)| go(*x, *y, 20)).collect();
+        self.pointer(&actions)
+    }
+
+    /// Turns the wheel at a place: down the page.
+    pub fn scroll(&self, x: f64, y: f64) -> Result<(), String> {
+        let turn = json!({"type": "scroll", "x": x.round() as i64, "y": y.round() as i64, "deltaX": 0, "deltaY": 2000, "duration": 0});
+        let actions = json!({"actions": [{"type": "wheel", "id": "wheel", "actions": [turn]}]});
+        self.command("POST", "actions", &actions).map(|_| ())
+    }
+
+    fn pointer(&self, actions: &[Value]) -> Result<(), String> {
         let actions = json!({"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}]});
+        self.command("POST", "actions", &actions).map(|_| ())
+    }
+
+    /// Types a text where the keyboard is.
+    pub fn type_text(&self, text: &str) -> Result<(), String> {
+        let strokes: Vec<Value> = text
+            .chars()
+            .flat_map(|c| ["keyDown", "keyUp"].map(|kind| json!({"type": kind, "value": c})))
+            .collect();
+        let actions = json!({"actions": [{"type": "key", "id": "keys", "actions": strokes}]});
         self.command("POST", "actions", &actions).map(|_| ())
     }
 
@@ -211,6 +243,18 @@ impl Drop for Session {
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }
+}
+
+fn go(x: f64, y: f64, duration: u32) -> Value {
+    json!({"type": "pointerMove", "duration": duration, "x": x.round() as i64, "y": y.round() as i64})
+}
+
+fn press() -> Value {
+    json!({"type": "pointerDown", "button": 0})
+}
+
+fn release() -> Value {
+    json!({"type": "pointerUp", "button": 0})
 }
 
 /// Body of an HTTP reply with a content length.

@@ -5,7 +5,7 @@ use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 use super::Backlash;
 use super::scene::MILLI;
 use crate::hook::Targets;
-use crate::language::tr;
+use crate::language::{tr, tr_number, typed};
 use crate::pages::controls::slider;
 use crate::recent::Recents;
 
@@ -260,10 +260,11 @@ impl Backlash {
         ui.add(
             egui::Slider::new(&mut self.speed, 0.001..=2.0)
                 .logarithmic(true)
+                .custom_parser(typed)
                 .suffix(" x"),
         )
         .on_hover_text(tr("Speed of the playback, times real time"));
-        ui.label(format!("t = {:.4} s", self.playback.clock));
+        ui.label(tr_number(format!("t = {:.4} s", self.playback.clock)));
     }
 
     fn step_to_next_event(&mut self) {

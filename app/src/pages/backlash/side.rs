@@ -8,7 +8,7 @@ use super::built_in::BUILT_IN;
 use super::scene::MILLI;
 use crate::files::MEASUREMENT;
 use crate::hook::Targets;
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 use crate::motion;
 use crate::recent::{Recents, measurement};
 
@@ -127,9 +127,13 @@ fn traverses_ui(ui: &mut egui::Ui, estimate: &GapEstimate) {
             }
             ui.end_row();
             for t in estimate.traverses.iter().take(LISTED) {
-                ui.label(format!("{:.3}", t.from.time));
-                ui.label(format!("{:.3}", t.to.time));
-                ui.label(format!("{:.2} ± {:.2}", MILLI * t.gap, MILLI * t.std_error));
+                ui.label(tr_number(format!("{:.3}", t.from.time)));
+                ui.label(tr_number(format!("{:.3}", t.to.time)));
+                ui.label(tr_number(format!(
+                    "{:.2} ± {:.2}",
+                    MILLI * t.gap,
+                    MILLI * t.std_error
+                )));
                 ui.end_row();
             }
         });

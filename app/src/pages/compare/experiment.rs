@@ -6,7 +6,7 @@ use hysteron_core::measurement::Kind;
 
 use super::{Command, Compare};
 use crate::hook::Targets;
-use crate::language::tr;
+use crate::language::{tr, typed};
 use crate::pages;
 use crate::theme;
 
@@ -183,6 +183,7 @@ fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut
             .speed(speed)
             .range(1e-9..=1e9)
             .max_decimals(6)
+            .custom_parser(typed)
             .suffix(plain(unit));
         ui.add(drag).labelled_by(label.id);
         ui.end_row();

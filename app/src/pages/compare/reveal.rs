@@ -120,8 +120,9 @@ pub(super) fn ui(
     let mut word = sealed.word.clone();
     ui.horizontal_wrapped(|ui| {
         let label = ui.label(tr("Word"));
-        ui.add(egui::TextEdit::singleline(&mut word).desired_width(220.0))
-            .labelled_by(label.id);
+        let field = egui::TextEdit::singleline(&mut word).desired_width(220.0);
+        let field = ui.add(field).labelled_by(label.id);
+        targets.note("reveal:word", ui, &field);
         let ready = !word.trim().is_empty() && sealed.job.is_none() && page.report().is_some();
         let reveal = ui.add_enabled(ready, egui::Button::new(tr("Reveal the truth")));
         targets.note("reveal", ui, &reveal);

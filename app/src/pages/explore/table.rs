@@ -4,7 +4,7 @@ use hysteron_core::explore::{ExploreData, ultimate_gain};
 use hysteron_core::limit_cycle::Cycle;
 use hysteron_core::relay::Relay;
 
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 use crate::theme;
 
 /// Describing function, exact and simulated values with their differences in per cent.
@@ -64,7 +64,7 @@ fn row_ui(
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            ui.label(format!("{value:.4}"));
+            ui.label(tr_number(format!("{value:.4}")));
             if let Some(exact) = exact {
                 ui.small(tr(difference(value, exact)));
             }
@@ -113,7 +113,7 @@ pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
             ui.painter()
                 .rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
             ui.painter().rect_filled(bar, 2.0, theme::EXACT);
-            ui.label(format!("{:.3} %", 100.0 * share));
+            ui.label(tr_number(format!("{:.3} %", 100.0 * share)));
         });
     }
     ui.small(tr("The describing function sees the first only."));

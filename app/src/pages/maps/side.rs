@@ -3,7 +3,7 @@
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
 use super::{Command, Maps, axis_title, with_unit};
-use crate::language::tr;
+use crate::language::{tr, typed};
 
 impl Maps {
     /// Axes and quantity.
@@ -130,6 +130,7 @@ fn axis_ui(
                     .speed(speed)
                     .range(0.0..=1e4)
                     .max_decimals(3)
+                    .custom_parser(typed)
                     .suffix(suffix(axis.parameter.unit())),
             )
             .labelled_by(label.id);

@@ -4,7 +4,7 @@ use egui::Ui;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
-use crate::language::tr;
+use crate::language::{tr, typed};
 use crate::pages::Desk;
 
 /// Name and story of an experiment.
@@ -47,8 +47,8 @@ fn handy(unit: &'static str) -> (f64, &'static str) {
 
 impl Bench {
     pub(super) fn choices_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
+        ui.heading(tr("1. How is the drive driven?"));
         ui.horizontal_wrapped(|ui| {
-            ui.label(tr("Experiment:"));
             for experiment in Experiment::ALL {
                 let (name, story) = words(experiment);
                 ui.selectable_value(&mut self.experiment, experiment, tr(name))
@@ -56,8 +56,9 @@ impl Bench {
             }
         });
         ui.label(tr(words(self.experiment).1));
+        ui.add_space(10.0);
+        ui.heading(tr("2. What is hidden in it?"));
         ui.horizontal_wrapped(|ui| {
-            ui.label(tr("Hidden:"));
             for (by_hand, id, name) in [
                 (false, "surprise", "Surprise me: none, one or two effects"),
                 (true, "choose", "I choose"),
@@ -67,7 +68,7 @@ impl Bench {
             }
         });
         if self.by_hand {
-            self.menu_ui(ui);
+            self.menu_ui(ui, desk);
         } else {
             ui.label(tr(self.surprise()));
         }
@@ -88,11 +89,11 @@ impl Bench {
     }
 
     /// The menu of effects; those that this experiment shows stand first.
-    fn menu_ui(&mut self, ui: &mut Ui) {
+    fn menu_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
         let (shown, others): (Vec<&Hideable>, Vec<_>) = hideable().iter().partition(shown);
         for effect in shown {
-            self.effect_ui(ui, effect);
+            self.effect_ui(ui, effect, desk);
         }
         let count = others.iter().filter(|h| self.pick(h.id).is_some()).count();
         let title = match count {
@@ -103,7 +104,7 @@ impl Bench {
             .id_salt("hardly_shown")
             .show(ui, |ui| {
                 for effect in others {
-                    self.effect_ui(ui, effect);
+                    self.effect_ui(ui, effect, desk);
                 }
             });
         if self.picks.is_empty() {
@@ -111,7 +112,7 @@ impl Bench {
         }
     }
 
-    fn effect_ui(&mut self, ui: &mut Ui, effect: &'static Hideable) {
+    fn effect_ui(&mut self, ui: &mut Ui, effect: &'static Hideable, desk: &mut Desk) {
         let name = effect.name();
         let mut chosen = self.pick(effect.id).is_some();
         let other = hideable()
@@ -123,6 +124,8 @@ impl Bench {
                 other.is_none() && !full,
                 egui::Checkbox::new(&mut chosen, tr(name)),
             );
+            desk.targets
+                .note(format!("mystery:hide:{}", effect.id), ui, &tick);
             if let Some(other) = other {
                 tick.on_disabled_hover_text(tr(format!("Not together with {}", other.name())));
             } else if tick.changed() {
@@ -167,6 +170,7 @@ fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
         .range(least * scale..=most * scale)
         .speed(0.002 * most * scale)
         .max_decimals(3)
+        .custom_parser(typed)
         .suffix(format!(" {unit}"));
     if ui.add(field).labelled_by(text.id).changed() {
         *value = shown / scale;

@@ -2,6 +2,7 @@
 
 mod choices;
 mod made;
+mod picture;
 
 use hysteron_core::effect::EffectId;
 use hysteron_core::mystery::{Choice, Experiment, Pick, Request, SHORTEST_WORD};
@@ -80,6 +81,10 @@ impl Bench {
         theme::answer_ui(ui, "Which effect is hidden?");
         ui.label(tr("The bench hides physics in a drive and measures it. The truth travels with the record, sealed with your word: find it, then reveal it."));
         ui.add_space(6.0);
+        if self.made.is_none() {
+            picture::ui(ui, self.experiment);
+            ui.add_space(10.0);
+        }
         if ui.available_width() < NARROW {
             self.teacher_ui(ui, desk);
             self.record_ui(ui, desk);
@@ -94,7 +99,7 @@ impl Bench {
     /// What to hide, and in what.
     fn teacher_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.choices_ui(ui, desk);
-        ui.add_space(6.0);
+        ui.add_space(10.0);
         self.make_ui(ui, desk);
         ui.add_space(6.0);
     }
@@ -109,17 +114,16 @@ impl Bench {
     }
 
     fn make_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        ui.heading(tr("3. Your word seals it"));
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(tr("Word"));
-            ui.add(
-                egui::TextEdit::singleline(&mut self.word)
-                    .desired_width(220.0)
-                    .hint_text(tr("a few words are better than one")),
-            )
-            .labelled_by(label.id)
-            .on_hover_text(tr(
+            let field = egui::TextEdit::singleline(&mut self.word)
+                .desired_width(240.0)
+                .hint_text(tr("a few words are better than one"));
+            let word = ui.add(field).labelled_by(label.id).on_hover_text(tr(
                 "Whoever has it can open the truth; without it nobody can, you neither",
             ));
+            desk.targets.note("mystery:word", ui, &word);
             let obstacle = self.obstacle();
             let ready = obstacle.is_none() && self.job.is_none();
             let make = ui.add_enabled(ready, egui::Button::new(tr("Make the mystery")));
@@ -147,7 +151,7 @@ impl Bench {
 fn student_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.strong(tr("You were given a mystery?"));
+        ui.heading(tr("You were given a mystery?"));
         ui.label(tr("Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is left. Then say the word under Reveal: the truth stands beside your model, with points for the effects and for the numbers."));
         let go = ui.button(tr("Go to Compare"));
         desk.targets.note("mystery:student", ui, &go);

@@ -5,7 +5,7 @@ use hysteron_core::tuning::PhaseMarginReport;
 
 use super::draw::{beside, curve, number, plot, table};
 use super::{Seen, Stage};
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 use crate::theme;
 
 pub const STAGE: Stage = Stage {
@@ -90,8 +90,8 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     table(ui, "adaptation table", &heads, |ui| {
         for (n, step) in adaptation.steps.iter().enumerate() {
             ui.label(tr(n.to_string()));
-            ui.label(format!("{:.6}", step.gain));
-            ui.label(format!("{:+.1e}", step.error));
+            ui.label(tr_number(format!("{:.6}", step.gain)));
+            ui.label(tr_number(format!("{:+.1e}", step.error)));
             ui.label(number(step.test.period));
             // The first order needs three errors.
             let order = n.checked_sub(2).and_then(|i| adaptation.orders.get(i));

@@ -4,7 +4,7 @@ use hysteron_core::tuning::{LoopReport, rule};
 
 use super::draw::{controller, maybe, number, table};
 use super::{Seen, Stage};
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 
 pub const STAGE: Stage = Stage {
     id: "rules",
@@ -75,7 +75,7 @@ fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
         ui.label(tr("unstable"));
         return;
     };
-    ui.label(format!("{:.2}", margins.max_sensitivity));
+    ui.label(tr_number(format!("{:.2}", margins.max_sensitivity)));
     let phase = margins.phase_margin.map(f64::to_degrees);
     ui.label(tr(
         phase.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}"))

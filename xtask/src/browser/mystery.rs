@@ -1,0 +1,67 @@
+//! A mystery is made, handed on as a link, diagnosed and revealed.
+
+use std::time::Duration;
+
+use super::driver::Session;
+use super::{click, wait};
+
+const WORD: &str = "blue whale";
+
+/// The whole way, teacher's and student's.
+pub fn journey(session: &Session, page: &str) -> Result<(), String> {
+    click(session, "page:mystery")?;
+    click(session, "mystery:choose")?;
+    click(session, "mystery:hide:coulomb_friction")?;
+    // The word stands below a long list.
+    session.scroll(300.0, 500.0)?;
+    wait(session, "the end of the page", |s| {
+        s["targets"]["mystery:make"].is_array()
+    })?;
+    type_word(session, "mystery:word")?;
+    click(session, "mystery:make")?;
+    let made = wait(session, "the mystery", |s| s["mystery"]["made"].is_string())?;
+    click(session, "mystery:open")?;
+    let opened = wait(session, "the mystery in Compare", |s| {
+        s["page"] == "compare" && s["link"].to_string().contains("mystery=")
+    })?;
+    let link = opened["link"].as_str().unwrap_or_default().to_owned();
+    session.open("about:blank")?;
+    session.open(&format!("{page}#{link}"))?;
+    let before = wait(session, "the record of the link", |s| {
+        s["busy"] == false && s["error"].is_number() && s["file"] == made["mystery"]["made"]
+    })?;
+    if before.to_string().contains("whale") {
+        return Err("the word is in the page".to_owned());
+    }
+    click(session, "add:coulomb_friction")?;
+    let after = wait(session, "the model with Coulomb friction", |s| {
+        s["busy"] == false && s["effects"].to_string().contains("coulomb_friction")
+    })?;
+    click(session, "look:reveal")?;
+    type_word(session, "reveal:word")?;
+    click(session, "reveal")?;
+    let revealed = wait(session, "the truth", |s| s["sealed"]["points"].is_number())?;
+    let points = revealed["sealed"]["points"].as_f64().unwrap_or(0.0);
+    println!(
+        "{}: error {} -> {}, {points:.0} of 100 points; its link has {} characters",
+        made["mystery"]["made"],
+        before["error"],
+        after["error"],
+        link.len()
+    );
+    if points < 90.0 {
+        return Err(format!("the right effect has {points} points only"));
+    }
+    Ok(())
+}
+
+/// Types the word where it belongs, once the page stands still and the keyboard is there.
+fn type_word(session: &Session, field: &str) -> Result<(), String> {
+    let pause = || std::thread::sleep(Duration::from_secs(1));
+    pause();
+    click(session, field)?;
+    pause();
+    session.type_text(WORD)?;
+    pause();
+    Ok(())
+}

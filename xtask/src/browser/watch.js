@@ -1,0 +1,55 @@
+// What the page does with its time, noted from inside: frames, tasks, answers to inputs, workers.
+(() => {
+  const fresh = () => ({ frames: 0, frame: 0, task: 0, answers: 0, answer: 0, workers: 0 });
+  let watch = fresh();
+  let reacted = null;
+  let wanted = null;
+  window.hysteron_watch = {
+    begin() { watch = fresh(); },
+    read: () => watch,
+    // From now on: when is a frame of another page drawn?
+    expect(page) { wanted = `"page":"${page}"`; reacted = null; },
+    reacted: () => reacted,
+  };
+  // The app says its state in every frame that it makes: most of them when the browser asks for a frame, those of a
+  // click at once. The browser paints both when it has asked.
+  let state = null, made = false, asked = null, begin = 0;
+  const work = () => { watch.frame = Math.max(watch.frame, performance.now() - begin); };
+  Object.defineProperty(window, "hysteron_state", {
+    get: () => state,
+    set: (text) => { state = text; made = true; work(); },
+  });
+  for (const kind of ["pointermove", "pointerdown", "pointerup", "keydown"]) {
+    window.addEventListener(kind, (event) => {
+      begin = performance.now();
+      asked ??= event.timeStamp;
+    }, { capture: true });
+  }
+  const request = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => request((now) => {
+    begin = performance.now();
+    draw(now);
+    if (!made) return;
+    made = false;
+    const end = performance.now();
+    watch.frames += 1;
+    work();
+    if (asked !== null) {
+      watch.answers += 1;
+      watch.answer = Math.max(watch.answer, end - asked);
+      asked = null;
+    }
+    if (wanted !== null && state.includes(wanted)) {
+      reacted = end;
+      wanted = null;
+    }
+  });
+  // The browser tells of tasks above 50 ms only: that is what is asked.
+  new PerformanceObserver((list) => {
+    for (const entry of list.getEntries()) watch.task = Math.max(watch.task, entry.duration);
+  }).observe({ type: "longtask" });
+  const Started = window.Worker;
+  window.Worker = class extends Started {
+    constructor(...what) { super(...what); watch.workers += 1; }
+  };
+})();
