@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
-use crate::model::{SeenContact, SeenLoad};
+use crate::model::{SeenContact, SeenLoad, Sharpness};
 
 use super::contacts::{Touch, touches};
 use super::cycles::{Cycles, median, range};
@@ -310,7 +310,11 @@ fn two_sided(
         Quality::Poor
     };
     state(estimate, gap, error);
-    SeenLoad::new(events, fit.play, fit.sharpness)
+    let sharpness = Sharpness {
+        place: fit.sharpness.place.hypot(place_error),
+        ..fit.sharpness
+    };
+    SeenLoad::new(events, fit.play, sharpness)
 }
 
 /// A touch in SI units.

@@ -254,7 +254,6 @@ impl Fit {
                 ..self.clone()
             };
             trial.take_better(data, self.starts.clone());
-            trial.take_measured_starts(data);
             trial.polish_starts(data, scales);
             return (trial.starts, trial.motion);
         }
@@ -532,6 +531,10 @@ impl Fit {
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
+        let model = self.structure.model(&self.values);
+        if data.excitation.sees_load_of(&model) {
+            self.take_measured_starts(data);
+        }
         for round in 0..POLISHINGS {
             let before = self.cost;
             let columns = self.columns(data, &[], scales);

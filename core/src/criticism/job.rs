@@ -32,6 +32,9 @@ const BOLD_GAIN: f64 = 0.5;
 /// Share by which a detour must lower the error to be the better way.
 const DETOUR_GAIN: f64 = 0.97;
 
+/// The same of a bold one that does not explain all.
+const LARGE_GAIN: f64 = 0.2;
+
 /// How far a job has come.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress<T> {
@@ -278,9 +281,11 @@ impl DiagnosisJob {
         imitation: Option<(EffectId, Scored)>,
     ) -> Option<Diagnosis> {
         let error = |d: &Diagnosis| d.steps.last().map_or(f64::INFINITY, |s| s.error);
-        let better = self.unfinished.take().filter(|other| {
-            self.bold || DETOUR_GAIN * error(&other.diagnosis) <= error(&self.diagnosis)
-        });
+        let gain = if self.bold { LARGE_GAIN } else { DETOUR_GAIN };
+        let better = self
+            .unfinished
+            .take()
+            .filter(|other| gain * error(&other.diagnosis) <= error(&self.diagnosis));
         let here = End {
             diagnosis: self.diagnosis.clone(),
             last: self.last.take(),

@@ -53,6 +53,16 @@ pub(super) fn fall(before: &Score, after: &Score) -> f64 {
     1.0 - after.error / before.error
 }
 
+/// The same of the usual held-back block: where a few blocks show another effect besides, only these may stay as
+/// they were, or become worse.
+pub(super) fn usual_fall(before: &Score, after: &Score) -> f64 {
+    let blocks = before.held_blocks.iter().zip(&after.held_blocks);
+    let mut ratios: Vec<f64> = blocks.map(|(b, a)| a / b).collect();
+    ratios.sort_by(f64::total_cmp);
+    let usual = ratios.get(ratios.len() / 2).copied();
+    1.0 - usual.unwrap_or(1.0).sqrt()
+}
+
 /// Whether held-back data want the step from `before` to `after`.
 pub(super) fn helps(before: &Score, after: &Score) -> bool {
     let better = before

@@ -10,6 +10,7 @@ use super::score::Score;
 use super::search::Search;
 use super::select::{
     delta_bic, fall, helps, is_noise, is_plain_noise, matters, outweighs, same, suffices,
+    usual_fall,
 };
 use super::session::{Scored, Session};
 use super::verdict::{Class, add_experiments, add_idle, add_imitations, add_rest, verdict};
@@ -650,7 +651,10 @@ impl StepJob {
             .tried
             .iter()
             .map(|(_, s)| s)
-            .filter(|s| fall(&model.score, &s.score) > LARGE_FALL)
+            .filter(|s| {
+                fall(&model.score, &s.score) > LARGE_FALL
+                    || usual_fall(&model.score, &s.score) > HUGE_FALL
+            })
             .collect();
         seen.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
         seen.truncate(count);

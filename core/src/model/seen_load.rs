@@ -390,7 +390,10 @@ mod tests {
     fn seen() -> (SeenLoad, f64) {
         let speed = PLAY.ratio * 0.05;
         let met = 0.01 + SLOWING.flight(speed, 0.2).way;
-        let contacts = vec![contact(0.0, 1.0, 0.01, 0.05), contact(0.2, -1.0, met, -0.02)];
+        let contacts = vec![
+            contact(0.0, 1.0, 0.01, 0.05),
+            contact(0.2, -1.0, met, -0.02),
+        ];
         (SeenLoad::new(contacts, PLAY, SHARPNESS).unwrap(), speed)
     }
 
