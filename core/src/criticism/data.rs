@@ -25,6 +25,9 @@ const SCOUT_PART: usize = 5;
 /// ... and on at least this many samples.
 const SCOUT_SAMPLES: usize = 2500;
 
+/// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// Samples around a window start from which its state is first guessed.
 const GUESS_SAMPLES: usize = 5;
 
@@ -45,6 +48,7 @@ pub(super) struct Block {
     pub to: usize,
     /// Index of the window in which it lies.
     pub window: usize,
+    /// It judges; what is not held back is fitted.
     pub held_back: bool,
 }
 
@@ -60,6 +64,13 @@ pub(super) struct Data {
     pub windows: Vec<usize>,
     pub blocks: Vec<Block>,
     pub has_position: bool,
+}
+
+/// Whether what stands at this place is held back: one of every two neighbours, in the order of Thue and Morse,
+/// which never repeats itself. Strictly by turns, a periodic motion could show one phase to the fit and another to
+/// the judge.
+pub(super) fn is_held_back(place: usize) -> bool {
+    place.count_ones() % 2 == 1
 }
 
 impl Data {
@@ -115,7 +126,7 @@ impl Data {
                 from: *from,
                 to: split_end(n, block, k),
                 window: windows.partition_point(|w| w <= from) - 1,
-                held_back: k % 2 == 1,
+                held_back: is_held_back(k),
             })
             .collect();
         let before = if starts_at_rest(&outputs) {
@@ -181,12 +192,13 @@ impl Data {
 
     /// Pairs of windows (fitted and held back) spread over the record, about `samples` in all.
     pub fn thinned(&self, samples: usize) -> Self {
-        let stride = self.used().div_ceil(samples.max(1)).max(1);
-        if stride == 1 || self.kind == Kind::Process {
+        let share = samples as f64 / self.used() as f64;
+        if share >= 1.0 || self.kind == Kind::Process {
             return self.clone();
         }
         let mut part = self.clone();
-        let chosen = |window: usize| (window / 2).is_multiple_of(stride);
+        // At no fixed distance, which could meet the same phase of a periodic motion each time.
+        let chosen = |window: usize| ((window / 2) as f64 * GOLDEN).fract() < share;
         part.windows = (0..self.windows.len())
             .filter(|w| chosen(*w))
             .map(|w| self.windows[w])

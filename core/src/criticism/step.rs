@@ -743,7 +743,24 @@ fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
     let inflation = with.score.error_fit.powi(2).max(1.0) * with.score.correlation.max(1.0);
     let errors = with.fit.standard_errors(inflation);
     leading.is_some_and(|index| {
-        let j = with.fit.structure.range(index).start;
+        let j = with.fit.structure.range(index).start
+            + telling(model, with.fit.structure.effects[index]);
         with.fit.values[j].abs() > clear * errors[j]
     })
+}
+
+/// The place of the parameter that tells whether `effect` is there: its first one; in the place of a part of it in
+/// `model`, the first that the part has not, or not so large. A level of friction that both have tells nothing.
+fn telling(model: &Scored, effect: &dyn Effect) -> usize {
+    let effects = model.fit.structure.effects.iter();
+    let part = effects
+        .copied()
+        .find(|e| effect.contains().contains(&e.id()));
+    part.and_then(|part| {
+        effect.parameters().iter().position(|own| {
+            let mut others = part.parameters().iter();
+            others.all(|other| other.symbol != own.symbol || other.range != own.range)
+        })
+    })
+    .unwrap_or(0)
 }

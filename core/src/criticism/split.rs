@@ -1,0 +1,60 @@
+//! Which windows of a drive are held back?
+//!
+//! Of every two neighbouring windows one is fitted and the other judges. In any order that is fixed beforehand a
+//! motion may show one thing to the fit and another to the judge: a periodic one its phases, one that passes a
+//! hard spot four times the spot itself. So the pairs are ranked by how much more the baseline leaves in one of
+//! their windows than in the other, and along this rank the worse one is now fitted and now held back: both parts
+//! get their share of what is missing. (Data are split evenly, "duplex": Snee 1977, Validation of regression
+//! models.) The judge stays fair: the values of no effect are known yet when the windows are divided.
+
+use super::cost::cost_between;
+use super::data::{Data, is_held_back};
+use super::fit::Fit;
+use super::knowledge::Knowledge;
+use super::structure::Structure;
+use crate::effect::Scales;
+use crate::measurement::Kind;
+
+/// Iterations of the baseline before its error is looked at.
+const ITERATIONS: usize = 3;
+
+/// Holds back one of every two neighbouring windows, so that both parts know as much of what the baseline that
+/// begins at `values` does not explain.
+///
+/// A process runs through without a restart: what it leaves in a block is not that block's own, and the order of the
+/// blocks stays as it is.
+pub(super) fn hold_back(
+    data: &mut Data,
+    knowledge: &Knowledge,
+    mut values: Vec<f64>,
+    scales: &Scales,
+) {
+    if data.kind == Kind::Process {
+        return;
+    }
+    for block in &mut data.blocks {
+        block.held_back = false;
+    }
+    let structure = Structure::new(data.kind, Vec::new(), knowledge.clone());
+    structure.begin(&mut values, 0);
+    let mut fit = Fit::new(data, structure, values, data.guessed_starts(), scales);
+    fit.polish_starts(data, scales);
+    for _ in 0..ITERATIONS {
+        fit.iterate(data, scales);
+    }
+    let cost = |k: usize| {
+        let block = &data.blocks[k];
+        cost_between(data, &fit.motion, block.from, block.to)
+    };
+    let mut ranked: Vec<(usize, f64)> = (0..data.blocks.len() / 2)
+        .map(|pair| 2 * pair)
+        .map(|first| (first, cost(first) - cost(first + 1)))
+        .collect();
+    ranked.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    for (rank, (first, more)) in ranked.into_iter().enumerate() {
+        let worse = first + usize::from(more < 0.0);
+        let better = 2 * first + 1 - worse;
+        let held = if is_held_back(rank) { worse } else { better };
+        data.blocks[held].held_back = true;
+    }
+}
