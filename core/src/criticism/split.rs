@@ -58,3 +58,45 @@ pub(super) fn hold_back(
         data.blocks[held].held_back = true;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::criticism::baseline;
+    use crate::rig::{DriveRig, Excitation, Stranger};
+    use crate::user_model::UserModel;
+
+    #[test]
+    fn both_parts_pass_a_hard_spot_that_is_seldom_met() {
+        let (at, width) = (0.5, 0.1);
+        let measurement = DriveRig {
+            excitation: Excitation::Multisine { amplitude: 0.08 },
+            stranger: Some(Stranger::PositionBump {
+                torque: 0.06,
+                at,
+                width,
+            }),
+            ..DriveRig::default()
+        }
+        .measure();
+        let mut data = Data::new(&measurement).unwrap();
+        let plain = baseline::model(data.kind, &[1.0, 1.0]);
+        let guess = baseline::guess(&data, &data.excitation.effective_input(&plain)).unwrap();
+        let scales = data.scales(guess[0], guess[1]);
+        let knowledge = Knowledge::of(&UserModel::blank(data.kind));
+        hold_back(&mut data, &knowledge, guess, &scales);
+        for pair in data.blocks.chunks_exact(2) {
+            assert_ne!(pair[0].held_back, pair[1].held_back);
+        }
+        let position = data.position_estimate();
+        for held in [true, false] {
+            let mut blocks = data.blocks.iter().filter(|b| b.held_back == held);
+            assert!(
+                blocks.any(|b| position[b.from..b.to]
+                    .iter()
+                    .any(|x| (x - at).abs() < width)),
+                "held back: {held}"
+            );
+        }
+    }
+}
