@@ -377,7 +377,8 @@ impl StepJob {
             let swapped = self.session.scored(fit);
             if own.contains().contains(&effect.id()) {
                 let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
-                if enough(model, &swapped, self.session.first(model))
+                let enough = enough(model, &swapped, self.session.first(model));
+                if (enough || !is_seen(&swapped, model, place))
                     && self.simpler.as_ref().is_none_or(fewer)
                 {
                     self.simpler = Some(swapped);
@@ -426,7 +427,8 @@ impl StepJob {
         helping()
             .filter(|(e, s)| {
                 if best.0.contains().contains(&e.id()) {
-                    enough(&best.1, s, first)
+                    let place = best.1.fit.structure.effects.len() - 1;
+                    enough(&best.1, s, first) || !is_seen(s, &best.1, place)
                 } else {
                     let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
                     alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
@@ -727,9 +729,14 @@ const HUGE_FALL: f64 = 0.5;
 
 /// Whether the last effect of `with` helps `model`, and is itself seen.
 fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
-    if !helps(&model.score, &with.score) || !matters(&model.score, &with.score, first) {
-        return false;
-    }
+    let last = with.fit.structure.effects.len().checked_sub(1);
+    helps(&model.score, &with.score)
+        && matters(&model.score, &with.score, first)
+        && last.is_some_and(|place| is_seen(model, with, place))
+}
+
+/// Whether the effect at this place of `with`, which `model` has not, or only a part of, stands out by itself.
+fn is_seen(model: &Scored, with: &Scored, place: usize) -> bool {
     let fall = fall(&model.score, &with.score);
     if fall > HUGE_FALL {
         return true;
@@ -739,14 +746,11 @@ fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
     } else {
         CLEAR_ERRORS
     };
-    let leading = with.fit.structure.effects.len().checked_sub(1);
     let inflation = with.score.error_fit.powi(2).max(1.0) * with.score.correlation.max(1.0);
     let errors = with.fit.standard_errors(inflation);
-    leading.is_some_and(|index| {
-        let j = with.fit.structure.range(index).start
-            + telling(model, with.fit.structure.effects[index]);
-        with.fit.values[j].abs() > clear * errors[j]
-    })
+    let structure = &with.fit.structure;
+    let j = structure.range(place).start + telling(model, structure.effects[place]);
+    with.fit.values[j].abs() > clear * errors[j]
 }
 
 /// The place of the parameter that tells whether `effect` is there: its first one; in the place of a part of it in
