@@ -429,8 +429,10 @@ mod tests {
         };
         let reached = x + dx + SLOWING.flight(v + dv, 0.1).way;
         let asked = seen.contacts[1].load_at(wrong.half_gap);
-        // As far as the place of the contact is known better than the flight.
-        assert!((reached - asked).abs() < 0.02 * 0.0004, "{reached} {asked}");
+        // Of the surprise of 0.4 mm as much stays as the place of a contact, 10 um, is uncertain beside that of the
+        // flight: 1 % and 1e-4 of the speed 0.04 over 0.164 s, and 10 um at its begin, make 68 um; 2.1 % of the squares.
+        let left = (asked - reached) / 0.0004;
+        assert!((left - 0.021).abs() < 0.001, "{left}");
     }
 
     #[test]
