@@ -129,3 +129,99 @@ proptest! {
         prop_assert_eq!(job.finish(), done);
     }
 }
+
+fn free(inertia: f64) -> Body {
+    Body {
+        inertia,
+        viscous: 0.0,
+        coulomb: 0.0,
+    }
+}
+
+/// Runs a drive under a relay from rest in the middle of its gap, but for the speed of its load.
+fn ends(motor: Body, load: Body, half_gap: f64, contact: Contact, relay: VelocityRelay, v2: f64) {
+    let drive = Drive {
+        motor,
+        load,
+        half_gap,
+        contact,
+        adhesion: Adhesion::default(),
+    };
+    let mut input = DriveInput::new(drive, Command::Relay(relay), 0.3, Some(1e-3));
+    input.start.v2 = v2;
+    let done = run(&input).unwrap();
+    assert_eq!(done.chattering, None, "{} events", done.events.len());
+    assert_eq!(done.time.len(), 301);
+}
+
+fn plain(gain: f64, hysteresis: f64) -> VelocityRelay {
+    VelocityRelay {
+        relay: Relay {
+            gain,
+            hysteresis,
+            ..Relay::default()
+        },
+        ..VelocityRelay::default()
+    }
+}
+
+/// Round-off of the gap alone carries the force of a stiff spring back and forth over the friction.
+#[test]
+fn a_light_load_breaks_loose_once() {
+    let load = Body {
+        coulomb: 0.004_605_887_209_219_839,
+        ..free(0.000_115_409_893_300_219_79)
+    };
+    let contact = Contact::Compliant {
+        stiffness: 18_146.104_862_106_862,
+        damping: 0.0,
+    };
+    let relay = plain(0.05, 2.563_904_253_256_864_3);
+    ends(
+        free(0.01),
+        load,
+        0.012_896_572_773_066_4,
+        contact,
+        relay,
+        0.0,
+    );
+}
+
+/// A rebound of one unit of round-off comes back as high as it was.
+#[test]
+fn the_lowest_bounces_die_away() {
+    let motor = Body {
+        viscous: 0.013_452_451_510_358_06,
+        ..free(0.000_143_004_342_966_156_33)
+    };
+    let load = Body {
+        coulomb: 0.177_292_109_719_017_2,
+        ..free(0.01)
+    };
+    let contact = Contact::Rigid {
+        restitution: 0.888_896_005_423_528_6,
+    };
+    let relay = plain(0.05, 2.009_822_651_213_943_4);
+    let v2 = -0.847_436_137_825_567_3;
+    ends(motor, load, 0.017_808_417_734_747_686, contact, relay, v2);
+}
+
+/// Without a gap one end parts where the other touches; what round-off leaves of the depth must vanish.
+#[test]
+fn a_spring_without_gap_changes_ends() {
+    let contact = Contact::Compliant {
+        stiffness: 5_809.011_761_498_098,
+        damping: 0.0,
+    };
+    let mut relay = plain(0.306_810_716_578_412_7, 0.742_772_922_311_681_5);
+    relay.relay.asymmetry = 0.096_203_297_733_132_78;
+    relay.sampling = Some(0.000_416_926_638_676_877_6);
+    ends(
+        free(5.157_231_871_295_675_6e-5),
+        free(0.01),
+        0.0,
+        contact,
+        relay,
+        0.0,
+    );
+}

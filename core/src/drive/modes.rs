@@ -63,6 +63,9 @@ pub(super) struct State {
 /// that a contact without force is no endless coming and going.
 const PULL: f64 = 1e-12;
 
+/// Share of a spring's terms that is round-off.
+const SLACK: f64 = 8.0 * f64::EPSILON;
+
 impl State {
     /// The spring of the contact, if the masses touch and it has one.
     pub fn spring(&self, drive: &Drive) -> Option<Spring> {
@@ -72,6 +75,15 @@ impl State {
     /// Torque or force on the load from the spring.
     pub fn spring_force(&self, drive: &Drive) -> f64 {
         self.spring(drive).map_or(0.0, |s| s.force(self))
+    }
+
+    /// How far beyond a level the force of a spring must be to overcome it: what round-off of the gap makes
+    /// of the force. Less than that would begin a motion against which the very next step decides.
+    pub fn slack(&self, drive: &Drive) -> f64 {
+        self.spring(drive).map_or(0.0, |s| {
+            let damped = s.damping * (self.v1.abs() + self.v2.abs());
+            SLACK * (s.stiffness * self.gap.abs() + damped + s.offset.abs())
+        })
     }
 
     /// Sets the modes that follow from the velocities, the gap and the torque `u`.
@@ -87,9 +99,16 @@ impl State {
                 self.joint = None;
             }
         }
-        let force = self.spring_force(drive);
-        self.motor = Friction::of(self.v1, u - force, drive.motor.coulomb);
-        self.load = Friction::of(self.v2, force, drive.load.coulomb);
+        let (force, slack) = (self.spring_force(drive), self.slack(drive));
+        let level = |body: Body| {
+            if body.coulomb > 0.0 {
+                body.coulomb + slack
+            } else {
+                0.0
+            }
+        };
+        self.motor = Friction::of(self.v1, u - force, level(drive.motor));
+        self.load = Friction::of(self.v2, force, level(drive.load));
     }
 
     /// The end at which masses without relative speed would move into each other.

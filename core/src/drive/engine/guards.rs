@@ -16,7 +16,7 @@ pub(super) enum Guard {
     Hit(Side),
     Release(Side),
     Repress(Side),
-    Relax,
+    Relax(Side),
 }
 
 /// Share of the fastest speed below which a rebound counts as none.
@@ -26,6 +26,9 @@ const NO_BOUNCE: f64 = 1e-9;
 /// trembling for as long as the pressure lasts. What is lost is 1e-12 of the energy.
 const NO_LASTING_BOUNCE: f64 = 1e-6;
 const LASTING: f64 = 0.99;
+
+/// Round-off of a few additions to the gap, in half gaps.
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 impl DriveJob {
     /// The first guard that a step meets, and where; its end and `None` if it meets none.
@@ -53,20 +56,26 @@ impl DriveJob {
         if drive.load.coulomb > 0.0 && s.load != Friction::Stuck && !together {
             meet(Guard::Stop(Mass::Load), 0.0, 0.0, -s.load.sign(), 0.0);
         }
-        if let Some(spring) = s.spring(drive) {
-            let side = s.joint.map_or(1.0, Side::sign);
+        if let (Some(end), Some(spring)) = (s.joint, s.spring(drive)) {
+            let side = end.sign();
             let (k, d, offset) = (spring.stiffness, spring.damping, spring.offset);
-            let hold = s.joint.map_or(0.0, |side| holding(drive, side));
-            let end = s.joint.map_or(Guard::Relax, Guard::Release);
-            meet(end, side * offset - hold, -side * d, side * d, -side * k);
+            let constant = side * offset - holding(drive, end);
+            meet(
+                Guard::Release(end),
+                constant,
+                -side * d,
+                side * d,
+                -side * k,
+            );
+            let slack = s.slack(drive);
             for sign in [1.0, -1.0] {
                 if s.motor == Friction::Stuck {
-                    let constant = sign * (self.u + offset) - drive.motor.coulomb;
+                    let constant = sign * (self.u + offset) - drive.motor.coulomb - slack;
                     let guard = Guard::Break(Mass::Motor);
                     meet(guard, constant, -sign * d, sign * d, -sign * k);
                 }
                 if s.load == Friction::Stuck {
-                    let constant = -sign * offset - drive.load.coulomb;
+                    let constant = -sign * offset - drive.load.coulomb - slack;
                     meet(
                         Guard::Break(Mass::Load),
                         constant,
@@ -96,7 +105,7 @@ impl DriveJob {
                     Contact::Compliant { stiffness, damping } if self.depth(side) > 0.0 => {
                         let (k, d) = (sign * stiffness, sign * damping);
                         meet(Guard::Repress(side), -stiffness * drive.half_gap, d, -d, k);
-                        meet(Guard::Relax, drive.half_gap, 0.0, 0.0, -sign);
+                        meet(Guard::Relax(side), drive.half_gap, 0.0, 0.0, -sign);
                     }
                     _ => meet(Guard::Hit(side), -drive.half_gap, 0.0, 0.0, sign),
                 }
@@ -166,7 +175,8 @@ impl DriveJob {
                     self.settle();
                 }
             }
-            Guard::Relax => {}
+            // Just so, lest round-off leaves a rest of depth to be relaxed for ever.
+            Guard::Relax(side) => self.state.gap = side.sign() * half_gap,
         }
     }
 
@@ -201,11 +211,19 @@ impl DriveJob {
         s.load = Friction::of(s.v2, 0.0, self.drive.load.coulomb);
     }
 
+    /// Relative speed of a rebound that rises no further than round-off of the gap: such bounces repeat
+    /// each other instead of dying away.
+    fn flattest_bounce(&self) -> f64 {
+        let (motor, load) = (self.drive.motor, self.drive.load);
+        let press = (self.u.abs() + motor.coulomb) / motor.inertia + load.coulomb / load.inertia;
+        (2.0 * press * ROUND_OFF * self.drive.half_gap).sqrt()
+    }
+
     /// Momentum is kept; the relative velocity turns round.
     pub(super) fn impact(&mut self, side: Side, restitution: f64) {
         let (j1, j2) = (self.drive.motor.inertia, self.drive.load.inertia);
         let sign = side.sign();
-        let s = &mut self.state;
+        let s = &self.state;
         let before = self.drive.kinetic_energy(s.v1, s.v2);
         let approach = sign * (s.v1 - s.v2);
         let least = if restitution < LASTING {
@@ -213,8 +231,10 @@ impl DriveJob {
         } else {
             NO_LASTING_BOUNCE
         };
+        let least = (least * self.fastest).max(self.flattest_bounce());
+        let s = &mut self.state;
         // Without a gap there is no room to bounce.
-        let stays = self.drive.half_gap == 0.0 || restitution * approach <= least * self.fastest;
+        let stays = self.drive.half_gap == 0.0 || restitution * approach <= least;
         if stays {
             let common = (j1 * s.v1 + j2 * s.v2) / (j1 + j2);
             (s.v1, s.v2) = (common, common);
