@@ -28,6 +28,9 @@ const SCOUT_SAMPLES: usize = 2500;
 /// Samples before a contact at which a window begins.
 const BEFORE_CONTACT: usize = 2;
 
+/// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// Samples around a window start from which its state is first guessed.
 const GUESS_SAMPLES: usize = 5;
 
@@ -48,6 +51,7 @@ pub(super) struct Block {
     pub to: usize,
     /// Index of the window in which it lies.
     pub window: usize,
+    /// It judges; what is not held back is fitted.
     pub held_back: bool,
 }
 
@@ -211,14 +215,17 @@ impl Data {
 
     /// Pairs of windows (fitted and held back) spread over the record, about `samples` in all.
     pub fn thinned(&self, samples: usize) -> Self {
-        let stride = self.used().div_ceil(samples.max(1)).max(1);
-        if stride == 1 || self.kind == Kind::Process {
+        let share = samples as f64 / self.used() as f64;
+        if share >= 1.0 || self.kind == Kind::Process {
             return self.clone();
         }
         let felt = self.felt_pairs(samples / 2);
         let mut part = self.clone();
-        let chosen =
-            |window: usize| (window / 2).is_multiple_of(stride) || felt.contains(&(window / 2));
+        // At no fixed distance, which could meet the same phase of a periodic motion each time.
+        let chosen = |window: usize| {
+            let pair = window / 2;
+            (pair as f64 * GOLDEN).fract() < share || felt.contains(&pair)
+        };
         part.windows = (0..self.windows.len())
             .filter(|w| chosen(*w))
             .map(|w| self.windows[w])

@@ -117,7 +117,7 @@ struct End {
     diagnosis: Diagnosis,
     /// Report on its last model.
     last: Option<StepReport>,
-    /// What in that explains less than it leaves, and the model without it.
+    /// What in that may be an imitation, and the model without it.
     imitation: Option<(EffectId, Scored)>,
 }
 
@@ -130,7 +130,7 @@ pub struct DiagnosisJob {
     /// Ways not taken yet.
     detours: Vec<Detour>,
     detours_taken: usize,
-    /// Effects that were taken out in the end because they explained less than they left.
+    /// Effects that were taken out in the end because they may be imitations.
     barred: Vec<EffectId>,
     /// Whether the present way began with an effect that was not seen clearly.
     bold: bool,
@@ -298,9 +298,8 @@ impl DiagnosisJob {
         let settled = best.diagnosis.verdict.complete || trifling(&best.diagnosis, &session);
         let next = if settled || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
             (self.diagnosis, self.last) = (best.diagnosis, best.last);
-            let steps = self.diagnosis.steps.len();
-            let Some((effect, without)) = best.imitation.filter(|_| !settled && steps < MAX_STEPS)
-            else {
+            let more = !self.diagnosis.verdict.complete && self.diagnosis.steps.len() < MAX_STEPS;
+            let Some((effect, without)) = best.imitation.filter(|_| more) else {
                 return Some(self.diagnosis.clone());
             };
             self.barred.push(effect);

@@ -20,6 +20,7 @@ mod score;
 mod search;
 mod select;
 mod session;
+mod split;
 mod step;
 mod structure;
 mod verdict;

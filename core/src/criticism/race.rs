@@ -13,7 +13,8 @@ const HEAT: usize = 2;
 /// An effect is fitted to the end while it may come this close to the best cost.
 const CLOSE: f64 = 1.03;
 
-/// The same for a part of the effect that it stands in for: it may do though it does a little worse.
+/// The same for a part of the effect that it stands in for, or of the best one: it may do though it does a little
+/// worse, and whether it does is seen at the end of its fit only.
 const PART_CLOSE: f64 = 1.4;
 
 /// Share of the present cost below which an effect must hope to come, or it is not fitted to the end:
@@ -197,16 +198,21 @@ impl Race {
             run(&mut pieces);
             return true;
         }
-        let best = self
+        let leader = self
             .contenders
             .iter()
-            .map(Contender::cost)
-            .fold(self.target, f64::min);
+            .min_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let best = leader.map_or(self.target, |c| c.cost().min(self.target));
+        let parts = leader.map_or(&[][..], |c| c.effect.contains());
         let ceiling = self.ceiling;
         let next = self
             .contenders
             .iter_mut()
-            .filter_map(|c| Some((c.close, c.search.as_mut()?)))
+            .filter_map(|c| {
+                let part = parts.contains(&c.effect.id());
+                let close = if part { PART_CLOSE } else { c.close };
+                Some((close, c.search.as_mut()?))
+            })
             .filter(|(close, s)| s.goes_on() && s.optimism() <= ceiling.min(close * best))
             .min_by(|a, b| a.1.optimism().total_cmp(&b.1.optimism()));
         match next {

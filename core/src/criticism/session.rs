@@ -8,6 +8,7 @@ use super::knowledge::{self, Knowledge};
 use super::locate::locate;
 use super::score::{Score, score};
 use super::select::is_noise;
+use super::split::hold_back;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::backlash::sighted;
 use crate::effect::{
@@ -61,17 +62,19 @@ impl Session {
     pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
         knowledge::check(model, measurement)?;
         let (gap, seen) = seen_gap(measurement).unzip();
-        let data = Data::new(measurement)?.with_seen_load(seen.flatten());
+        let mut data = Data::new(measurement)?.with_seen_load(seen.flatten());
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
         let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| vec![1.0, 1.0]);
         let (inertia, viscous) = baseline::body(data.kind, &guess);
         let scales = data.scales(inertia, viscous);
+        let knowledge = Knowledge::of(model).with_felt_gap(gap.map(felt_gap));
+        hold_back(&mut data, &knowledge, guess, &scales);
         let compared = data.thinned(COMPARED);
         Ok(Self {
             scales,
             scout: compared.scout(),
-            knowledge: Knowledge::of(model).with_felt_gap(gap.map(felt_gap)),
+            knowledge,
             own: model
                 .formulas()
                 .map(|formula| {

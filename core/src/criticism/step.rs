@@ -63,7 +63,7 @@ pub struct StepJob {
     simpler: Option<Scored>,
     /// Effects in the order in which earlier steps found them.
     earlier: Vec<EffectId>,
-    /// Effects that are not added any more: they explained less than they left.
+    /// Effects that are not added any more: they may be imitations.
     barred: Vec<EffectId>,
 }
 
@@ -378,7 +378,8 @@ impl StepJob {
             let swapped = self.session.scored(fit);
             if own.contains().contains(&effect.id()) {
                 let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
-                if enough(model, &swapped, self.session.first(model))
+                let enough = enough(model, &swapped, self.session.first(model));
+                if (enough || !is_seen(&swapped, model, place))
                     && self.simpler.as_ref().is_none_or(fewer)
                 {
                     self.simpler = Some(swapped);
@@ -427,7 +428,8 @@ impl StepJob {
         helping()
             .filter(|(e, s)| {
                 if best.0.contains().contains(&e.id()) {
-                    enough(&best.1, s, first)
+                    let place = best.1.fit.structure.effects.len() - 1;
+                    enough(&best.1, s, first) || !is_seen(s, &best.1, place)
                 } else {
                     let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
                     alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
@@ -627,18 +629,25 @@ impl StepJob {
     }
 
     /// In a last model that leaves more than noise, this `error` on the whole record, the effect that explains
-    /// least, if that is less than what is left, and the model without it: it may as well imitate a part of what
-    /// no effect explains.
+    /// least, if that is less than what is left or its size is not known to differ from 0, and the model without it:
+    /// it may as well imitate a part of what no effect explains.
     pub(super) fn imitation(&self, error: f64) -> Option<(EffectId, Scored)> {
         self.wanted
             .iter()
             .zip(&self.without)
-            .filter(|(e, _)| !self.session.knowledge.has(e.id()))
+            .enumerate()
+            .filter(|(_, (e, _))| !self.session.knowledge.has(e.id()))
             // Where a long record was thinned, all of it decides.
-            .map(|(e, without)| (e.id(), without, self.session.completed(without).score.error))
-            .filter(|(_, _, without)| !outweighs(*without, error))
-            .min_by(|a, b| a.2.total_cmp(&b.2))
-            .map(|(id, without, _)| (id, without.clone()))
+            .map(|(place, (e, without))| {
+                let completed = self.session.completed(without).score.error;
+                (place, e.id(), without, completed)
+            })
+            .filter(|(place, _, without, completed)| {
+                let clear = |model| stands_out(without, model, *place, CLEAR_ERRORS);
+                !outweighs(*completed, error) || !self.model.as_ref().is_none_or(clear)
+            })
+            .min_by(|a, b| a.3.total_cmp(&b.3))
+            .map(|(_, id, without, _)| (id, without.clone()))
     }
 
     /// Models with an effect that lowers the error much, though not beyond chance while the rest is as
@@ -731,9 +740,14 @@ const HUGE_FALL: f64 = 0.5;
 
 /// Whether the last effect of `with` helps `model`, and is itself seen.
 fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
-    if !helps(&model.score, &with.score) || !matters(&model.score, &with.score, first) {
-        return false;
-    }
+    let last = with.fit.structure.effects.len().checked_sub(1);
+    helps(&model.score, &with.score)
+        && matters(&model.score, &with.score, first)
+        && last.is_some_and(|place| is_seen(model, with, place))
+}
+
+/// Whether the effect at this place of `with`, which `model` has not, or only a part of, stands out by itself.
+fn is_seen(model: &Scored, with: &Scored, place: usize) -> bool {
     let fall = fall(&model.score, &with.score);
     if fall > HUGE_FALL {
         return true;
@@ -743,11 +757,30 @@ fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
     } else {
         CLEAR_ERRORS
     };
-    let leading = with.fit.structure.effects.len().checked_sub(1);
+    stands_out(model, with, place, clear)
+}
+
+/// Whether the parameter that tells of the effect at this place of `with` is this many standard errors off 0.
+fn stands_out(model: &Scored, with: &Scored, place: usize, clear: f64) -> bool {
     let inflation = with.score.error_fit.powi(2).max(1.0) * with.score.correlation.max(1.0);
     let errors = with.fit.standard_errors(inflation);
-    leading.is_some_and(|index| {
-        let j = with.fit.structure.range(index).start;
-        with.fit.values[j].abs() > clear * errors[j]
+    let structure = &with.fit.structure;
+    let j = structure.range(place).start + telling(model, structure.effects[place]);
+    with.fit.values[j].abs() > clear * errors[j]
+}
+
+/// The place of the parameter that tells whether `effect` is there: its first one; in the place of a part of it in
+/// `model`, the first that the part has not, or not so large. A level of friction that both have tells nothing.
+fn telling(model: &Scored, effect: &dyn Effect) -> usize {
+    let effects = model.fit.structure.effects.iter();
+    let part = effects
+        .copied()
+        .find(|e| effect.contains().contains(&e.id()));
+    part.and_then(|part| {
+        effect.parameters().iter().position(|own| {
+            let mut others = part.parameters().iter();
+            others.all(|other| other.symbol != own.symbol || other.range != own.range)
+        })
     })
+    .unwrap_or(0)
 }

@@ -123,14 +123,15 @@ pub(super) fn add_rest(verdict: &mut Verdict, score: &Score, first: f64, finding
     }
 }
 
-/// Says which effects lower the error but explain less than they leave.
+/// Says which effects lower the error but may be imitations: they explain less than they leave, or their size is
+/// not known to differ from 0.
 pub(super) fn add_imitations(verdict: &mut Verdict, imitations: &[EffectId]) {
     if imitations.is_empty() || verdict.complete {
         return;
     }
     let _ = write!(
         verdict.text,
-        " Not named, since it would explain less than it leaves and may only imitate what is missing: {}.",
+        " Not named, since it explains too little for what is left and may only imitate what is missing: {}.",
         names(imitations, ", ")
     );
 }

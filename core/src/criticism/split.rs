@@ -1,0 +1,107 @@
+//! Which windows of a drive are held back?
+//!
+//! Of every two neighbouring windows one is fitted and the other judges. In any order that is fixed beforehand a
+//! motion may show one thing to the fit and another to the judge: a periodic one its phases, one that passes a
+//! hard spot four times the spot itself. So the pairs are ranked by how much more the baseline leaves in one of
+//! their windows than in the other, and along this rank the worse one is now fitted and now held back: both parts
+//! get their share of what is missing. (Data are split evenly, "duplex": Snee 1977, Validation of regression
+//! models.) The judge stays fair: the values of no effect are known yet when the windows are divided.
+
+use super::cost::cost_between;
+use super::data::Data;
+use super::fit::Fit;
+use super::knowledge::Knowledge;
+use super::structure::Structure;
+use crate::effect::Scales;
+use crate::measurement::Kind;
+
+/// Iterations of the baseline before its error is looked at.
+const ITERATIONS: usize = 3;
+
+/// Holds back one of every two neighbouring windows, so that both parts know as much of what the baseline that
+/// begins at `values` does not explain.
+///
+/// A process runs through without a restart: what it leaves in a block is not that block's own, and the order of the
+/// blocks stays as it is.
+pub(super) fn hold_back(
+    data: &mut Data,
+    knowledge: &Knowledge,
+    mut values: Vec<f64>,
+    scales: &Scales,
+) {
+    if data.kind == Kind::Process {
+        return;
+    }
+    for block in &mut data.blocks {
+        block.held_back = false;
+    }
+    let structure = Structure::new(data.kind, Vec::new(), knowledge.clone());
+    structure.begin(&mut values, 0);
+    let mut fit = Fit::new(data, structure, values, data.guessed_starts(), scales);
+    fit.polish_starts(data, scales);
+    for _ in 0..ITERATIONS {
+        fit.iterate(data, scales);
+    }
+    let cost = |k: usize| {
+        let block = &data.blocks[k];
+        cost_between(data, &fit.motion, block.from, block.to)
+    };
+    let mut ranked: Vec<(usize, f64)> = (0..data.blocks.len() / 2)
+        .map(|pair| 2 * pair)
+        .map(|first| (first, cost(first) - cost(first + 1)))
+        .collect();
+    ranked.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    for (rank, (first, more)) in ranked.into_iter().enumerate() {
+        let worse = first + usize::from(more < 0.0);
+        let better = 2 * first + 1 - worse;
+        let held = if is_odd(rank) { worse } else { better };
+        data.blocks[held].held_back = true;
+    }
+}
+
+/// One of every two ranks, in the order of Thue and Morse, which never repeats itself.
+fn is_odd(rank: usize) -> bool {
+    rank.count_ones() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::criticism::baseline;
+    use crate::rig::{DriveRig, Excitation, Stranger};
+    use crate::user_model::UserModel;
+
+    #[test]
+    fn both_parts_pass_a_hard_spot_that_is_seldom_met() {
+        let (at, width) = (0.5, 0.1);
+        let measurement = DriveRig {
+            excitation: Excitation::Multisine { amplitude: 0.08 },
+            stranger: Some(Stranger::PositionBump {
+                torque: 0.06,
+                at,
+                width,
+            }),
+            ..DriveRig::default()
+        }
+        .measure();
+        let mut data = Data::new(&measurement).unwrap();
+        let plain = baseline::model(data.kind, &[1.0, 1.0]);
+        let guess = baseline::guess(&data, &data.excitation.effective_input(&plain)).unwrap();
+        let scales = data.scales(guess[0], guess[1]);
+        let knowledge = Knowledge::of(&UserModel::blank(data.kind));
+        hold_back(&mut data, &knowledge, guess, &scales);
+        for pair in data.blocks.chunks_exact(2) {
+            assert_ne!(pair[0].held_back, pair[1].held_back);
+        }
+        let position = data.position_estimate();
+        for held in [true, false] {
+            let mut blocks = data.blocks.iter().filter(|b| b.held_back == held);
+            assert!(
+                blocks.any(|b| position[b.from..b.to]
+                    .iter()
+                    .any(|x| (x - at).abs() < width)),
+                "held back: {held}"
+            );
+        }
+    }
+}
