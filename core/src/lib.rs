@@ -39,6 +39,7 @@ pub mod maps;
 pub mod measurement;
 pub mod model;
 pub mod mystery;
+mod packed;
 pub mod plant;
 pub mod relay;
 pub mod report;

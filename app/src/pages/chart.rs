@@ -4,8 +4,8 @@ use std::ops::{Deref, DerefMut, RangeInclusive};
 
 use egui::{AsIdSalt, IdSalt};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, Line, Plot, PlotGeometry, PlotItem, PlotPoints, PlotResponse,
-    PlotUi, Points, default_label_formatter, uniform_grid_spacer,
+    AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotPoint,
+    PlotPoints, PlotResponse, PlotUi, Points, default_label_formatter, uniform_grid_spacer,
 };
 
 use super::chart_menu;
@@ -54,6 +54,8 @@ pub struct Chart<'a> {
     salt: IdSalt,
     /// Names of the axes with their units, in English.
     axes: [String; 2],
+    /// The x of what is drawn are logarithms to base 10.
+    decades: bool,
 }
 
 impl<'a> Chart<'a> {
@@ -76,7 +78,27 @@ impl<'a> Chart<'a> {
             .custom_y_axes(vec![axis(AxisHints::new_y().label(y).min_thickness(width))])
             .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
             .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)));
-        Self { plot, salt, axes }
+        Self {
+            plot,
+            salt,
+            axes,
+            decades: false,
+        }
+    }
+
+    /// With a logarithmic x: what is drawn has the logarithm to base 10 there, and what is read its power.
+    #[must_use]
+    pub fn decades(mut self) -> Self {
+        self.decades = true;
+        let x = AxisHints::new_x()
+            .label(tr(&self.axes[0]))
+            .label_spacing(LABELS)
+            .formatter(|mark, _| power_label(mark.value));
+        self.with(|plot| {
+            plot.custom_x_axes(vec![x])
+                .x_grid_spacer(|input| powers(&input))
+                .label_formatter(|place| power_formatter(place).map(tr_number))
+        })
     }
 
     /// With more of what a plot can do.
@@ -103,7 +125,12 @@ impl<'a> Chart<'a> {
         ui: &mut egui::Ui,
         draw: impl FnOnce(&mut Pen<'_, 'a>) -> R + 'a,
     ) -> PlotResponse<R> {
-        let Self { plot, salt, axes } = self;
+        let Self {
+            plot,
+            salt,
+            axes,
+            decades,
+        } = self;
         let id = ui.scope_id().with(salt);
         let start = ui.cursor().min;
         let table = chart_menu::wants_numbers(ui.ctx(), id).then(|| Table::new("plot"));
@@ -112,6 +139,7 @@ impl<'a> Chart<'a> {
             let mut pen = Pen {
                 plot,
                 axes: titles,
+                decades,
                 table,
             };
             (draw(&mut pen), pen.table)
@@ -131,6 +159,7 @@ impl<'a> Chart<'a> {
 pub struct Pen<'p, 'd> {
     plot: &'p mut PlotUi<'d>,
     axes: [String; 2],
+    decades: bool,
     table: Option<Table>,
 }
 
@@ -154,8 +183,11 @@ impl<'d> Pen<'_, 'd> {
             return;
         }
         let title = |axis: &String| format!("{}: {axis}", item.name());
+        let place = |p: &PlotPoint| {
+            if self.decades { 10_f64.powf(p.x) } else { p.x }
+        };
         let columns = [
-            (title(&self.axes[0]), points.iter().map(|p| p.x).collect()),
+            (title(&self.axes[0]), points.iter().map(place).collect()),
             (title(&self.axes[1]), points.iter().map(|p| p.y).collect()),
         ];
         table.columns.extend(columns);
@@ -214,6 +246,51 @@ fn grid(input: &GridInput) -> [f64; 3] {
         .find(|s| s * decade >= wanted)
         .map_or(wanted, |s| s * decade);
     [0.5 * step, step, 10.0 * step]
+}
+
+/// A line at every power of ten, and fine ones between at 2 to 9 times it.
+fn powers(input: &GridInput) -> Vec<GridMark> {
+    let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
+    let mark = |decade: i32, times: i32| GridMark {
+        value: f64::from(decade) + f64::from(times).log10(),
+        step_size: if times == 1 { 1.0 } else { 0.1 },
+    };
+    (low..high.min(low.saturating_add(MOST_DECADES)))
+        .flat_map(|decade| (1..10).map(move |times| mark(decade, times)))
+        // A mark beyond the ends would be drawn beside the plot.
+        .filter(|mark| (input.bounds.0..=input.bounds.1).contains(&mark.value))
+        .collect()
+}
+
+/// Decades that have grid lines, at most: what a plot spans before it has anything to show may be wild.
+const MOST_DECADES: i32 = 40;
+
+/// The power of ten at a line of [`powers`]; nothing at the fine ones.
+fn power_label(exponent: f64) -> String {
+    if exponent.fract() != 0.0 {
+        return String::new();
+    }
+    let decimals = (-exponent).clamp(0.0, 12.0) as usize;
+    tr_number(format!("{:.decimals$}", 10_f64.powf(exponent)))
+}
+
+/// What the pointer is at, where x is a logarithm.
+fn power_formatter(place: &HoverPosition<'_>) -> Option<String> {
+    let read = |p: &PlotPoint| PlotPoint::new(10_f64.powf(p.x), p.y);
+    default_label_formatter(&match place {
+        HoverPosition::NearDataPoint {
+            plot_name,
+            position,
+            index,
+        } => HoverPosition::NearDataPoint {
+            plot_name,
+            position: read(position),
+            index: *index,
+        },
+        HoverPosition::Elsewhere { position } => HoverPosition::Elsewhere {
+            position: read(position),
+        },
+    })
 }
 
 /// Names of the curves in their colours, above a plot: they hide nothing.

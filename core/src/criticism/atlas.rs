@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::axes::{Axis, Parts, axes};
 use super::data::Data;
 use super::fit::{Motion, residuals};
-use super::locate::axes;
-use crate::measurement::Kind;
+use super::spectrum::Spectrum;
 
 /// Parts of equal sample count into which an axis is divided.
 const BINS: usize = 30;
@@ -17,9 +17,10 @@ pub struct ProfileBin {
     pub from: f64,
     /// Largest value of the axis in it.
     pub to: f64,
-    /// Mean residual in noise units.
+    /// Mean residual in noise units; 0 for a band of frequencies.
     pub mean: f64,
-    /// Root mean square of the residual in noise units.
+    /// Root mean square of the residual in noise units; in a band of frequencies that of white noise with the same
+    /// power there.
     pub rms: f64,
 }
 
@@ -32,62 +33,103 @@ pub struct Profile {
     pub axis: String,
     /// Unit of the axis, `1` for a share.
     pub unit: String,
-    /// Along the axis, the same number of samples in each.
+    /// Along the axis, the same number of samples in each; an axis with few values has one for each, frequencies are in
+    /// equal ratios.
+    #[serde(with = "packed_bins")]
     pub bins: Vec<ProfileBin>,
+}
+
+/// Bins as one packed series.
+mod packed_bins {
+    use serde::{Deserializer, Serializer};
+
+    use super::ProfileBin;
+    use crate::packed;
+
+    pub fn serialize<S: Serializer>(bins: &[ProfileBin], serializer: S) -> Result<S::Ok, S::Error> {
+        let flat: Vec<f64> = bins
+            .iter()
+            .flat_map(|b| [b.from, b.to, b.mean, b.rms])
+            .collect();
+        packed::serialize(&flat, serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Vec<ProfileBin>, D::Error> {
+        let flat = packed::deserialize(deserializer)?;
+        let (bins, _) = flat.as_chunks::<4>();
+        Ok(bins
+            .iter()
+            .map(|[from, to, mean, rms]| ProfileBin {
+                from: *from,
+                to: *to,
+                mean: *mean,
+                rms: *rms,
+            })
+            .collect())
+    }
 }
 
 /// Every output over every axis. `velocity_unit` is that of the drive's velocity or of the process output.
 pub(super) fn atlas(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Profile> {
-    profiles(data, motion, &residuals(data, motion), velocity_unit)
-}
-
-/// A series for each output, in noise units, over every axis of a motion.
-pub(super) fn profiles(
-    data: &Data,
-    motion: &Motion,
-    series: &[Vec<f64>],
-    velocity_unit: &str,
-) -> Vec<Profile> {
-    let runs = data.runs();
-    let mut profiles = Vec::new();
-    for axis in axes(data, motion) {
-        let mut order: Vec<usize> = runs
-            .iter()
-            .flat_map(|(from, to)| *from..*to)
-            .filter(|i| axis.values[*i].is_finite())
-            .collect();
-        if order.len() < 2 * BINS {
-            continue;
-        }
-        order.sort_by(|a, b| axis.values[*a].total_cmp(&axis.values[*b]));
-        let (name, unit) = match axis.name {
-            "velocity" if data.kind == Kind::Process => ("output", velocity_unit),
-            "velocity" => ("velocity", velocity_unit),
-            "relay_phase" => ("relay_phase", "1"),
-            name => (name, "s"),
-        };
-        for (output, residual) in series.iter().enumerate() {
-            let bins = (0..BINS)
-                .filter_map(|k| {
-                    let part = &order[k * order.len() / BINS..(k + 1) * order.len() / BINS];
-                    let count = part.len() as f64;
-                    let mean = part.iter().map(|i| residual[*i]).sum::<f64>() / count;
-                    let square = part.iter().map(|i| residual[*i].powi(2)).sum::<f64>() / count;
-                    Some(ProfileBin {
-                        from: axis.values[*part.first()?],
-                        to: axis.values[*part.last()?],
-                        mean,
-                        rms: square.sqrt(),
-                    })
-                })
-                .collect();
+    let residuals = residuals(data, motion);
+    let mut profiles = Places::new(data, motion, velocity_unit).profiles(&residuals);
+    for (output, (channel, residual)) in data.outputs.iter().zip(&residuals).enumerate() {
+        if let Some(spectrum) = Spectrum::of(data, &channel.values, residual) {
             profiles.push(Profile {
                 output,
-                axis: name.to_owned(),
-                unit: unit.to_owned(),
-                bins,
+                axis: "frequency".to_owned(),
+                unit: "Hz".to_owned(),
+                bins: spectrum.profile(),
             });
         }
     }
     profiles
+}
+
+/// The parts of every axis of a motion.
+pub(super) struct Places(Vec<(Axis, Parts)>);
+
+impl Places {
+    pub fn new(data: &Data, motion: &Motion, velocity_unit: &str) -> Self {
+        let runs = data.runs();
+        let used = || runs.iter().flat_map(|(from, to)| *from..*to);
+        let axes = axes(data, motion, velocity_unit).into_iter();
+        Self(
+            axes.filter_map(|axis| axis.parts(used(), BINS).map(|parts| (axis, parts)))
+                .collect(),
+        )
+    }
+
+    /// A series for each output, in noise units, over every axis.
+    pub fn profiles(&self, series: &[Vec<f64>]) -> Vec<Profile> {
+        let mut profiles = Vec::new();
+        for (axis, parts) in &self.0 {
+            for (output, residual) in series.iter().enumerate() {
+                profiles.push(Profile {
+                    output,
+                    axis: axis.name.to_owned(),
+                    unit: axis.unit.clone(),
+                    bins: (0..parts.len())
+                        .filter_map(|k| bin(axis, parts.between(k, k + 1), residual))
+                        .collect(),
+                });
+            }
+        }
+        profiles
+    }
+}
+
+/// What a residual is in a part of an axis.
+fn bin(axis: &Axis, part: &[usize], residual: &[f64]) -> Option<ProfileBin> {
+    let count = part.len() as f64;
+    let mean = part.iter().map(|i| residual[*i]).sum::<f64>() / count;
+    let square = part.iter().map(|i| residual[*i].powi(2)).sum::<f64>() / count;
+    Some(ProfileBin {
+        from: axis.values[*part.first()?],
+        to: axis.values[*part.last()?],
+        mean,
+        rms: square.sqrt(),
+    })
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::atlas::profiles;
+use super::atlas::Places;
 use super::fit::residuals;
 use super::session::{Scored, Session};
 use super::{Finding, Profile};
@@ -25,8 +25,9 @@ pub struct Fingerprint {
     /// First sample of the stretch in `would_leave`.
     pub from: usize,
     /// One series per output from there on, in the unit of the output.
+    #[serde(with = "crate::packed::many")]
     pub would_leave: Vec<Vec<f64>>,
-    /// The same over every axis, in noise units.
+    /// The same over every axis but frequency, in noise units.
     pub profiles: Vec<Profile>,
 }
 
@@ -43,8 +44,8 @@ pub(super) fn fingerprints(
     let left = residuals(data, motion);
     let runs = data.runs();
     let begin = findings
-        .first()
-        .and_then(|f| f.spans.first())
+        .iter()
+        .find_map(|f| f.spans.first())
         .map_or(0.0, |span| span.0);
     let sample = data.time.partition_point(|t| *t < begin);
     // Of a long record only some windows are fitted: the stretch is in the nearest one from there on.
@@ -55,6 +56,7 @@ pub(super) fn fingerprints(
         .unwrap_or((0, data.len()));
     let from = from.max(sample.min(to.saturating_sub(SHOWN.min(to - from))));
     let to = to.min(from + SHOWN);
+    let places = Places::new(data, motion, session.output_unit());
     let mut best: Vec<&(EffectId, &Scored)> = tried.iter().collect();
     best.sort_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error));
     best.into_iter()
@@ -92,7 +94,7 @@ pub(super) fn fingerprints(
                 },
                 from,
                 would_leave: changes.iter().map(|c| c[from..to].to_vec()).collect(),
-                profiles: profiles(data, motion, &scaled, session.output_unit()),
+                profiles: places.profiles(&scaled),
             }
         })
         .collect()

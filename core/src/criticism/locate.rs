@@ -1,8 +1,10 @@
 //! Where does the model fail? The part of an axis in which the squared error concentrates.
 
 use super::Finding;
-use super::data::Data;
+use super::axes::{Axis, Parts, axes};
+use super::data::{Data, Output};
 use super::fit::{Motion, residuals};
+use super::spectrum::Spectrum;
 use crate::measurement::Kind;
 
 /// Parts of equal sample count into which an axis is divided.
@@ -17,129 +19,66 @@ const MAX_SPANS: usize = 400;
 /// Findings that are reported.
 const MAX_FINDINGS: usize = 4;
 
-/// Most levels of an input that counts as a relay's.
-const RELAY_LEVELS: usize = 6;
-
-/// One axis: a value for every sample, `NaN` where it has none.
-pub(super) struct Axis {
-    pub name: &'static str,
-    pub values: Vec<f64>,
-    say: fn(f64, f64, bool) -> String,
-}
+/// A finding, and by how much more error than its size it has.
+type Ranked = (f64, Finding);
 
 /// The strongest regions, strongest first. `velocity_unit` is that of the drive or process output.
 pub(super) fn locate(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Finding> {
-    let axes = axes(data, motion);
-    let mut findings: Vec<Finding> = Vec::new();
-    for (output, r) in data.outputs.iter().zip(residuals(data, motion)) {
-        let error: Vec<f64> = r.iter().map(|r| r * r).collect();
+    let axes: Vec<(Axis, Parts)> = axes(data, motion, velocity_unit)
+        .into_iter()
+        .filter_map(|axis| axis.parts(0..data.len(), BINS).map(|parts| (axis, parts)))
+        .collect();
+    let mut ranked: Vec<Ranked> = Vec::new();
+    for (output, residual) in data.outputs.iter().zip(residuals(data, motion)) {
+        let error: Vec<f64> = residual.iter().map(|r| r * r).collect();
         let total: f64 = error.iter().sum();
         if total <= 0.0 {
             continue;
         }
-        let what = match (data.kind, output.is_velocity) {
-            (Kind::Process, _) => "squared error",
-            (Kind::Drive, true) => "squared velocity error",
-            (Kind::Drive, false) => "squared position error",
-        };
-        for axis in &axes {
-            let found = concentration(data, axis, &error, total, velocity_unit, what);
-            findings.extend(found);
+        for (axis, parts) in &axes {
+            ranked.extend(concentration(data, axis, parts, &error, total, output));
+        }
+        ranked.extend(band(data, output, &residual));
+    }
+    strongest(ranked)
+}
+
+/// The strongest findings, strongest first: for each axis that of the output which shows it best. What has a place in the
+/// record is said first, since it can be shown there.
+fn strongest(mut ranked: Vec<Ranked>) -> Vec<Finding> {
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut findings: Vec<Finding> = Vec::new();
+    for (_, finding) in ranked {
+        if findings.iter().all(|f| f.axis != finding.axis) {
+            findings.push(finding);
         }
     }
-    findings.sort_by(|a, b| {
-        (b.share_of_error - b.share_of_samples).total_cmp(&(a.share_of_error - a.share_of_samples))
-    });
-    // One sentence for an axis: that of the output which shows it best.
-    let mut seen: Vec<String> = Vec::new();
-    findings.retain(|f| {
-        let new = !seen.contains(&f.axis);
-        seen.push(f.axis.clone());
-        new
-    });
+    if findings.len() > 1 && findings[0].spans.is_empty() {
+        findings.swap(0, 1);
+    }
     findings.truncate(MAX_FINDINGS);
     findings
 }
 
-/// Every axis on which the residual is looked at.
-pub(super) fn axes(data: &Data, motion: &Motion) -> Vec<Axis> {
-    let time = &data.time;
-    let switches: Vec<bool> = (0..data.len())
-        .map(|i| i > 0 && data.input[i] != data.input[i - 1])
-        .collect();
-    let reversals: Vec<bool> = (0..data.len())
-        .map(|i| i > 0 && motion.velocity[i] * motion.velocity[i - 1] < 0.0)
-        .collect();
-    let mut axes = vec![Axis {
-        name: "time",
-        values: time.clone(),
-        say: |a, b, _| format!("between {} and {}", seconds(a), seconds(b)),
-    }];
-    let value = |a: f64, b: f64, drive: bool| {
-        format!(
-            "where the {} is between {a:.3} and {b:.3}",
-            if drive { "velocity" } else { "output" }
-        )
-    };
-    axes.push(Axis {
-        name: "velocity",
-        values: motion.velocity.clone(),
-        say: value,
-    });
-    if data.kind == Kind::Drive {
-        axes.push(Axis {
-            name: "time_since_reversal",
-            values: since(time, &reversals),
-            say: |a, b, _| span_after(a, b, "a velocity reversal"),
-        });
-    }
-    if levels(&data.input) <= RELAY_LEVELS {
-        axes.push(Axis {
-            name: "time_since_switch",
-            values: since(time, &switches),
-            say: |a, b, _| span_after(a, b, "the input switched"),
-        });
-        axes.push(Axis {
-            name: "relay_phase",
-            values: relay_phase(data),
-            say: |a, b, _| {
-                format!(
-                    "between {:.0} % and {:.0} % of the relay period",
-                    100.0 * a,
-                    100.0 * b
-                )
-            },
-        });
-    }
-    axes
-}
-
-/// Best contiguous run of bins, by excess of error over samples.
+/// Best contiguous run of parts, by excess of error over samples.
 fn concentration(
     data: &Data,
     axis: &Axis,
+    parts: &Parts,
     error: &[f64],
     total: f64,
-    unit: &str,
-    what: &str,
-) -> Option<Finding> {
-    let mut order: Vec<usize> = (0..data.len())
-        .filter(|i| axis.values[*i].is_finite())
-        .collect();
-    if order.len() < 2 * BINS {
-        return None;
-    }
-    order.sort_by(|a, b| axis.values[*a].total_cmp(&axis.values[*b]));
+    output: &Output,
+) -> Option<Ranked> {
     let n = data.len() as f64;
-    let edge = |k: usize| k * order.len() / BINS;
-    let excess: Vec<f64> = (0..BINS)
+    let share = |region: &[usize]| region.iter().map(|i| error[*i]).sum::<f64>() / total;
+    let excess: Vec<f64> = (0..parts.len())
         .map(|k| {
-            let bin = &order[edge(k)..edge(k + 1)];
-            bin.iter().map(|i| error[*i]).sum::<f64>() / total - bin.len() as f64 / n
+            let part = parts.between(k, k + 1);
+            share(part) - part.len() as f64 / n
         })
         .collect();
     let (mut best, mut range) = (0.0, (0, 0));
-    for from in 0..BINS {
+    for from in 0..excess.len() {
         let mut sum = 0.0;
         for (to, e) in excess.iter().enumerate().skip(from) {
             sum += e;
@@ -151,34 +90,74 @@ fn concentration(
     if best < LEAST_EXCESS {
         return None;
     }
-    let region = &order[edge(range.0)..edge(range.1)];
+    let region = parts.between(range.0, range.1);
     let (low, high) = (axis.values[*region.first()?], axis.values[*region.last()?]);
-    let share_of_error = region.iter().map(|i| error[*i]).sum::<f64>() / total;
-    let share_of_samples = region.len() as f64 / n;
-    let drive = data.kind == Kind::Drive;
-    let mut place = (axis.say)(low, high, drive);
-    if axis.name == "velocity" && unit != "1" {
-        place.push(' ');
-        place.push_str(unit);
-    }
-    Some(Finding {
-        axis: if axis.name == "velocity" && !drive {
-            "output"
-        } else {
-            axis.name
-        }
-        .to_owned(),
+    let (share_of_error, share_of_samples) = (share(region), region.len() as f64 / n);
+    let finding = Finding {
+        axis: axis.name.to_owned(),
         from: low,
         to: high,
         share_of_error,
         share_of_samples,
         text: format!(
-            "{:.0} % of the {what} lies {place}, which is {:.0} % of the samples.",
+            "{:.0} % of the {} lies {}, which is {:.0} % of the samples.",
             100.0 * share_of_error,
+            error_name(data.kind, output),
+            axis.place(low, high),
             100.0 * share_of_samples
         ),
         spans: spans(data, axis, low, high),
-    })
+    };
+    Some((share_of_error - share_of_samples, finding))
+}
+
+/// The band of frequencies with more of the error than its width and than the motion has there.
+fn band(data: &Data, output: &Output, residual: &[f64]) -> Option<Ranked> {
+    let band = Spectrum::of(data, &output.values, residual)?.strongest()?;
+    if band.excess() < LEAST_EXCESS {
+        return None;
+    }
+    let finding = Finding {
+        axis: "frequency".to_owned(),
+        from: band.from,
+        to: band.to,
+        share_of_error: band.error,
+        share_of_samples: band.width,
+        text: format!(
+            "{:.0} % of the {} lies {}, which is {} % of the frequencies and has {} % of the power of the measured {}.",
+            100.0 * band.error,
+            error_name(data.kind, output),
+            band.place(),
+            small_percentage(band.width),
+            small_percentage(band.motion),
+            signal_name(data.kind, output)
+        ),
+        spans: Vec::new(),
+    };
+    Some((band.excess(), finding))
+}
+
+/// A share in per cent with one digit after the point where that is the first.
+fn small_percentage(share: f64) -> String {
+    let digits = usize::from(share < 0.01);
+    format!("{:.digits$}", 100.0 * share)
+}
+
+fn error_name(kind: Kind, output: &Output) -> &'static str {
+    match (kind, output.is_velocity) {
+        (Kind::Process, _) => "squared error",
+        (Kind::Drive, true) => "squared velocity error",
+        (Kind::Drive, false) => "squared position error",
+    }
+}
+
+/// What an output is called in a sentence.
+pub(super) fn signal_name(kind: Kind, output: &Output) -> &'static str {
+    match (kind, output.is_velocity) {
+        (Kind::Process, _) => "output",
+        (Kind::Drive, true) => "velocity",
+        (Kind::Drive, false) => "position",
+    }
 }
 
 /// Time spans in which the axis lies between `low` and `high`.
@@ -204,68 +183,209 @@ fn spans(data: &Data, axis: &Axis, low: f64, high: f64) -> Vec<(f64, f64)> {
     spans
 }
 
-/// Time since the last event, s; `NaN` before the first.
-fn since(time: &[f64], event: &[bool]) -> Vec<f64> {
-    let mut last = f64::NAN;
-    time.iter()
-        .zip(event)
-        .map(|(t, e)| {
-            if *e {
-                last = *t;
-            }
-            t - last
-        })
-        .collect()
-}
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
 
-/// Share of the relay period, counted from each upward switch.
-fn relay_phase(data: &Data) -> Vec<f64> {
-    let ups: Vec<usize> = (1..data.len())
-        .filter(|i| data.input[*i] > data.input[i - 1])
-        .collect();
-    let mut phase = vec![f64::NAN; data.len()];
-    for pair in ups.windows(2) {
-        let (from, to) = (data.time[pair[0]], data.time[pair[1]]);
-        for (p, t) in phase[pair[0]..pair[1]]
-            .iter_mut()
-            .zip(&data.time[pair[0]..pair[1]])
-        {
-            *p = (t - from) / (to - from);
+    use super::*;
+    use crate::backlash::sighted;
+    use crate::measurement::{Channel, Measurement, Quantity, import_csv};
+    use crate::rig::Random;
+
+    const STEP: f64 = 1e-3;
+    const NOISE: f64 = 1e-3;
+
+    /// A drive that a relay swings with a period of 0.4 s while it goes on with `drift` rad/s: the motion itself, and
+    /// data that an error of the model, given sample and position, and noise are added to.
+    fn swing(drift: f64, error: impl Fn(usize, f64) -> f64) -> (Data, Motion) {
+        let n = 4000;
+        let mut random = Random::new(17);
+        let input: Vec<f64> = (0..n)
+            .map(|i| if i / 200 % 2 == 0 { 1.0 } else { -1.0 })
+            .collect();
+        let (mut x, mut v) = (0.0, -1.0);
+        let mut motion = Motion {
+            position: Vec::new(),
+            velocity: Vec::new(),
+            priors: Vec::new(),
+        };
+        for u in &input {
+            motion.position.push(x);
+            motion.velocity.push(v + drift);
+            x += STEP * (v + drift + 5.0 * u * STEP);
+            v += 10.0 * u * STEP;
         }
-    }
-    phase
-}
-
-/// Number of different values, counted up to one more than a relay may have.
-fn levels(input: &[f64]) -> usize {
-    let mut seen: Vec<f64> = Vec::new();
-    for u in input {
-        if !seen.contains(u) {
-            seen.push(*u);
-            if seen.len() > RELAY_LEVELS {
-                break;
-            }
+        let mut noise = |size: f64| size * random.between(-1.0, 1.0);
+        let (mut position, mut velocity) = (Vec::new(), Vec::new());
+        for (i, (x, v)) in motion.position.iter().zip(&motion.velocity).enumerate() {
+            position.push(x + noise(1e-2 * NOISE));
+            velocity.push(v + noise(NOISE) + error(i, *x));
         }
+        let channel = |name: &str, unit: &str, quantity, values| Channel {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            quantity,
+            values,
+        };
+        let measurement = Measurement {
+            name: "swing".to_owned(),
+            kind: Kind::Drive,
+            time: (0..n).map(|i| STEP * f64::from(i)).collect(),
+            outputs: vec![
+                channel("x1", "rad", Quantity::Position, position),
+                channel("v1", "rad/s", Quantity::Velocity, velocity),
+            ],
+            input: channel("u", "N m", Quantity::Input, input),
+            reference: Vec::new(),
+            warnings: Vec::new(),
+        };
+        (Data::new(&measurement).unwrap(), motion)
     }
-    seen.len()
-}
 
-fn span_after(from: f64, to: f64, what: &str) -> String {
-    if from <= 0.0 {
-        format!("within {} after {what}", seconds(to))
-    } else {
-        format!("from {} to {} after {what}", seconds(from), seconds(to))
+    fn found(data: &Data, motion: &Motion, axis: &str) -> Finding {
+        let findings = locate(data, motion, "rad/s");
+        let said = format!("{findings:#?}");
+        findings.into_iter().find(|f| f.axis == axis).expect(&said)
     }
-}
 
-/// A duration in a unit that suits it.
-pub(super) fn seconds(t: f64) -> String {
-    let size = t.abs();
-    if size == 0.0 || size >= 1.0 {
-        format!("{t:.2} s")
-    } else if size >= 1e-3 {
-        format!("{:.1} ms", 1e3 * t)
-    } else {
-        format!("{:.0} us", 1e6 * t)
+    #[test]
+    fn an_error_at_a_position_is_found_there() {
+        let (data, motion) = swing(0.0, |i, x| {
+            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+            if (-0.04..-0.02).contains(&x) {
+                0.05 * sign
+            } else {
+                0.0
+            }
+        });
+        let finding = found(&data, &motion, "position");
+        assert!(
+            (finding.from + 0.04).abs() < 0.005 && (finding.to + 0.02).abs() < 0.005,
+            "{finding:?}"
+        );
+        assert!(
+            finding.share_of_error > 0.95 && finding.share_of_samples < 0.5,
+            "{finding:?}"
+        );
+        assert!(
+            finding
+                .text
+                .contains("lies where the position is between -0.0")
+                && finding.text.contains(" rad, "),
+            "{}",
+            finding.text
+        );
+    }
+
+    #[test]
+    fn an_error_at_an_angle_is_found_in_every_turn() {
+        let (data, motion) = swing(8.0, |i, x| {
+            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+            if (2.0..3.0).contains(&x.rem_euclid(TAU)) {
+                0.05 * sign
+            } else {
+                0.0
+            }
+        });
+        let finding = found(&data, &motion, "turn_angle");
+        assert!(
+            (finding.from - 2.0).abs() < 0.4 && (finding.to - 3.0).abs() < 0.4,
+            "{finding:?}"
+        );
+        assert!(
+            finding.share_of_error > 0.8 && finding.spans.len() >= 5,
+            "{finding:?}"
+        );
+    }
+
+    #[test]
+    fn an_error_while_the_velocity_falls_is_found_there() {
+        let falls = |i: usize| i / 200 % 2 == 1;
+        let (data, motion) = swing(0.0, |i, _| if falls(i) { 0.03 } else { 0.0 });
+        let finding = found(&data, &motion, "acceleration_sign");
+        assert_eq!((finding.from, finding.to), (-1.0, -1.0));
+        assert!((finding.share_of_samples - 0.5).abs() < 0.01, "{finding:?}");
+        assert!(
+            finding
+                .text
+                .contains("lies where the acceleration is negative, which is 50 % of the samples"),
+            "{}",
+            finding.text
+        );
+    }
+
+    #[test]
+    fn a_tone_is_said_as_a_band_but_not_first_where_a_place_is_known() {
+        let error = |i: usize, _| {
+            let late = if i < 2000 { 0.3 } else { 1.0 };
+            0.05 * late * (TAU * 60.0 * STEP * i as f64).sin()
+        };
+        let (data, motion) = swing(0.0, error);
+        let findings = locate(&data, &motion, "rad/s");
+        assert_eq!(findings[0].axis, "time", "{findings:#?}");
+        let finding = found(&data, &motion, "frequency");
+        assert!(
+            finding.from > 45.0 && finding.from < 60.0 && finding.to > 60.0 && finding.to < 75.0,
+            "{finding:?}"
+        );
+        assert!(
+            finding.share_of_error > 0.9 && finding.share_of_samples < 0.05,
+            "{finding:?}"
+        );
+        assert!(
+            finding
+                .text
+                .contains("% of the squared velocity error lies between "),
+            "{}",
+            finding.text
+        );
+        assert!(
+            finding.text.contains(" Hz, which is ")
+                && finding
+                    .text
+                    .ends_with("of the power of the measured velocity."),
+            "{}",
+            finding.text
+        );
+    }
+
+    #[test]
+    fn noise_is_no_finding() {
+        let (data, motion) = swing(8.0, |_, _| 0.0);
+        let findings = locate(&data, &motion, "rad/s");
+        assert!(findings.is_empty(), "{findings:#?}");
+    }
+
+    #[test]
+    fn an_error_after_the_motor_felt_the_load_is_found_there() {
+        let bytes = include_bytes!("../../../assets/measurements/drive-10.csv");
+        let measurement = import_csv("drive-10.csv", bytes, None).unwrap();
+        let (_, seen) = sighted(&measurement).unwrap();
+        let data = Data::new(&measurement).unwrap().with_seen_load(seen);
+        let felt = data.excitation.felt();
+        assert!(felt.len() > 10, "{}", felt.len());
+        let series = |velocity: bool| {
+            let output = data.outputs.iter().find(|o| o.is_velocity == velocity);
+            output.map_or_else(|| vec![0.0; data.len()], |o| o.values.clone())
+        };
+        let mut motion = Motion {
+            position: series(false),
+            velocity: series(true),
+            priors: Vec::new(),
+        };
+        // A velocity that is off in the ten samples after each contact.
+        for i in felt.iter().flat_map(|s| *s..(s + 10).min(data.len())) {
+            motion.velocity[i] += 1e-3;
+        }
+        let finding = found(&data, &motion, "time_since_impact");
+        assert_eq!(finding.from, 0.0);
+        assert!(finding.share_of_error > 0.95, "{finding:?}");
+        assert!(
+            finding
+                .text
+                .contains(" after the motor felt the load, which is "),
+            "{}",
+            finding.text
+        );
     }
 }

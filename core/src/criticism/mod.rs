@@ -1,6 +1,7 @@
 //! Where does the model fail, which effect is missing, how much, how sure?
 
 mod atlas;
+mod axes;
 mod baseline;
 mod correlation;
 mod cost;
@@ -20,6 +21,7 @@ mod score;
 mod search;
 mod select;
 mod session;
+mod spectrum;
 mod split;
 mod step;
 mod structure;

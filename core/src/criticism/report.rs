@@ -49,7 +49,7 @@ pub struct Contradiction {
 /// A region in which the error concentrates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
-    /// `time`, `relay_phase`, `velocity`, `time_since_reversal`, ...
+    /// `time`, `relay_phase`, `velocity`, `position`, `time_since_reversal`, `frequency`, ...
     pub axis: String,
     /// Lower end of the region, in the unit of the axis.
     pub from: f64,
@@ -57,7 +57,7 @@ pub struct Finding {
     pub to: f64,
     /// Share of the squared error in the region, 0 to 1.
     pub share_of_error: f64,
-    /// Share of the samples in the region, 0 to 1.
+    /// Share of the samples in the region, or of the frequencies in a band, 0 to 1.
     pub share_of_samples: f64,
     /// The finding as a sentence with numbers.
     pub text: String,
@@ -156,6 +156,7 @@ pub struct ReplayChannel {
     /// Standard deviation of the measurement noise, in `unit`.
     pub noise: f64,
     /// Model output at every sample, in `unit`; as long as the measurement.
+    #[serde(with = "crate::packed")]
     pub modelled: Vec<f64>,
 }
 

@@ -6,11 +6,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::axes::seconds;
 use super::correlation::product;
-use super::data::{Data, Output};
+use super::data::Data;
 use super::fit::{Motion, residuals};
-use super::locate::seconds;
-use crate::measurement::Kind;
+use super::locate::signal_name;
 
 /// Lags up to which a residual is compared with itself, and with the input, in samples.
 const LAGS: usize = 20;
@@ -69,7 +69,13 @@ pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> 
                     lag,
                     bound,
                     passed,
-                    text: sentence(kind, name(data.kind, channel), correlation, lag, bound),
+                    text: sentence(
+                        kind,
+                        signal_name(data.kind, channel),
+                        correlation,
+                        lag,
+                        bound,
+                    ),
                 }
             };
             let white = whiteness(&residual, &runs).map(|t| test(ResidualTestKind::Whiteness, t));
@@ -78,14 +84,6 @@ pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> 
             [white, follows].into_iter().flatten()
         })
         .collect()
-}
-
-fn name(kind: Kind, output: &Output) -> &'static str {
-    match (kind, output.is_velocity) {
-        (Kind::Process, _) => "output",
-        (Kind::Drive, true) => "velocity",
-        (Kind::Drive, false) => "position",
-    }
 }
 
 fn sentence(kind: ResidualTestKind, name: &str, correlation: f64, lag: f64, bound: f64) -> String {

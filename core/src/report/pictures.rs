@@ -21,6 +21,9 @@ const DETAIL: usize = 400;
 /// Stretches into which a long curve is divided; each shows its extremes.
 const STRETCHES: usize = 900;
 
+/// Name of the axis that is logarithmic.
+const FREQUENCY: &str = "frequency";
+
 /// Axes that are drawn.
 const MOST_AXES: usize = 3;
 
@@ -281,15 +284,17 @@ fn profile_chart(name: &str, profile: &Profile, before: Option<&Profile>) -> Str
         p.bins
             .iter()
             .flat_map(|b| [(b.from, b.rms), (b.to, b.rms)])
+            .filter(|p| profile.axis != FREQUENCY || p.0 > 0.0)
             .collect()
     };
     let own = steps(profile);
     let other = before.map(steps).unwrap_or_default();
-    let x = Axis::new(
-        name,
-        &profile.unit,
-        range(own.iter().map(|p| p.0)).unwrap_or((0.0, 1.0)),
-    );
+    let ends = range(own.iter().map(|p| p.0)).unwrap_or((0.0, 1.0));
+    let x = if profile.axis == FREQUENCY {
+        Axis::sized(name, &profile.unit, ends)
+    } else {
+        Axis::new(name, &profile.unit, ends)
+    };
     let sizes = own.iter().chain(&other).map(|p| p.1).chain([1.0]);
     let y = Axis::sized("residual / noise", "1", range(sizes).unwrap_or((0.0, 1.0)));
     let mut chart = Chart::new(HALF, LOW + 20.0, x, y);

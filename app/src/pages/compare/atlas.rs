@@ -12,6 +12,9 @@ use crate::theme;
 const WIDTH: f32 = 260.0;
 const HEIGHT: f32 = 150.0;
 
+/// Name of the axis that is logarithmic.
+const FREQUENCY: &str = "frequency";
+
 /// Width of the labels of y.
 const AXIS_WIDTH: f32 = 44.0;
 
@@ -106,18 +109,34 @@ pub(super) fn axis_label(profile: &Profile) -> String {
 /// Share of an axis within which bins are one point: a sampled axis has only so many values.
 const CLOSE: f64 = 0.01;
 
+/// Where a value of an axis is drawn: a frequency at its logarithm.
+fn place(axis: &str, value: f64) -> f64 {
+    if axis == FREQUENCY {
+        value.log10()
+    } else {
+        value
+    }
+}
+
 /// A point in the middle of each bin, with the mean of those that are in the same place.
 pub(super) fn points(profile: &Profile, value: impl Fn(&ProfileBin) -> f64) -> Vec<[f64; 2]> {
+    let at = |value: f64| place(&profile.axis, value);
     let range = match (profile.bins.first(), profile.bins.last()) {
-        (Some(first), Some(last)) => last.to - first.from,
+        (Some(first), Some(last)) => at(last.to) - at(first.from),
         _ => 0.0,
+    };
+    // The lowest frequencies are from 0 on: no two are close then.
+    let close = if range.is_finite() {
+        CLOSE * range
+    } else {
+        0.0
     };
     // Place, sum and number of the bins there.
     let mut places: Vec<(f64, f64, f64)> = Vec::new();
     for bin in &profile.bins {
-        let middle = f64::midpoint(bin.from, bin.to);
+        let middle = at(f64::midpoint(bin.from, bin.to));
         match places.last_mut() {
-            Some(last) if middle - last.0 < CLOSE * range => {
+            Some(last) if middle - last.0 < close => {
                 last.1 += value(bin);
                 last.2 += 1.0;
             }
@@ -139,23 +158,36 @@ fn picture_ui(
     ui: &mut egui::Ui,
 ) {
     let id = ("atlas", profile.output, profile.axis.clone());
-    let region = finding.filter(|f| f.axis == profile.axis && f.from < f.to);
-    small(id, axis_label(profile), "rms")
-        .with(|plot| plot.include_y(0.0))
-        .show(ui, |plot| {
-            if let Some(f) = region {
-                let color = theme::SHADE.gamma_multiply(0.2);
-                plot.add(Span::new("", f.from..=f.to).fill(color).border_width(0.0));
-            }
-            if let Some(before) = before {
-                let line = Line::new(tr("the step before"), points(before, |b| b.rms));
-                plot.line(line.color(theme::MODEL).width(1.5));
-            }
-            plot.line(
-                Line::new(tr("this model"), points(profile, |b| b.rms))
-                    .color(theme::RESIDUAL)
-                    .width(2.0),
-            );
-            plot.hline(HLine::new(tr("noise"), 1.0).color(theme::NOISE).width(1.5));
+    let region = finding
+        .filter(|f| f.axis == profile.axis && f.from < f.to)
+        .map(|f| {
+            // Its logarithmic axis has no 0: such a band begins where the curve does.
+            let first = profile.bins.first().map_or(f.from, |b| 0.5 * b.to);
+            let low = if f.axis == FREQUENCY {
+                f.from.max(first)
+            } else {
+                f.from
+            };
+            place(&f.axis, low)..=place(&f.axis, f.to)
         });
+    let mut chart = small(id, axis_label(profile), "rms");
+    if profile.axis == FREQUENCY {
+        chart = chart.decades();
+    }
+    chart.with(|plot| plot.include_y(0.0)).show(ui, |plot| {
+        if let Some(region) = region {
+            let color = theme::SHADE.gamma_multiply(0.2);
+            plot.add(Span::new("", region).fill(color).border_width(0.0));
+        }
+        if let Some(before) = before {
+            let line = Line::new(tr("the step before"), points(before, |b| b.rms));
+            plot.line(line.color(theme::MODEL).width(1.5));
+        }
+        plot.line(
+            Line::new(tr("this model"), points(profile, |b| b.rms))
+                .color(theme::RESIDUAL)
+                .width(2.0),
+        );
+        plot.hline(HLine::new(tr("noise"), 1.0).color(theme::NOISE).width(1.5));
+    });
 }

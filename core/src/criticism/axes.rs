@@ -1,0 +1,307 @@
+//! The axes on which a model can fail: a value for every sample.
+
+use super::data::Data;
+use super::fit::Motion;
+use crate::measurement::Kind;
+
+/// Most levels of an input that counts as a relay's.
+const RELAY_LEVELS: usize = 6;
+
+/// A change of velocity from sample to sample below this share of the largest is none: the body rests, or what is
+/// left is round-off.
+const STEADY: f64 = 1e-9;
+
+/// A position that is summed up from a noisy velocity is off by this share of the travel at most, half a part of the axis.
+const MOST_WANDERING: f64 = 0.02;
+
+/// Turns that a motor makes at least for its angle within a turn to be an axis of its own.
+const LEAST_TURNS: f64 = 2.0;
+
+/// One axis.
+pub(super) struct Axis {
+    pub name: &'static str,
+    /// Unit of the values, `1` for a share.
+    pub unit: String,
+    /// A value for every sample, `NaN` where it has none.
+    pub values: Vec<f64>,
+    /// Has few values, each of which is a part of its own.
+    discrete: bool,
+    /// The place between two values in words, given the unit.
+    say: fn(f64, f64, &str) -> String,
+}
+
+/// The samples that have a value, in the order of their values, and where the parts of the axis begin and end in it.
+pub(super) struct Parts {
+    pub order: Vec<usize>,
+    edges: Vec<usize>,
+}
+
+impl Axis {
+    /// Divides `samples` into `count` parts of equal number; `None` where there are too few.
+    pub fn parts(&self, samples: impl Iterator<Item = usize>, count: usize) -> Option<Parts> {
+        let mut pairs: Vec<(f64, usize)> = samples
+            .map(|i| (self.values[i], i))
+            .filter(|(value, _)| value.is_finite())
+            .collect();
+        if pairs.len() < 2 * count {
+            return None;
+        }
+        pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let n = pairs.len();
+        let edges = if self.discrete {
+            let changes = (1..n).filter(|k| pairs[*k].0 > pairs[k - 1].0);
+            [0].into_iter().chain(changes).chain([n]).collect()
+        } else {
+            (0..=count).map(|k| k * n / count).collect()
+        };
+        Some(Parts {
+            order: pairs.into_iter().map(|(_, i)| i).collect(),
+            edges,
+        })
+    }
+
+    /// The place between two values in words.
+    pub fn place(&self, from: f64, to: f64) -> String {
+        (self.say)(from, to, &self.unit)
+    }
+}
+
+impl Parts {
+    /// Number of parts.
+    pub fn len(&self) -> usize {
+        self.edges.len() - 1
+    }
+
+    /// The samples of the parts `from` to `to`, the last not among them.
+    pub fn between(&self, from: usize, to: usize) -> &[usize] {
+        &self.order[self.edges[from]..self.edges[to]]
+    }
+}
+
+/// Every axis on which the residual is looked at; `velocity_unit` is that of the drive's velocity or of the process output.
+pub(super) fn axes(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Axis> {
+    let mut axes = vec![continuous("time", "s", data.time.clone(), |a, b, _| {
+        format!("between {} and {}", seconds(a), seconds(b))
+    })];
+    match data.kind {
+        Kind::Drive => drive_axes(data, motion, velocity_unit, &mut axes),
+        Kind::Process => {
+            let values = motion.velocity.clone();
+            axes.push(continuous("output", velocity_unit, values, |a, b, unit| {
+                format!("where the output is {}", within(a, b, unit))
+            }));
+        }
+    }
+    if levels(&data.input) <= RELAY_LEVELS {
+        let switched = |i: usize| data.input[i] != data.input[i - 1];
+        axes.push(continuous(
+            "time_since_switch",
+            "s",
+            since(&data.time, switched),
+            |a, b, _| span_after(a, b, "the input switched"),
+        ));
+        axes.push(continuous(
+            "relay_phase",
+            "1",
+            relay_phase(data),
+            |a, b, _| {
+                let (a, b) = (100.0 * a, 100.0 * b);
+                format!("between {a:.0} % and {b:.0} % of the relay period")
+            },
+        ));
+    }
+    axes
+}
+
+/// What a moving body has besides.
+fn drive_axes(data: &Data, motion: &Motion, velocity_unit: &str, axes: &mut Vec<Axis>) {
+    let velocity = &motion.velocity;
+    axes.push(continuous(
+        "velocity",
+        velocity_unit,
+        velocity.clone(),
+        |a, b, unit| format!("where the velocity is {}", within(a, b, unit)),
+    ));
+    let reversed = |i: usize| velocity[i] * velocity[i - 1] < 0.0;
+    axes.push(continuous(
+        "time_since_reversal",
+        "s",
+        since(&data.time, reversed),
+        |a, b, _| span_after(a, b, "a velocity reversal"),
+    ));
+    axes.push(Axis {
+        discrete: true,
+        ..continuous(
+            "acceleration_sign",
+            "1",
+            acceleration_signs(data, motion),
+            |a, b, _| {
+                let sign = match (a < 0.0, b > 0.0) {
+                    (true, true) => "not 0",
+                    (true, false) => "negative",
+                    _ => "positive",
+                };
+                format!("where the acceleration is {sign}")
+            },
+        )
+    });
+    let unit = velocity_unit.strip_suffix("/s").unwrap_or("1");
+    if let Some(position) = position(data) {
+        if data.has_position
+            && unit == "rad"
+            && range(&position) > LEAST_TURNS * std::f64::consts::TAU
+        {
+            let angle = position.iter().map(|x| x.rem_euclid(std::f64::consts::TAU));
+            axes.push(continuous(
+                "turn_angle",
+                unit,
+                angle.collect(),
+                |a, b, unit| format!("where the angle within a turn is {}", within(a, b, unit)),
+            ));
+        }
+        axes.push(continuous("position", unit, position, |a, b, unit| {
+            format!("where the position is {}", within(a, b, unit))
+        }));
+    }
+    let felt = data.excitation.felt();
+    if !felt.is_empty() {
+        let touched = |i: usize| felt.binary_search(&i).is_ok();
+        axes.push(continuous(
+            "time_since_impact",
+            "s",
+            since(&data.time, touched),
+            |a, b, _| span_after(a, b, "the motor felt the load"),
+        ));
+    }
+}
+
+fn continuous(
+    name: &'static str,
+    unit: &str,
+    values: Vec<f64>,
+    say: fn(f64, f64, &str) -> String,
+) -> Axis {
+    Axis {
+        name,
+        unit: unit.to_owned(),
+        values,
+        discrete: false,
+        say,
+    }
+}
+
+/// The measured position, or the integral of the measured velocity if its noise does not lead it astray.
+fn position(data: &Data) -> Option<Vec<f64>> {
+    let position = data.position_estimate();
+    // White noise summed up wanders by its size, times the square root of the number of samples.
+    let wandering = data
+        .outputs
+        .first()
+        .map_or(0.0, |o| o.noise * data.excitation.mean_step())
+        * (data.len() as f64).sqrt();
+    (data.has_position || wandering <= MOST_WANDERING * range(&position)).then_some(position)
+}
+
+fn range(values: &[f64]) -> f64 {
+    let ends = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| {
+        (low.min(*v), high.max(*v))
+    });
+    ends.1 - ends.0
+}
+
+/// Sign of the modelled acceleration; `NaN` where there is none. Between windows the model is set anew: that is none.
+fn acceleration_signs(data: &Data, motion: &Motion) -> Vec<f64> {
+    let v = &motion.velocity;
+    let mut change = vec![f64::NAN; data.len()];
+    for (from, to) in data.spans() {
+        for i in from..to.saturating_sub(1) {
+            change[i] = v[i + 1] - v[i];
+        }
+        if to >= from + 2 {
+            change[to - 1] = change[to - 2];
+        }
+    }
+    let most = change.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let sign = |c: &f64| {
+        if c.abs() > STEADY * most {
+            c.signum()
+        } else {
+            f64::NAN
+        }
+    };
+    change.iter().map(sign).collect()
+}
+
+/// Time since the last sample with an event, s; `NaN` before the first.
+fn since(time: &[f64], event: impl Fn(usize) -> bool) -> Vec<f64> {
+    let mut last = f64::NAN;
+    time.iter()
+        .enumerate()
+        .map(|(i, t)| {
+            if i > 0 && event(i) {
+                last = *t;
+            }
+            t - last
+        })
+        .collect()
+}
+
+/// Share of the relay period, counted from each upward switch.
+fn relay_phase(data: &Data) -> Vec<f64> {
+    let ups: Vec<usize> = (1..data.len())
+        .filter(|i| data.input[*i] > data.input[i - 1])
+        .collect();
+    let mut phase = vec![f64::NAN; data.len()];
+    for pair in ups.windows(2) {
+        let (from, to) = (data.time[pair[0]], data.time[pair[1]]);
+        for (p, t) in phase[pair[0]..pair[1]]
+            .iter_mut()
+            .zip(&data.time[pair[0]..pair[1]])
+        {
+            *p = (t - from) / (to - from);
+        }
+    }
+    phase
+}
+
+/// Number of different values, counted up to one more than a relay may have.
+fn levels(input: &[f64]) -> usize {
+    let mut seen: Vec<f64> = Vec::new();
+    for u in input {
+        if !seen.contains(u) {
+            seen.push(*u);
+            if seen.len() > RELAY_LEVELS {
+                break;
+            }
+        }
+    }
+    seen.len()
+}
+
+fn within(from: f64, to: f64, unit: &str) -> String {
+    if unit == "1" {
+        format!("between {from:.3} and {to:.3}")
+    } else {
+        format!("between {from:.3} and {to:.3} {unit}")
+    }
+}
+
+fn span_after(from: f64, to: f64, what: &str) -> String {
+    if from <= 0.0 {
+        format!("within {} after {what}", seconds(to))
+    } else {
+        format!("from {} to {} after {what}", seconds(from), seconds(to))
+    }
+}
+
+/// A duration in a unit that suits it.
+pub(super) fn seconds(t: f64) -> String {
+    let size = t.abs();
+    if size == 0.0 || size >= 1.0 {
+        format!("{t:.2} s")
+    } else if size >= 1e-3 {
+        format!("{:.1} ms", 1e3 * t)
+    } else {
+        format!("{:.0} us", 1e6 * t)
+    }
+}
