@@ -22,14 +22,15 @@ const ITERATIONS: usize = 3;
 /// begins at `values` does not explain.
 ///
 /// A process runs through without a restart: what it leaves in a block is not that block's own, and the order of the
-/// blocks stays as it is.
+/// blocks stays as it is. So does that of windows that begin where a load was felt: they are of no fixed length, and
+/// tell by turns of one end of the gap and of the other.
 pub(super) fn hold_back(
     data: &mut Data,
     knowledge: &Knowledge,
     mut values: Vec<f64>,
     scales: &Scales,
 ) {
-    if data.kind == Kind::Process {
+    if data.kind == Kind::Process || !data.excitation.felt().is_empty() {
         return;
     }
     for block in &mut data.blocks {
