@@ -238,6 +238,28 @@ impl Search {
         )
     }
 
+    /// Refits the structure of `fit` from the values and states of another fit that has more: where that came from
+    /// a better valley, the effect that it adds is not what made it better.
+    pub fn revisiting(fit: &Fit, from: &Fit) -> Self {
+        let structure = fit.structure.clone();
+        let mut values = fit.values.clone();
+        let body = structure.baseline_len();
+        values[..body].copy_from_slice(&from.values[..body]);
+        for (index, effect) in structure.effects.iter().enumerate() {
+            let own = &mut values[structure.range(index)];
+            for (place, other) in from.structure.effects.iter().enumerate() {
+                let lent = &from.values[from.structure.range(place)];
+                if other.id() == effect.id() {
+                    own.copy_from_slice(lent);
+                } else if other.contains().contains(&effect.id()) {
+                    lend(*effect, own, *other, lent);
+                }
+            }
+        }
+        let points = vec![(values, from.starts.clone())];
+        Self::from_points(structure, points, f64::INFINITY)
+    }
+
     fn from_points(structure: Structure, points: Vec<Point>, present: f64) -> Self {
         let few = points.len() <= SHORTLIST;
         let (pending, shortlist) = if few {

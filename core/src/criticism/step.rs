@@ -27,12 +27,19 @@ pub(super) const NOISE_FLOOR: f64 = 1.0;
 /// The effect that is tried together with others where nothing helps by itself.
 const COMPANION: EffectId = EffectId::new("constant_load");
 
+/// Times that a model is fitted once more from where an effect on top of it led, and the share of its cost below
+/// which that is another valley.
+const MAX_VISITS: usize = 2;
+const BETTER_VALLEY: f64 = 0.9;
+
 /// What a step is doing.
 enum Stage {
     /// Fitting the model itself, effect by effect; `next` is the one to add then.
     Build { search: Search, next: usize },
     /// Trying every effect on top.
     Try(Race),
+    /// Fitting the model once more from where an effect on top of it led.
+    Revisit(Search),
     /// Trying to do without each effect.
     Remove { index: usize, search: Search },
     /// Trying every other effect in the place of each one.
@@ -65,6 +72,8 @@ pub struct StepJob {
     earlier: Vec<EffectId>,
     /// Effects that are not added any more: they may be imitations.
     barred: Vec<EffectId>,
+    /// Times that the model was, or could have been, fitted once more.
+    visits: usize,
 }
 
 /// Whether two effects are the same or one contains the other.
@@ -135,6 +144,7 @@ impl StepJob {
             simpler: None,
             earlier: Vec::new(),
             barred: Vec::new(),
+            visits: 0,
         }
     }
 
@@ -217,7 +227,7 @@ impl StepJob {
         }
         let session = &self.session;
         let over = match &mut self.stage {
-            Stage::Build { search, .. } | Stage::Remove { search, .. } => {
+            Stage::Build { search, .. } | Stage::Revisit(search) | Stage::Remove { search, .. } => {
                 let (data, scales) = (&session.data, &session.scales);
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
@@ -271,7 +281,19 @@ impl StepJob {
                     .map(|(effect, fit)| (effect, self.session.scored(fit)))
                     .collect();
                 self.contradicted = self.contradictions();
-                self.remove_stage(0)
+                self.revisit_stage()
+            }
+            Stage::Revisit(search) => {
+                let again = self.finished(search);
+                match (again, &self.model) {
+                    (Some(again), Some(model))
+                        if again.fit.cost < BETTER_VALLEY * model.fit.cost =>
+                    {
+                        self.model = Some(again);
+                        self.try_stage()
+                    }
+                    _ => self.remove_stage(0),
+                }
             }
             Stage::Remove { index, search } => {
                 let scored = self.finished(search);
@@ -301,6 +323,18 @@ impl StepJob {
         self.model.as_ref().map_or(Stage::Report, |model| {
             Stage::Try(Race::new(&self.session, &model.fit, self.others(), None))
         })
+    }
+
+    /// Where an effect helps a model that bends as sharply as friction does, the model itself may have stopped in a
+    /// worse valley than it need have: it is fitted again from where the effect led.
+    fn revisit_stage(&mut self) -> Stage {
+        let search = self.model.as_ref().and_then(|model| {
+            let (_, with) = self.suggestion(model)?;
+            let bends = !model.fit.structure.effects.is_empty();
+            (bends && self.visits < MAX_VISITS).then(|| Search::revisiting(&model.fit, &with.fit))
+        });
+        self.visits += 1;
+        search.map_or_else(|| self.remove_stage(0), Stage::Revisit)
     }
 
     fn remove_stage(&self, index: usize) -> Stage {
@@ -466,6 +500,7 @@ impl StepJob {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))
             }
+            Stage::Revisit(_) => (0.7, "Fitting the model once more".to_owned()),
             Stage::Remove { index, .. } => (
                 0.7 + 0.05 * *index as f64 / wanted,
                 "Checking that every effect is needed".to_owned(),
