@@ -30,7 +30,7 @@ const COMPANION: EffectId = EffectId::new("constant_load");
 /// Times that a model is fitted once more from where an effect on top of it led, and the share of its cost below
 /// which that is another valley.
 const MAX_VISITS: usize = 2;
-const BETTER_VALLEY: f64 = 0.9;
+const BETTER_VALLEY: f64 = 0.92;
 
 /// What a step is doing.
 enum Stage {
