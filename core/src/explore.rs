@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::Complex;
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::limit_cycle::{
@@ -172,7 +172,7 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
 
 /// The stable exact cycle whose period is nearest to `period` in s, or else the nearest of all.
 fn main_cycle(prediction: &Prediction, period: f64) -> Option<&ExactCycle> {
-    let distance = |c: &&ExactCycle| (c.cycle.period / period).ln().abs();
+    let distance = |c: &&ExactCycle| libm::log(c.cycle.period / period).abs();
     let nearest = |a: &&ExactCycle, b: &&ExactCycle| distance(a).total_cmp(&distance(b));
     let all = || prediction.exact.iter();
     all()
@@ -328,7 +328,7 @@ fn swing(time: &[f64], output: &[f64]) -> Vec<[f64; 2]> {
 fn nyquist(plant: &TransferFunction, delay: f64, centre: f64) -> Vec<[f64; 2]> {
     (0..NYQUIST_POINTS)
         .map(|i| {
-            let w = centre * 10_f64.powf(-2.0 + 3.5 * i as f64 / (NYQUIST_POINTS - 1) as f64);
+            let w = centre * libm::pow(10_f64, -2.0 + 3.5 * i as f64 / (NYQUIST_POINTS - 1) as f64);
             let p = plant.response(w) * Complex::from_polar(1.0, -w * delay);
             [p.re, p.im]
         })

@@ -26,7 +26,7 @@
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 //! | [`mystery`] | which effect is hidden? |
 //! | [`report`] | what was found, on one page |
-#![warn(missing_docs)]
+#![warn(missing_docs, clippy::disallowed_methods)]
 
 pub mod backlash;
 pub mod criticism;

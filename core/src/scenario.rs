@@ -24,7 +24,8 @@
 //! With `[drive]` in place of `[plant]` it is a motor and a load with play between them, under a relay on
 //! the motor's velocity; see [`crate::drive`] for its parameters.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 

@@ -41,7 +41,7 @@ impl Drift {
             .collect();
         let mut base = vec![0.0; change.len()];
         let mut engaged = vec![false; change.len()];
-        let penalty = PENALTY * (cycles.count() as f64).ln();
+        let penalty = PENALTY * libm::log(cycles.count() as f64);
         let least = LEAST_SHARE * 2.0 * cycles.speed;
         for (from, to) in cycles.phases() {
             let part = &change[from..to];

@@ -292,7 +292,7 @@ fn two_sided(
     let gap = 2.0 * fit.play.half_gap;
     let rattles = rattles(&estimate.traverses, period);
     let systematic = if rattles { RATTLE_ERROR * gap } else { 0.0 };
-    let error = (2.0 * fit.error).hypot(2.0 * place_error).hypot(systematic);
+    let error = libm::hypot(libm::hypot(2.0 * fit.error, 2.0 * place_error), systematic);
     let agree = disagreement(&estimate.traverses, gap) < AGREE;
     if !(error < STATED * gap && gap < 2.0 * scales.travel && agree) {
         return None;
@@ -311,7 +311,7 @@ fn two_sided(
     };
     state(estimate, gap, error);
     let sharpness = Sharpness {
-        place: fit.sharpness.place.hypot(place_error),
+        place: libm::hypot(fit.sharpness.place, place_error),
         ..fit.sharpness
     };
     SeenLoad::new(events, fit.play, sharpness)
@@ -392,7 +392,7 @@ fn one_sided(estimate: &mut GapEstimate, record: &Record, cycles: &Cycles, place
             free = free.max(ahead - sign * x);
         }
     }
-    let error = 2.0 * place_error.hypot(place_error);
+    let error = 2.0 * libm::hypot(place_error, place_error);
     if at_rest && gap > 4.0 * error && gap > free {
         estimate.quality = Quality::AssumedCentre;
         state(estimate, gap, error);

@@ -117,7 +117,7 @@ impl Rows {
                 (0..REVERSAL_LAGS)
                     .map(|lag| (sign[i - lag] - sign[i - lag - 1]) * record.input[i].abs() / gain),
             );
-            matrix.extend([v, (v / BEND).tanh(), 1.0]);
+            matrix.extend([v, libm::tanh(v / BEND), 1.0]);
             target.push(record.velocity[i + 1] - record.velocity[i]);
         }
         Some(Self {

@@ -91,10 +91,10 @@ pub(super) fn fit(events: &[SeenContact], scales: &Scales) -> Option<Fit> {
         mean: [
             0.0,
             0.0,
-            2.0_f64.ln(),
-            (0.01 * scales.acceleration).ln(),
-            (0.25 * scales.step * scales.speed).ln(),
-            0.01_f64.ln(),
+            libm::log(2.0_f64),
+            libm::log(0.01 * scales.acceleration),
+            libm::log(0.25 * scales.step * scales.speed),
+            libm::log(0.01_f64),
         ],
         deviation: [f64::INFINITY, 1.2, 1.5, 2.0, 0.7, 1.0],
     };
@@ -110,16 +110,16 @@ pub(super) fn fit(events: &[SeenContact], scales: &Scales) -> Option<Fit> {
     let (least, most) = (scales.travel / 400.0, scales.travel);
     let mut starts = Vec::new();
     for k in 0..GAPS {
-        let half_gap = least * (most / least).powf(k as f64 / (GAPS - 1) as f64);
+        let half_gap = least * libm::pow(most / least, k as f64 / (GAPS - 1) as f64);
         let mut best: Option<(Point, f64)> = None;
         for ratio in INERTIA_RATIOS {
             for viscous in VISCOUS {
                 for dry in DRY_SHARES {
                     let mut point = prior.mean;
-                    point[0] = half_gap.ln();
-                    point[1] = ratio.ln() - point[0];
-                    point[2] = viscous.ln();
-                    point[3] = (dry * scales.acceleration).ln() - point[0];
+                    point[0] = libm::log(half_gap);
+                    point[1] = libm::log(ratio) - point[0];
+                    point[2] = libm::log(viscous);
+                    point[3] = libm::log(dry * scales.acceleration) - point[0];
                     let value = cost(&point);
                     if best.is_none_or(|b| value < b.1) {
                         best = Some((point, value));
@@ -156,7 +156,7 @@ pub(super) fn fit(events: &[SeenContact], scales: &Scales) -> Option<Fit> {
 
 /// What the logarithms stand for; `late` is the error of the begin of a contact, s.
 fn meaning(point: &Point, late: f64) -> (Play, Sharpness) {
-    let [half_gap, ratio, viscous, dry, place, momentum] = plain(point).map(f64::exp);
+    let [half_gap, ratio, viscous, dry, place, momentum] = plain(point).map(libm::exp);
     let play = Play {
         half_gap,
         ratio,
@@ -205,10 +205,11 @@ fn filter(
             }
             if event.free {
                 let square = value * value / variance;
-                total += 0.5 * variance.ln() + 0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p();
+                total += 0.5 * libm::log(variance)
+                    + 0.5 * (FREEDOM + 1.0) * libm::log1p(square / FREEDOM);
                 // What is random is when they meet, not where: density in time, not in position.
                 let approach = event.side * (event.velocity - state.v);
-                total -= (slow * softplus(approach / slow)).ln();
+                total -= libm::log(slow * softplus(approach / slow));
                 state.meet(&surprise);
             }
         }
@@ -249,8 +250,8 @@ fn sample(cost: &impl Fn(&Point) -> f64, start: Point, value: f64, steps: usize)
             (at, here) = (proposed, there);
         }
         // Robbins and Monro: a quarter of the steps accepted.
-        let gain = (step as f64 + 1.0).powf(-0.6);
-        scale *= ((f64::from(u8::from(accepted)) - ACCEPTED) * gain).exp();
+        let gain = libm::pow(step as f64 + 1.0, -0.6);
+        scale *= libm::exp((f64::from(u8::from(accepted)) - ACCEPTED) * gain);
         if step < steps / 10 {
             continue;
         }
@@ -278,5 +279,5 @@ fn sample(cost: &impl Fn(&Point) -> f64, start: Point, value: f64, steps: usize)
 
 /// `ln(1 + e^x)`: `x` where it is large, next to nothing below zero.
 fn softplus(x: f64) -> f64 {
-    x.max(0.0) + (-x.abs()).exp().ln_1p()
+    x.max(0.0) + libm::log1p(libm::exp(-x.abs()))
 }

@@ -54,7 +54,7 @@ fn value(estimate: &GapEstimate) -> String {
         estimate.std_error.unwrap_or(0.0),
     );
     let digits = if error > 0.0 {
-        (1 - error.log10().floor() as i32).clamp(0, 12) as usize
+        (1 - libm::log10(error).floor() as i32).clamp(0, 12) as usize
     } else {
         6
     };
@@ -103,6 +103,6 @@ fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let digits = (2 - libm::log10(value.abs()).floor() as i32).clamp(0, 12) as usize;
     format!("{value:.digits$}")
 }

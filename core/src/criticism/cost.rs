@@ -70,12 +70,12 @@ pub(super) fn oddness(data: &Data, motion: &Motion) -> f64 {
 /// by a thousand times the noise whatever the parameters: they must not decide alone.
 pub(super) fn robust_cost(data: &Data, motion: &Motion, scale: f64) -> f64 {
     let (mean, count) = mean_logarithm(data, motion, scale);
-    count * scale * mean.exp_m1()
+    count * scale * libm::expm1(mean)
 }
 
 /// Change of [`robust_cost`] for a change of the squared residuals as [`window_weights`] weigh them.
 pub(super) fn robust_share(data: &Data, motion: &Motion, scale: f64) -> f64 {
-    mean_logarithm(data, motion, scale).0.exp()
+    libm::exp(mean_logarithm(data, motion, scale).0)
 }
 
 /// Mean over the fitted residuals of `ln(1 + m / scale)` with `m` the mean square of their window, and
@@ -84,7 +84,7 @@ fn mean_logarithm(data: &Data, motion: &Motion, scale: f64) -> (f64, f64) {
     let (mut logs, mut count) = (0.0, 0.0);
     for (cost, n) in fitted_windows(data, motion) {
         if n > 0.0 {
-            logs += n * (cost / (n * scale)).ln_1p();
+            logs += n * libm::log1p(cost / (n * scale));
             count += n;
         }
     }

@@ -212,7 +212,7 @@ impl DiagnosisJob {
             Progress::Running { fraction, text } => {
                 let done = self.diagnosis.steps.len() as f64;
                 // The number of steps is not known: each takes half of what is left.
-                let fraction = 1.0 - 0.5_f64.powf(done + fraction);
+                let fraction = 1.0 - libm::pow(0.5_f64, done + fraction);
                 return Progress::Running { fraction, text };
             }
             Progress::Done(report) => report,
@@ -258,7 +258,7 @@ impl DiagnosisJob {
             }
         }
         Progress::Running {
-            fraction: 1.0 - 0.5_f64.powf(self.diagnosis.steps.len() as f64),
+            fraction: 1.0 - libm::pow(0.5_f64, self.diagnosis.steps.len() as f64),
             text: "Next".to_owned(),
         }
     }

@@ -197,7 +197,7 @@ pub(super) fn contradictions(session: &Session, model: &Scored, best: f64) -> Ve
                 Status::Prior(tolerance) => tolerance,
                 Status::Fixed => 0.0,
             };
-            let clear = CLEAR * wanted.std_error.hypot(tolerance);
+            let clear = CLEAR * libm::hypot(wanted.std_error, tolerance);
             ((wanted.value - known.value).abs() > clear).then_some(Contradiction {
                 effect: wanted.effect,
                 name: wanted.name,

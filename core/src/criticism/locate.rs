@@ -318,7 +318,7 @@ mod tests {
     fn a_tone_is_said_as_a_band_but_not_first_where_a_place_is_known() {
         let error = |i: usize, _| {
             let late = if i < 2000 { 0.3 } else { 1.0 };
-            0.05 * late * (TAU * 60.0 * STEP * i as f64).sin()
+            0.05 * late * libm::sin(TAU * 60.0 * STEP * i as f64)
         };
         let (data, motion) = swing(0.0, error);
         let findings = locate(&data, &motion, "rad/s");

@@ -185,7 +185,7 @@ mod tests {
     fn quantisation_alone_leaves_its_step_over_root_twelve() {
         let step = 5.99e-6;
         let values: Vec<f64> = (0..5000)
-            .map(|i| (0.01 * (f64::from(i) * 0.0123).sin() / step).round() * step)
+            .map(|i| (0.01 * libm::sin(f64::from(i) * 0.0123) / step).round() * step)
             .collect();
         let noise = noise(&values, &vec![0.0; 5000]);
         assert!(noise.counted);

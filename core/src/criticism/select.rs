@@ -45,7 +45,7 @@ const STRETCH_SHARE: f64 = 0.02;
 /// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
 fn statistic(before: &Score, after: &Score) -> f64 {
     let effective = after.held_count / after.correlation.max(1.0);
-    2.0 * effective * (before.error / after.error).ln()
+    2.0 * effective * libm::log(before.error / after.error)
 }
 
 /// Relative fall of the held-back error from `before` to `after`.
@@ -78,7 +78,7 @@ pub(super) fn helps(before: &Score, after: &Score) -> bool {
 
 /// Whether two models with `a_len` and `b_len` parameters leave the same error within noise.
 pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
-    let penalty = (b_len as f64 - a_len as f64) * a.held_count.ln();
+    let penalty = (b_len as f64 - a_len as f64) * libm::log(a.held_count);
     (statistic(b, a) + penalty).abs() < SAME_STATISTIC && fall(b, a).abs() < SAME_SHARE
 }
 
@@ -140,6 +140,6 @@ fn is_noise_but_for_stretches(score: &Score, first: &Score) -> bool {
 
 /// Change of the Bayesian information criterion on the fitted part; negative is better.
 pub(super) fn delta_bic(before: &Score, before_len: usize, after: &Score, after_len: usize) -> f64 {
-    before.fit_count * (after.fit_cost / before.fit_cost).ln()
-        + (after_len as f64 - before_len as f64) * before.fit_count.ln()
+    before.fit_count * libm::log(after.fit_cost / before.fit_cost)
+        + (after_len as f64 - before_len as f64) * libm::log(before.fit_count)
 }

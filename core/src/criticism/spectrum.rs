@@ -147,7 +147,7 @@ impl Spectrum {
     fn edges(&self, count: usize) -> Vec<usize> {
         let lines = self.error.len();
         let least = self.first.max(1) as f64;
-        let ratio = (lines as f64 / least).powf(1.0 / count as f64);
+        let ratio = libm::pow(lines as f64 / least, 1.0 / count as f64);
         let mut edges = vec![self.first];
         let mut edge = least;
         for _ in 0..count {
@@ -212,7 +212,7 @@ impl Spectrum {
 
 /// A frequency to three digits.
 fn hertz(f: f64) -> String {
-    let digits = (2.0 - f.max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 6.0) as usize;
+    let digits = (2.0 - libm::log10(f.max(f64::MIN_POSITIVE)).floor()).clamp(0.0, 6.0) as usize;
     format!("{f:.digits$}")
 }
 
@@ -258,7 +258,7 @@ fn transform(z: &mut [[f64; 2]]) {
     }
     let turns: Vec<[f64; 2]> = (0..n / 2)
         .map(|k| {
-            let (sin, cos) = (-std::f64::consts::TAU * k as f64 / n as f64).sin_cos();
+            let (sin, cos) = libm::sincos(-std::f64::consts::TAU * k as f64 / n as f64);
             [cos, sin]
         })
         .collect();
@@ -292,7 +292,7 @@ mod tests {
     }
 
     fn tone(n: usize, hertz: f64, size: f64) -> Vec<f64> {
-        let wave = |t: &f64| size * (TAU * hertz * t).sin();
+        let wave = |t: &f64| size * libm::sin(TAU * hertz * t);
         time(n).iter().map(wave).collect()
     }
 
@@ -313,7 +313,7 @@ mod tests {
             for (series, power) in [(&a, pa), (&b, pb)] {
                 let (mut re, mut im) = (0.0, 0.0);
                 for (i, v) in series.iter().enumerate() {
-                    let (sin, cos) = (TAU * (i * k) as f64 / 64.0).sin_cos();
+                    let (sin, cos) = libm::sincos(TAU * (i * k) as f64 / 64.0);
                     re += v * cos;
                     im -= v * sin;
                 }

@@ -622,7 +622,7 @@ impl StepJob {
                         scored.score.error
                     },
                     delta_bic: if worse {
-                        effect.parameters().len() as f64 * model.score.fit_count.ln()
+                        effect.parameters().len() as f64 * libm::log(model.score.fit_count)
                     } else {
                         delta_bic(&model.score, length, &scored.score, scored.fit.values.len())
                     },

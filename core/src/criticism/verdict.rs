@@ -236,8 +236,8 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     if !error.is_finite() || error <= 0.0 {
         return format!("{value:.4e}{unit}");
     }
-    let place = error.abs().log10().floor() as i32 - 1;
-    let size = value.abs().max(error).log10().floor() as i32;
+    let place = libm::log10(error.abs()).floor() as i32 - 1;
+    let size = libm::log10(value.abs().max(error)).floor() as i32;
     if !(-4..=5).contains(&size) {
         let digits = (size - place).clamp(0, 12) as usize;
         let scale = 10_f64.powi(size);

@@ -113,7 +113,7 @@ fn time_between(motor: &Body, from: f64, to: f64, force: f64) -> Option<f64> {
     let stretch = if ratio.abs() < f64::EPSILON {
         1.0
     } else {
-        ratio.ln_1p() / ratio
+        libm::log1p(ratio) / ratio
     };
     Some(motor.inertia * change / end_force * stretch)
 }

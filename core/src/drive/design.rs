@@ -274,18 +274,18 @@ impl Candidate {
         let [swing, _, _, push, samples, noise] = self.misses(drive);
         let must: f64 = [swing, push, samples, noise]
             .into_iter()
-            .map(|m| m.clamp(1.0, WORST).ln())
+            .map(|m| libm::log(m.clamp(1.0, WORST)))
             .sum();
-        let swing = (self.cycle.swing / (WISHED_SWING * drive.gap)).ln();
-        let samples = (WISHED_SAMPLES / self.samples()).max(1.0).ln();
+        let swing = libm::log(self.cycle.swing / (WISHED_SWING * drive.gap));
+        let samples = libm::log((WISHED_SAMPLES / self.samples()).max(1.0));
         MUST * must + swing.powi(2) + samples.powi(2)
     }
 
     fn cost(&self, drive: &RoughDrive) -> f64 {
         let traverse = self.traverse(drive).min(WORST * LONGEST_TRAVERSE);
-        let slow = (traverse / LONGEST_TRAVERSE).max(1.0).ln();
-        let fast = self.misses(drive)[2].clamp(1.0, WORST).ln();
-        let wish = (traverse / WISHED_TRAVERSE).ln();
+        let slow = libm::log((traverse / LONGEST_TRAVERSE).max(1.0));
+        let fast = libm::log(self.misses(drive)[2].clamp(1.0, WORST));
+        let wish = libm::log(traverse / WISHED_TRAVERSE);
         self.cost_besides_drift(drive) + MUST * (slow + fast) + wish.powi(2)
     }
 

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::Complex;
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::{DriveError, check};
@@ -27,7 +27,7 @@ pub fn play_describing_function(amplitude: f64, half_gap: f64) -> Option<Complex
     let s = 1.0 - 2.0 * half_gap / amplitude;
     let root = (1.0 - s * s).max(0.0);
     Some(Complex::new(
-        (0.5 * PI + s.asin() + s * root.sqrt()) / PI,
+        (0.5 * PI + libm::asin(s) + s * root.sqrt()) / PI,
         -root / PI,
     ))
 }
@@ -73,7 +73,7 @@ pub fn cycles_with_play(
         relay,
     };
     let centre = crate::limit_cycle::typical_frequency(plant);
-    let omega = |i: i32| centre * 10_f64.powf(f64::from(i) / f64::from(SCAN));
+    let omega = |i: i32| centre * libm::pow(10_f64, f64::from(i) / f64::from(SCAN));
     let mut found = Vec::new();
     let mut last: Option<(f64, f64)> = None;
     for i in -DECADES * SCAN..=DECADES * SCAN {

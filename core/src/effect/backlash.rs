@@ -92,11 +92,11 @@ impl Guess {
             self.stiffness,
             self.damping,
         ]
-        .map(f64::ln)
+        .map(libm::log)
     }
 
     fn from_logarithms(point: &[f64; 5]) -> Self {
-        let [half_gap, viscous, dry, stiffness, damping] = point.map(f64::exp);
+        let [half_gap, viscous, dry, stiffness, damping] = point.map(libm::exp);
         Self {
             half_gap,
             viscous,

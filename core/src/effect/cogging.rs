@@ -61,7 +61,7 @@ impl Effect for Cogging {
         probe
             .spatial_frequencies(BEST)
             .into_iter()
-            .map(|(n, sine, cosine)| vec![sine.hypot(cosine), n, cosine.atan2(sine)])
+            .map(|(n, sine, cosine)| vec![libm::hypot(sine, cosine), n, libm::atan2(cosine, sine)])
             .collect()
     }
 
@@ -69,6 +69,6 @@ impl Effect for Cogging {
         let (a, n, phi) = (values[0], values[1], values[2]);
         model
             .forces
-            .push(Box::new(move |x, _| a * (n * x + phi).sin()));
+            .push(Box::new(move |x, _| a * libm::sin(n * x + phi)));
     }
 }

@@ -49,11 +49,9 @@ impl Effect for InputDelay {
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         let shortest = 0.5 * probe.scales.step;
         let longest = LONGEST_SHARE * probe.scales.duration.min(1000.0 * probe.scales.step);
-        let ratio = (longest / shortest)
-            .max(1.0)
-            .powf(1.0 / f64::from(STARTS - 1));
+        let ratio = libm::pow((longest / shortest).max(1.0), 1.0 / f64::from(STARTS - 1));
         (0..STARTS)
-            .map(|i| vec![shortest * ratio.powf(f64::from(i))])
+            .map(|i| vec![shortest * libm::pow(ratio, f64::from(i))])
             .collect()
     }
 

@@ -448,11 +448,9 @@ impl Probe {
     /// samples in a period.
     pub fn load_frequencies(&self) -> Vec<f64> {
         let (low, high) = (40.0 / self.scales.duration, 1.0 / self.scales.step);
-        let ratio = (high / low)
-            .max(1.0)
-            .powf(1.0 / f64::from(LOAD_FREQUENCIES - 1));
+        let ratio = libm::pow((high / low).max(1.0), 1.0 / f64::from(LOAD_FREQUENCIES - 1));
         (0..LOAD_FREQUENCIES)
-            .map(|i| low * ratio.powf(f64::from(i)))
+            .map(|i| low * libm::pow(ratio, f64::from(i)))
             .collect()
     }
 
@@ -502,7 +500,7 @@ impl Probe {
         let mut waves = vec![(0.0, 0.0); self.position.len()];
         for (from, to) in self.spans.iter().step_by(stride) {
             for (k, wave) in waves.iter_mut().enumerate().take(to - 1).skip(*from) {
-                *wave = middle(k).sin_cos();
+                *wave = libm::sincos(middle(k));
             }
         }
         let fit = self.regress_forces(

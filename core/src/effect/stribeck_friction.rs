@@ -87,7 +87,7 @@ impl Effect for StribeckFriction {
             .iter()
             .filter_map(|share| {
                 let speed = share * probe.scales.speed;
-                let falling = probe.signature(|_, v| v.signum() * (-(v / speed).powi(2)).exp());
+                let falling = probe.signature(|_, v| v.signum() * libm::exp(-(v / speed).powi(2)));
                 let fit = probe.regress(&[&sign, &falling])?;
                 let (level, excess) = (-fit.coefficients[0], -fit.coefficients[1]);
                 (level + excess > 0.0).then(|| {

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Complex, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3};
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::{Cycle, illinois};
@@ -148,8 +149,10 @@ impl<'a> Loop<'a> {
         if high == 0.0 {
             // Integrators only: the gain sets the scale, |K|/w^n = 1 unit of level.
             let order = self.factors.relative_degree().max(1) as f64;
-            let size = (self.factors.gain.abs() / self.level.abs().max(f64::MIN_POSITIVE))
-                .powf(1.0 / order);
+            let size = libm::pow(
+                self.factors.gain.abs() / self.level.abs().max(f64::MIN_POSITIVE),
+                1.0 / order,
+            );
             (low, high) = if self.level == 0.0 {
                 (1.0, 1.0)
             } else {
@@ -306,7 +309,7 @@ impl<'a> Loop<'a> {
     fn solve(&self, from: Balance, mean: f64) -> Option<Balance> {
         let dc = self.plant.dc_gain();
         let residual = |v: &Vector3<f64>| -> Option<Vector3<f64>> {
-            let (omega, amplitude, offset) = (v[0].exp(), v[1].exp(), v[2]);
+            let (omega, amplitude, offset) = (libm::exp(v[0]), libm::exp(v[1]), v[2]);
             let [gain, constant] = dual_input(self.relay, amplitude, offset)?;
             let one = gain * self.response(omega) + 1.0;
             let input = mean + constant.re;
@@ -317,12 +320,12 @@ impl<'a> Loop<'a> {
             };
             Some(Vector3::new(one.re, one.im, third))
         };
-        let mut v = Vector3::new(from.omega.ln(), from.amplitude.ln(), from.mean);
+        let mut v = Vector3::new(libm::log(from.omega), libm::log(from.amplitude), from.mean);
         for _ in 0..30 {
             let r = residual(&v)?;
             let mut jacobian = Matrix3::zeros();
             for k in 0..3 {
-                let size = if k == 2 { v[1].exp() } else { 1.0 };
+                let size = if k == 2 { libm::exp(v[1]) } else { 1.0 };
                 let mut moved = v;
                 moved[k] += 1e-7 * size;
                 let column = (residual(&moved)? - r) / (1e-7 * size);
@@ -333,11 +336,11 @@ impl<'a> Loop<'a> {
             if !v.iter().all(|x| x.is_finite()) {
                 return None;
             }
-            let size = step[0].abs() + step[1].abs() + step[2].abs() / v[1].exp();
+            let size = step[0].abs() + step[1].abs() + step[2].abs() / libm::exp(v[1]);
             if size < 1e-12 {
                 return Some(Balance {
-                    omega: v[0].exp(),
-                    amplitude: v[1].exp(),
+                    omega: libm::exp(v[0]),
+                    amplitude: libm::exp(v[1]),
                     mean: v[2],
                 });
             }
@@ -365,15 +368,15 @@ impl<'a> Loop<'a> {
 
     fn distortion(&self, at: &Balance) -> f64 {
         let eps = self.relay.hysteresis;
-        let angle = |v: f64| (v / at.amplitude).clamp(-1.0, 1.0).asin();
+        let angle = |v: f64| libm::asin((v / at.amplitude).clamp(-1.0, 1.0));
         // Half of the time with h = +1, as an angle: from asin((eps - b)/a) to pi + asin((eps + b)/a).
         let half = 0.5 * (PI + angle(eps + at.mean) - angle(eps - at.mean));
-        let first = half.sin().abs() * self.response(at.omega).norm();
+        let first = libm::sin(half).abs() * self.response(at.omega).norm();
         let sum: f64 = (2..=HARMONICS)
             .map(|n| {
                 let order = n as f64;
                 let p = self.response(order * at.omega).norm();
-                ((order * half).sin() / order * p / first).powi(2)
+                (libm::sin(order * half) / order * p / first).powi(2)
             })
             .sum();
         sum.sqrt()
@@ -391,7 +394,7 @@ fn dual_input(relay: &Relay, a: f64, b: f64) -> Option<[Complex<f64>; 2]> {
     let k = relay.gain;
     let in_phase = 2.0 * k / (PI * a) * ((1.0 - rise * rise).sqrt() + (1.0 - fall * fall).sqrt());
     let quadrature = -4.0 * k * relay.hysteresis / (PI * a * a);
-    let constant = -k / PI * (fall.asin() - rise.asin());
+    let constant = -k / PI * (libm::asin(fall) - libm::asin(rise));
     Some([
         Complex::new(in_phase, quadrature),
         Complex::new(constant, 0.0),

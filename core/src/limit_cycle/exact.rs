@@ -178,7 +178,7 @@ impl Search {
 
     /// Half periods that balance, near ones of the guess in both directions.
     fn roots(&self, relay: &Relay) -> Vec<f64> {
-        let count = (SCAN_REACH.ln() / SCAN_RATIO.ln()).ceil() as i32;
+        let count = (libm::log(SCAN_REACH) / libm::log(SCAN_RATIO)).ceil() as i32;
         let at = |i: i32| self.guess * SCAN_RATIO.powi(i);
         let mut found = Vec::new();
         let mut low = (at(-count), self.balance(relay, at(-count)));
@@ -203,7 +203,7 @@ impl Search {
 
     /// The symmetric cycle nearest to the guess: intervals on either side, nearest first.
     fn symmetric(&self, relay: &Relay) -> Option<ExactCycle> {
-        let count = (SCAN_REACH.ln() / SCAN_RATIO.ln()).ceil() as i32;
+        let count = (libm::log(SCAN_REACH) / libm::log(SCAN_RATIO)).ceil() as i32;
         let at = |i: i32| {
             let h = self.guess * SCAN_RATIO.powi(i);
             (h, self.balance(relay, h))

@@ -19,7 +19,7 @@ pub fn existence(plant: &TransferFunction, relay: &Relay) -> Option<Existence> {
     if plant.validate().is_err() || relay.validate().is_err() {
         return None;
     }
-    let unstable = |p: &nalgebra::Complex<f64>| p.re > 0.0 || (p.re == 0.0 && p.im != 0.0);
+    let unstable = |p: &num_complex::Complex<f64>| p.re > 0.0 || (p.re == 0.0 && p.im != 0.0);
     if plant.poles().iter().any(unstable) {
         return None;
     }

@@ -44,9 +44,7 @@ pub fn typical_frequency(plant: &TransferFunction) -> f64 {
         .rposition(|c| *c != 0.0)
         .unwrap_or(0);
     let size = if poles > 0 {
-        (plant.denominator[poles] / lead)
-            .abs()
-            .powf(1.0 / poles as f64)
+        libm::pow((plant.denominator[poles] / lead).abs(), 1.0 / poles as f64)
     } else {
         1.0
     };

@@ -128,7 +128,7 @@ fn trust(describing: &[Intersection], exact: &[ExactCycle]) -> Trust {
         };
     };
     let (period, amplitude) = (main.cycle.period, main.cycle.amplitude);
-    let distance = |c: &&ExactCycle| (c.cycle.period / period).ln().abs();
+    let distance = |c: &&ExactCycle| libm::log(c.cycle.period / period).abs();
     let nearest = exact
         .iter()
         .min_by(|a, b| distance(a).total_cmp(&distance(b)));

@@ -79,7 +79,7 @@ impl Slow {
         let slow = self.last.map_or(now, |(before, slow)| {
             // The lag follows a ramp at the distance slope * lag.
             let behind = (now - before) / self.step * lag;
-            now - behind + (slow - before + behind) * (-self.step / lag).exp()
+            now - behind + (slow - before + behind) * libm::exp(-self.step / lag)
         });
         self.last = Some((now, slow));
         slow

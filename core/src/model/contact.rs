@@ -81,7 +81,7 @@ impl Contact {
         let limit = level / self.stiffness;
         let z = deflection.max(-limit).min(limit);
         let steady = limit * moved.signum();
-        steady + (z - steady) * (-moved.abs() / limit).exp()
+        steady + (z - steady) * libm::exp(-moved.abs() / limit)
     }
 
     /// Moves the body for `h` seconds under the held input `w` and a held `force`, with dry friction at

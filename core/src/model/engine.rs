@@ -75,7 +75,7 @@ impl State {
     /// Lets time pass without motion: only the lagged input goes on.
     pub(super) fn wait(&mut self, model: &Model, w: f64, h: f64) {
         self.motion.z = match model.lag {
-            Some(tau) => w + (self.motion.z - w) * (-h / tau).exp(),
+            Some(tau) => w + (self.motion.z - w) * libm::exp(-h / tau),
             None => w,
         };
         self.time += h;

@@ -28,24 +28,24 @@ impl Slowing {
         let (sign, speed) = (velocity.signum(), velocity.abs());
         let g = self.viscous.max(1e-9);
         let stops = if self.dry > 0.0 {
-            (g * speed / self.dry).ln_1p() / g
+            libm::log1p(g * speed / self.dry) / g
         } else {
             f64::INFINITY
         };
         let t = time.min(stops);
         // (1 - e^{-gt})/g, without loss of digits.
-        let moved = -(-g * t).exp_m1() / g;
+        let moved = -libm::expm1(-g * t) / g;
         let way = speed * moved - self.dry * (t - moved) / g;
         let flying = time < stops;
         Flight {
             way: sign * way,
             velocity: if flying {
-                sign * (speed * (-g * t).exp() - self.dry * moved)
+                sign * (speed * libm::exp(-g * t) - self.dry * moved)
             } else {
                 0.0
             },
             way_by_velocity: moved,
-            velocity_by_velocity: if flying { (-g * t).exp() } else { 0.0 },
+            velocity_by_velocity: if flying { libm::exp(-g * t) } else { 0.0 },
         }
     }
 }

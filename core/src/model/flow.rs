@@ -70,7 +70,7 @@ impl Coefficients {
             if rate * h == 0.0 {
                 h
             } else {
-                -(-rate * h).exp_m1() / rate
+                -libm::expm1(-rate * h) / rate
             }
         };
         let phi1 = phi1_of(lambda);
@@ -79,7 +79,7 @@ impl Coefficients {
         } else {
             (h - phi1) / lambda
         };
-        let (decay, lag_decay) = ((-lambda * h).exp(), (-mu_value * h).exp());
+        let (decay, lag_decay) = (libm::exp(-lambda * h), libm::exp(-mu_value * h));
         // Equal rates are a removable singularity: the slower decay is taken out first.
         let apart = (lambda - mu_value).abs();
         let psi1 = decay.max(lag_decay) * phi1_of(apart);
@@ -228,7 +228,7 @@ impl Flow {
         let time = if ratio.abs() < 1e-12 {
             -m.v / a
         } else {
-            ratio.ln_1p() / self.lambda
+            libm::log1p(ratio) / self.lambda
         };
         // Not clamp: a wild trial of a fit may bring times that are no numbers.
         time.max(0.0).min(until)
@@ -260,7 +260,7 @@ impl Flow {
     pub fn lag_reaches(&self, z: f64, w: f64, target: f64) -> Option<f64> {
         let share = (target - w) / (z - w);
         let mu = self.mu?;
-        (share > 0.0 && share <= 1.0).then(|| -share.ln() / mu)
+        (share > 0.0 && share <= 1.0).then(|| -libm::log(share) / mu)
     }
 }
 
@@ -301,7 +301,7 @@ impl Spring {
             None => (0.0, 0.0, 0.0, w),
             Some(mu) => {
                 let gain = self.b / (mu * mu - self.lambda * mu + self.kappa);
-                let (offset, decay) = (m.z - w, (-mu * h).exp());
+                let (offset, decay) = (m.z - w, libm::exp(-mu * h));
                 (offset * gain, mu, offset * gain * decay, w + offset * decay)
             }
         };
@@ -312,14 +312,14 @@ impl Spring {
             short_swing(square, h)
         } else if square > 0.0 {
             let omega = square.sqrt();
-            ((omega * h).cos(), (omega * h).sin() / omega)
+            (libm::cos(omega * h), libm::sin(omega * h) / omega)
         } else if square < 0.0 {
             let omega = (-square).sqrt();
-            ((omega * h).cosh(), (omega * h).sinh() / omega)
+            (libm::cosh(omega * h), libm::sinh(omega * h) / omega)
         } else {
             (1.0, h)
         };
-        let envelope = (-alpha * h).exp();
+        let envelope = libm::exp(-alpha * h);
         Motion {
             x: rest + late + envelope * (y0 * (cosine + alpha * sine) + v0 * sine),
             v: -mu * late + envelope * (v0 * (cosine - alpha * sine) - self.kappa * y0 * sine),

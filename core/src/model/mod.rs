@@ -70,7 +70,7 @@ impl DryFriction {
             return self.level;
         }
         let ratio = v / self.stribeck_speed;
-        self.level + self.static_excess * (-ratio * ratio).exp()
+        self.level + self.static_excess * libm::exp(-ratio * ratio)
     }
 
     /// Level at standstill.

@@ -289,7 +289,7 @@ impl Excitation {
             }
             for (value, time) in signal[1..].iter_mut().zip(time.windows(2)) {
                 let (h, now) = (time[1] - time[0], *value);
-                let (decay, slope) = ((-h / lag).exp(), (now - before) / h);
+                let (decay, slope) = (libm::exp(-h / lag), (now - before) / h);
                 // The lag follows a ramp at the distance slope * lag.
                 slow = now - slope * lag + (slow - before + slope * lag) * decay;
                 before = now;
@@ -309,8 +309,8 @@ impl Excitation {
                     sum += match model.lag {
                         None => w * h,
                         Some(tau) => {
-                            let fading = tau * -(-h / tau).exp_m1() * (z - w);
-                            z = w + (z - w) * (-h / tau).exp();
+                            let fading = tau * -libm::expm1(-h / tau) * (z - w);
+                            z = w + (z - w) * libm::exp(-h / tau);
                             w * h + fading
                         }
                     };

@@ -1,6 +1,6 @@
 //! Roots of polynomials.
 
-use nalgebra::Complex;
+use num_complex::Complex;
 
 /// Iterations of the simultaneous method; single roots need about ten, multiple ones more.
 const MAX_ITERATIONS: usize = 120;
@@ -55,9 +55,8 @@ fn simultaneous(p: &[f64]) -> Vec<Complex<f64>> {
     // Circle of the geometric mean about the centre of the roots, not symmetric to the real axis.
     let centre = -p[1] / (p[0] * n as f64);
     let radius = evaluate(p, Complex::new(centre, 0.0)).0.norm() / p[0].abs();
-    let radius = radius
-        .powf(1.0 / n as f64)
-        .max(1e-3 * (p[n] / p[0]).abs().powf(1.0 / n as f64));
+    let radius = libm::pow(radius, 1.0 / n as f64)
+        .max(1e-3 * libm::pow((p[n] / p[0]).abs(), 1.0 / n as f64));
     let mut z: Vec<Complex<f64>> = (0..n)
         .map(|i| {
             let angle = std::f64::consts::TAU * i as f64 / n as f64 + 0.7;

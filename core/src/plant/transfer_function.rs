@@ -1,6 +1,7 @@
 //! Plants as a ratio of polynomials.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::{MAX_ORDER, PlantError, StateSpace, ZeroPoleGain, roots};

@@ -47,7 +47,7 @@ pub(super) fn waterfall(steps: &[Step], floor: f64) -> String {
             label,
             value: short(error),
             share: if logarithmic {
-                (error / (0.5 * least)).ln() / (most / (0.5 * least)).ln()
+                libm::log(error / (0.5 * least)) / libm::log(most / (0.5 * least))
             } else {
                 error / most
             },

@@ -73,7 +73,7 @@ impl Axis {
     /// Where a value lies between the ends, 0 to 1.
     fn share(&self, value: f64) -> f64 {
         if self.logarithmic {
-            (value.max(f64::MIN_POSITIVE) / self.from).ln() / (self.to / self.from).ln()
+            libm::log(value.max(f64::MIN_POSITIVE) / self.from) / libm::log(self.to / self.from)
         } else {
             (value - self.from) / (self.to - self.from)
         }
@@ -82,7 +82,8 @@ impl Axis {
     /// Round values about `count` in number, and digits after the point.
     fn ticks(&self, count: f64) -> Vec<f64> {
         if self.logarithmic {
-            let powers = (self.from.log10().floor() as i32)..=(self.to.log10().ceil() as i32);
+            let powers =
+                (libm::log10(self.from).floor() as i32)..=(libm::log10(self.to).ceil() as i32);
             return powers
                 .take(20)
                 .map(|p| 10_f64.powi(p))
@@ -90,7 +91,7 @@ impl Axis {
                 .collect();
         }
         let rough = (self.to - self.from) / count;
-        let power = 10_f64.powf(rough.log10().floor());
+        let power = libm::pow(10_f64, libm::log10(rough).floor());
         let step = [1.0, 2.0, 5.0, 10.0]
             .into_iter()
             .map(|m| m * power)
@@ -131,7 +132,7 @@ fn tick_text(value: f64, step: f64) -> String {
             digits.trim_end_matches('0').trim_end_matches('.')
         );
     }
-    let digits = (-step.log10() + 1e-9).ceil().clamp(0.0, 7.0) as usize;
+    let digits = (-libm::log10(step) + 1e-9).ceil().clamp(0.0, 7.0) as usize;
     format!("{value:.digits$}")
 }
 

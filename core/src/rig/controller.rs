@@ -38,7 +38,7 @@ impl Controller {
         let sines = (0..10)
             .map(|i| {
                 (
-                    TAU * 40_f64.powf(f64::from(i) / 9.0),
+                    TAU * libm::pow(40_f64, f64::from(i) / 9.0),
                     TAU * random.uniform(),
                 )
             })
@@ -78,7 +78,7 @@ impl Controller {
             Excitation::Multisine { amplitude } => self
                 .sines
                 .iter()
-                .map(|(omega, phase)| amplitude * (omega * t + phase).sin())
+                .map(|(omega, phase)| amplitude * libm::sin(omega * t + phase))
                 .sum(),
             Excitation::Staircase { top } => {
                 const SHARES: [f64; 5] = [0.4, 0.55, 0.7, 0.85, 1.0];

@@ -39,6 +39,7 @@ impl Random {
 
     /// Standard normal.
     pub fn normal(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+        (-2.0 * libm::log(1.0 - self.uniform())).sqrt()
+            * libm::cos(std::f64::consts::TAU * self.uniform())
     }
 }

@@ -30,12 +30,12 @@ impl Friction {
         let stiffness = self.coulomb / self.displacement;
         let damping = 2.0 * BRISTLE_DAMPING_RATIO * (stiffness * inertia).sqrt();
         let level = self.coulomb
-            + (self.standing - self.coulomb) * (-(v / self.stribeck_velocity).powi(2)).exp();
+            + (self.standing - self.coulomb) * libm::exp(-(v / self.stribeck_velocity).powi(2));
         // dz/dt = v - rate z, with v held.
         let rate = stiffness * v.abs() / level;
         let x = rate * h;
         let phi1 = if x > 1e-6 {
-            -(-x).exp_m1() / x
+            -libm::expm1(-x) / x
         } else {
             1.0 - x / 2.0
         };
@@ -148,16 +148,16 @@ impl DriveRig {
                 torque,
                 centre,
                 width,
-            }) => -mid.v1.signum() * torque * (-((mid.v1.abs() - centre) / width).powi(2)).exp(),
+            }) => -mid.v1.signum() * torque * libm::exp(-((mid.v1.abs() - centre) / width).powi(2)),
             Some(Stranger::Spring { stiffness }) => -stiffness * mid.x1,
             Some(Stranger::Warming { factor }) => {
                 -self.viscous * factor * t / (self.samples as f64 * self.sampling) * mid.v1
             }
             Some(Stranger::PositionBump { torque, at, width }) => {
-                -torque * (-((mid.x1 - at) / width).powi(2)).exp()
+                -torque * libm::exp(-((mid.x1 - at) / width).powi(2))
             }
             Some(Stranger::HardSpot { torque, at, width }) => {
-                -(mid.v1 / 0.05).tanh() * torque * (-((mid.x1 - at) / width).powi(2)).exp()
+                -libm::tanh(mid.v1 / 0.05) * torque * libm::exp(-((mid.x1 - at) / width).powi(2))
             }
             _ => 0.0,
         }
@@ -168,8 +168,8 @@ impl DriveRig {
         let mut end = s;
         let drive = if self.actuator_lag > 0.0 {
             let x = h / self.actuator_lag;
-            end.torque = u + (s.torque - u) * (-x).exp();
-            u + (s.torque - u) * -(-x).exp_m1() / x
+            end.torque = u + (s.torque - u) * libm::exp(-x);
+            u + (s.torque - u) * -libm::expm1(-x) / x
         } else {
             u
         };
@@ -187,7 +187,7 @@ impl DriveRig {
                 - self.viscous * mid.v1
                 - self.quadratic_drag * mid.v1.abs() * mid.v1
                 - friction
-                - amplitude * (periods * mid.x1 + phase).sin()
+                - amplitude * libm::sin(periods * mid.x1 + phase)
                 + self.strange_torque(&mid, drive, t);
             if let Some(load) = &self.load {
                 let through = load.torque(mid.x1 - mid.x2, mid.v1 - mid.v2);

@@ -151,6 +151,6 @@ pub fn orders(errors: &[f64]) -> Vec<f64> {
     errors
         .windows(3)
         .filter(|e| e.iter().all(|v| v.abs() > ROUNDING))
-        .map(|e| (e[2] / e[1]).abs().ln() / (e[1] / e[0]).abs().ln())
+        .map(|e| libm::log((e[2] / e[1]).abs()) / libm::log((e[1] / e[0]).abs()))
         .collect()
 }

@@ -126,7 +126,7 @@ pub fn half_periods(model: &Model, relay: &Relay) -> Option<(f64, f64)> {
 /// Half period over the time constant.
 fn logarithm(gain: f64, ratio: f64, relay: &Relay, push: f64, pull: f64) -> f64 {
     let eps = relay.hysteresis / gain.abs();
-    ((eps - pull + ratio.exp() * (push + pull)) / (push - eps)).ln()
+    libm::log((eps - pull + libm::exp(ratio) * (push + pull)) / (push - eps))
 }
 
 /// Identifies both models from the `test`.
@@ -207,9 +207,9 @@ fn berner(
 /// `L = (-arg P - pi/2)/w`.
 fn shen(point: &NyquistPoint, static_gain: Option<f64>) -> Result<Model, TuningError> {
     let omega = point.omega;
-    let size = point.value[0].hypot(point.value[1]);
+    let size = libm::hypot(point.value[0], point.value[1]);
     // The lag of an oscillating loop lies between a quarter and almost a whole turn.
-    let angle = point.value[1].atan2(point.value[0]);
+    let angle = libm::atan2(point.value[1], point.value[0]);
     let late = if angle > 0.0 {
         2.0 * PI - angle
     } else {
@@ -233,7 +233,7 @@ fn shen(point: &NyquistPoint, static_gain: Option<f64>) -> Result<Model, TuningE
     checked(Model::Lag {
         gain,
         time_constant: turn / omega,
-        dead_time: (late - turn.atan()) / omega,
+        dead_time: (late - libm::atan(turn)) / omega,
     })
 }
 

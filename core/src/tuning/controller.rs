@@ -1,6 +1,6 @@
 //! The PID controller and its forms.
 
-use nalgebra::Complex;
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::error::{TuningError, check};

@@ -6,7 +6,8 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::error::TuningError;

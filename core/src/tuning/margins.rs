@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::Complex;
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::controller::Pid;

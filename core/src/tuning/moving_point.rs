@@ -8,7 +8,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::Complex;
+use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::controller::Pid;
@@ -114,20 +114,23 @@ pub fn pi(from: &NyquistPoint, to: Complex<f64>) -> Result<Pid, TuningError> {
     if !(turn > least && turn < most) {
         return Err(TuningError::OutOfReach { turn, least, most });
     }
-    Ok(Pid::pi(size * turn.cos(), -1.0 / (from.omega * turn.tan())))
+    Ok(Pid::pi(
+        size * libm::cos(turn),
+        -1.0 / (from.omega * libm::tan(turn)),
+    ))
 }
 
 /// Where a function with one maximum between `low` and `high` has it: golden section over the logarithm.
 fn largest(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let golden = 0.5 * (5_f64.sqrt() - 1.0);
-    let (mut a, mut b) = (low.ln(), high.ln());
+    let (mut a, mut b) = (libm::log(low), libm::log(high));
     for _ in 0..80 {
         let (c, d) = (b - golden * (b - a), a + golden * (b - a));
-        if f(c.exp()) < f(d.exp()) {
+        if f(libm::exp(c)) < f(libm::exp(d)) {
             a = c;
         } else {
             b = d;
         }
     }
-    (0.5 * (a + b)).exp()
+    libm::exp(0.5 * (a + b))
 }

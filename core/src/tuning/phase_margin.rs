@@ -44,7 +44,7 @@ impl RelayDesign {
             phase_margin,
             amplitude,
             gain: 0.25 * PI * amplitude,
-            hysteresis: amplitude * phase_margin.sin(),
+            hysteresis: amplitude * libm::sin(phase_margin),
         })
     }
 

@@ -285,7 +285,7 @@ pub fn tune(input: &TuningInput) -> Result<TuningReport, TuningError> {
 
 fn point_report(test: &RelayTest, plant: &TransferFunction) -> PointReport {
     let truth = plant.response(test.omega);
-    let error = |p: [f64; 2]| (p[0] - truth.re).hypot(p[1] - truth.im) / truth.norm();
+    let error = |p: [f64; 2]| libm::hypot(p[0] - truth.re, p[1] - truth.im) / truth.norm();
     PointReport {
         point: NyquistPoint {
             omega: test.omega,

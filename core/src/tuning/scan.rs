@@ -1,6 +1,6 @@
 //! Frequencies at which something happens: a scan that is wide enough by bounds on poles and zeros.
 
-use nalgebra::Complex;
+use num_complex::Complex;
 
 /// Points of a scan, per decade.
 const PER_DECADE: f64 = 300.0;
@@ -50,7 +50,7 @@ fn upper<'a>(mut coefficients: impl Iterator<Item = &'a f64>) -> f64 {
     };
     coefficients
         .enumerate()
-        .map(|(i, c)| (c / lead).abs().powf(1.0 / (i + 1) as f64))
+        .map(|(i, c)| libm::pow((c / lead).abs(), 1.0 / (i + 1) as f64))
         .fold(0.0, f64::max)
         * 2.0
 }
@@ -78,15 +78,15 @@ pub(super) fn range(polynomials: &[&[f64]], dead_time: f64) -> (f64, f64) {
         (low, high) = (1.0, 1.0);
     }
     let (low, high) = (low / MARGIN, high * MARGIN);
-    (low, high.min(low * 10_f64.powf(MAX_DECADES)))
+    (low, high.min(low * libm::pow(10_f64, MAX_DECADES)))
 }
 
 /// Frequencies from `low` to `high`, evenly spaced by their logarithm.
 pub(super) fn grid(low: f64, high: f64) -> Vec<f64> {
-    let decades = (high / low).log10().max(0.0);
+    let decades = libm::log10(high / low).max(0.0);
     let count = (decades * PER_DECADE).ceil().max(1.0);
     (0..=count as usize)
-        .map(|i| low * 10_f64.powf(decades * i as f64 / count))
+        .map(|i| low * libm::pow(10_f64, decades * i as f64 / count))
         .collect()
 }
 

@@ -125,7 +125,7 @@ fn multisine(sizes: &Sizes, limits: &Limits) -> Program {
     }
     .max(2.0 / sizes.stretch)
     .min(0.5 * high);
-    let ratio = (high / low).powf(1.0 / f64::from(SINES - 1));
+    let ratio = libm::pow(high / low, 1.0 / f64::from(SINES - 1));
     let count = f64::from(SINES);
     let sines: Vec<Sine> = (0..SINES)
         .map(|k| Sine {
@@ -154,7 +154,7 @@ fn round(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
-    let unit = 10_f64.powf(value.abs().log10().floor() - 1.0);
+    let unit = libm::pow(10_f64, libm::log10(value.abs()).floor() - 1.0);
     let rounded = (value.abs() / unit + 1e-6).floor() * unit;
     rounded.copysign(value)
 }

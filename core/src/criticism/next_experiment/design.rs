@@ -279,6 +279,6 @@ fn order(shape: Shape) -> usize {
 
 /// Two digits that count, upwards.
 fn round_up(value: f64) -> f64 {
-    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    let unit = libm::pow(10_f64, libm::log10(value).floor() - 1.0);
     (value / unit - 1e-6).ceil() * unit
 }

@@ -190,7 +190,7 @@ pub(super) fn short(value: f64) -> String {
     if !(1e-4..1e5).contains(&size) {
         return format!("{value:.2e}");
     }
-    let digits = (2 - size.log10().floor() as i32).clamp(0, 7) as usize;
+    let digits = (2 - libm::log10(size).floor() as i32).clamp(0, 7) as usize;
     let text = format!("{value:.digits$}");
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -242,7 +242,7 @@ impl Controller<'_> {
             }
             Program::Multisine { sines } => sines
                 .iter()
-                .map(|s| s.amplitude * (TAU * s.frequency * time + s.phase).sin())
+                .map(|s| s.amplitude * libm::sin(TAU * s.frequency * time + s.phase))
                 .sum(),
         }
     }

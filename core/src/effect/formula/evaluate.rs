@@ -23,13 +23,13 @@ impl Expr {
             Self::Call(function, arguments) => {
                 let first = arguments.first().map_or(f64::NAN, of);
                 match function {
-                    Function::Sin => first.sin(),
-                    Function::Cos => first.cos(),
-                    Function::Tan => first.tan(),
-                    Function::Atan => first.atan(),
-                    Function::Tanh => first.tanh(),
-                    Function::Exp => first.exp(),
-                    Function::Ln => first.ln(),
+                    Function::Sin => libm::sin(first),
+                    Function::Cos => libm::cos(first),
+                    Function::Tan => libm::tan(first),
+                    Function::Atan => libm::atan(first),
+                    Function::Tanh => libm::tanh(first),
+                    Function::Exp => libm::exp(first),
+                    Function::Ln => libm::log(first),
                     Function::Sqrt => first.sqrt(),
                     Function::Abs => first.abs(),
                     Function::Sign if first == 0.0 => 0.0,
@@ -61,7 +61,7 @@ impl Expr {
 fn power(base: f64, exponent: &Expr, value: impl Fn() -> f64) -> f64 {
     match exponent.constant() {
         Some(n) if n.fract() == 0.0 && n.abs() <= 64.0 => base.powi(n as i32),
-        Some(n) => base.powf(n),
-        None => base.powf(value()),
+        Some(n) => libm::pow(base, n),
+        None => libm::pow(base, value()),
     }
 }

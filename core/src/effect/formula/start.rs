@@ -139,7 +139,7 @@ fn draw(dimension: Dimension, probe: &Probe, random: &mut Pcg64) -> f64 {
                 Dimension::Ratio | Dimension::Undetermined => 10.0,
                 _ => 1.0,
             };
-            size * SMALLEST * (top / SMALLEST).powf(random.random_range(0.0..1.0))
+            size * SMALLEST * libm::pow(top / SMALLEST, random.random_range(0.0..1.0))
         }
     }
 }
