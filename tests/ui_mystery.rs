@@ -24,10 +24,9 @@ fn copied(harness: &mut App) -> Option<String> {
 }
 
 #[test]
-fn a_mystery_is_made_handed_on_diagnosed_and_revealed() {
+fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     // The teacher hides dry friction.
     let mut teacher = app("mystery", WIDE);
-    click(&mut teacher, "Relay");
     click(&mut teacher, "I choose");
     click(&mut teacher, "Coulomb friction");
     picture(&mut teacher, "mystery_choices");
@@ -64,8 +63,6 @@ fn a_mystery_is_made_handed_on_diagnosed_and_revealed() {
             .expect("a file")
             .starts_with("mystery-")
     );
-    assert!(opened["error"].as_f64().expect("an error") > 1.5);
-    // Revealed too early, the model has missed it.
     click(&mut student, "Reveal ...");
     student.get_by_label_contains("The truth about this record lies in it, sealed");
     type_over(&mut student, "Word", "green whale");
@@ -74,11 +71,29 @@ fn a_mystery_is_made_handed_on_diagnosed_and_revealed() {
         state(&student)["sealed"]["message"],
         "This word does not open the seal."
     );
+    // Revealed too early, the model has missed it.
+    type_over(&mut student, "Word", WORD);
+    click(&mut student, "Reveal the truth");
+    student.get_by_label("Coulomb friction: missed");
+}
+
+#[test]
+fn a_student_adds_what_is_hidden_and_gets_the_points() {
+    let pick = Pick {
+        effect: EffectId::new("coulomb_friction"),
+        value: 0.035,
+    };
+    let made = mystery(Experiment::Sines, vec![pick]);
+    let mut student = app("start", WIDE);
+    let text = format!("v1;compare;compare.mystery={}", made.link());
+    show(&mut student, &text);
+    assert!(state(&student)["error"].as_f64().expect("an error") > 1.5);
     student
         .get_by_label("Add Coulomb friction")
         .click_accesskit();
     finish(&mut student);
     assert!(state(&student)["error"].as_f64().expect("an error") < 1.3);
+    click(&mut student, "Reveal ...");
     type_over(&mut student, "Word", WORD);
     click(&mut student, "Reveal the truth");
     student.get_by_label("Coulomb friction: found");

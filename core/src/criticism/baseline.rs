@@ -16,6 +16,9 @@ pub(super) struct BaselineParameter {
     pub effect: Option<EffectId>,
 }
 
+/// Place of the viscous friction in the baseline of a drive.
+pub(super) const DAMPING: usize = 1;
+
 const DRIVE: [BaselineParameter; 2] = [
     BaselineParameter {
         symbol: "J1",

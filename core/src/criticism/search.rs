@@ -161,6 +161,13 @@ impl Search {
             }
         }
         if !settled {
+            for start in effect.starts_undamped(probe) {
+                let mut values = body.clone();
+                values[baseline::DAMPING] = 0.0;
+                values.extend(start);
+                structure.begin(&mut values, kept.len());
+                points.push((values, at.starts.clone()));
+            }
             points.extend(Self::other_valleys(
                 data, fit, &rest, &kept, &structure, &own, probe,
             ));

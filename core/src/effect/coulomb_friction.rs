@@ -11,6 +11,13 @@ use crate::model::Model;
 
 pub(super) struct CoulombFriction;
 
+/// Values with this level. The deflection is seen if it takes about a sample to cross after a reversal.
+fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
+    let crossed = probe.scales.crossed();
+    let values = [0.01, 0.35, 0.8].map(|samples| vec![level, samples * crossed, 0.1]);
+    values.to_vec()
+}
+
 impl Effect for CoulombFriction {
     fn id(&self) -> EffectId {
         EffectId::new("coulomb_friction")
@@ -60,13 +67,11 @@ impl Effect for CoulombFriction {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        // The deflection is seen if it takes about a sample to cross after a reversal.
-        let crossed = probe.scales.crossed();
-        let level = probe.friction_level();
-        [0.01, 0.35, 0.8]
-            .iter()
-            .map(|samples| vec![level, samples * crossed, 0.1])
-            .collect()
+        starts(probe.friction_level(), probe)
+    }
+
+    fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        starts(probe.dissipated_level(), probe)
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

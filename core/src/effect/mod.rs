@@ -49,6 +49,11 @@ pub trait Effect: Sync {
     fn parameters(&self) -> &'static [ParameterSpec];
     /// Values from which a fit may start, most likely first; several where the error has several valleys.
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>>;
+    /// The same for a drive without viscous friction, where that of a model without this effect may have taken its
+    /// place.
+    fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
     /// Effects that are this one with some values at 0: it replaces them.
     fn contains(&self) -> &'static [EffectId] {
         &[]

@@ -12,6 +12,12 @@ pub(super) struct PreslidingFriction;
 /// Deflections that are tried, in displacements of the first sample after a reversal.
 const CROSSINGS: [f64; 4] = [4.0, 12.0, 40.0, 150.0];
 
+fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
+    let crossed = probe.scales.crossed();
+    let values = CROSSINGS.map(|samples| vec![level, samples * crossed, 0.1]);
+    values.to_vec()
+}
+
 impl Effect for PreslidingFriction {
     fn id(&self) -> EffectId {
         EffectId::new("presliding_friction")
@@ -65,12 +71,11 @@ impl Effect for PreslidingFriction {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        let crossed = probe.scales.crossed();
-        let level = probe.friction_level();
-        CROSSINGS
-            .iter()
-            .map(|samples| vec![level, samples * crossed, 0.1])
-            .collect()
+        starts(probe.friction_level(), probe)
+    }
+
+    fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        starts(probe.dissipated_level(), probe)
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

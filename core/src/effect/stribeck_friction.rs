@@ -101,6 +101,15 @@ impl Effect for StribeckFriction {
         found.into_iter().take(2).map(|f| f.1).collect()
     }
 
+    fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        let (level, crossed) = (probe.dissipated_level(), probe.scales.crossed());
+        let at = |share: &f64| {
+            let speed = share * probe.scales.speed;
+            vec![level, 0.1 * level, speed, 0.5 * crossed, 0.1]
+        };
+        SPEEDS.iter().skip(1).step_by(3).map(at).collect()
+    }
+
     fn apply(&self, values: &[f64], model: &mut Model) {
         model.friction.level += values[0];
         model.friction.static_excess = values[1];

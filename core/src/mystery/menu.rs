@@ -132,7 +132,8 @@ const MENU: &[Hideable] = &[
         id: EffectId::new("coulomb_friction"),
         strengths: [0.02, 0.035, 0.05],
         range: [5e-3, 0.12],
-        shown_by: &[Relay, Sines, Stairs],
+        // Under a relay the drive runs at one speed: dry and viscous friction are the same there.
+        shown_by: &[Sines, Stairs],
         family: Family::Friction,
         hide: |c, rig, _| {
             rig.friction = Friction::dry(c);
