@@ -232,48 +232,36 @@ impl Fit {
         self.done = !self.cost.is_finite();
     }
 
-    /// Motion with new values; where it got worse than the `present` cost, each window starts from the better of its new and
-    /// its present state: near a kink, such as sticking, a step in the state may lead anywhere.
+    /// Motion with new values; where it got worse than the `present` cost, each window starts from the better of its
+    /// new and its present state, improved with the values kept: near a kink, such as sticking, a step in the state may
+    /// lead anywhere, and judged with wrong states no step of the values along a valley would seem to lower the cost.
     fn motion_from(
         &self,
         data: &Data,
         values: &[f64],
-        mut starts: Vec<Start>,
+        starts: Vec<Start>,
         scale: f64,
         present: f64,
         scales: &Scales,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-        if data.excitation.sees_load_of(&self.structure.model(values)) {
-            // A contact that a window misses leaves no slope that would lead back to it, and one that it meets
-            // bends the motion too much for one linear step of the state.
-            let mut trial = Self {
-                values: values.to_vec(),
-                starts,
-                motion: moved,
-                ..self.clone()
-            };
-            trial.take_better(data, self.starts.clone());
+        let sees_load = data.excitation.sees_load_of(&self.structure.model(values));
+        if !sees_load && self.objective(data, &moved, values, scale) <= present {
+            return (starts, moved);
+        }
+        let mut trial = Self {
+            values: values.to_vec(),
+            starts,
+            motion: moved,
+            ..self.clone()
+        };
+        trial.take_better(data, self.starts.clone());
+        if sees_load {
             trial.polish_starts(data, scales);
-            return (trial.starts, trial.motion);
+        } else {
+            trial.polish_once(data, scales);
         }
-        if self.objective(data, &moved, values, scale) <= present {
-            return (starts, moved);
-        }
-        let stayed = simulate(data, &self.structure, values, &self.starts);
-        let (after, before) = (window_costs(data, &moved), window_costs(data, &stayed));
-        let mut mixed = false;
-        for (k, start) in starts.iter_mut().enumerate() {
-            if before[k] < after[k] {
-                *start = self.starts[k];
-                mixed = true;
-            }
-        }
-        if !mixed {
-            return (starts, moved);
-        }
-        let motion = simulate(data, &self.structure, values, &starts);
-        (starts, motion)
+        (trial.starts, trial.motion)
     }
 
     /// Steps for finite differences: as large as the uncertainty of a value, once that is known, so that
@@ -537,23 +525,29 @@ impl Fit {
         }
         for round in 0..POLISHINGS {
             let before = self.cost;
-            let columns = self.columns(data, &[], scales);
-            let (_, _, windows) = self.normal_equations(data, &columns, 0, f64::INFINITY);
-            let sees_load = columns.len() == STATES;
-            let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
-            for share in shares {
-                let changes = windows
-                    .iter()
-                    .map(|sums| inverse(&sums.state) * sums.gradient * *share);
-                let trial = self.starts.iter().zip(changes);
-                let trial = trial.map(|(s, change)| changed(s, &change)).collect();
-                self.take_better(data, trial);
-            }
+            let sees_load = self.polish_once(data, scales);
             let worthwhile = sees_load && self.cost < POLISHED_ENOUGH * before;
             if round + 1 >= FEWEST_POLISHINGS && !worthwhile {
                 return;
             }
         }
+    }
+
+    /// One step of the states of all windows, taken where it helps; true if there is a seen load.
+    fn polish_once(&mut self, data: &Data, scales: &Scales) -> bool {
+        let columns = self.columns(data, &[], scales);
+        let (_, _, windows) = self.normal_equations(data, &columns, 0, f64::INFINITY);
+        let sees_load = columns.len() == STATES;
+        let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
+        for share in shares {
+            let changes = windows
+                .iter()
+                .map(|sums| inverse(&sums.state) * sums.gradient * *share);
+            let trial = self.starts.iter().zip(changes);
+            let trial = trial.map(|(s, change)| changed(s, &change)).collect();
+            self.take_better(data, trial);
+        }
+        sees_load
     }
 
     /// Takes for each window its state of `trial` where that fits better.
