@@ -21,6 +21,9 @@ const LEAST_BLOCKS: f64 = 0.6;
 /// Statistic below which two models count as the same within noise: near what it takes to add one.
 const SAME_STATISTIC: f64 = 25.0;
 
+/// Held-back blocks of which one may be left out.
+const FEWEST_BLOCKS: usize = 6;
+
 /// Relative difference of error above which two models differ whatever the statistic says.
 const SAME_SHARE: f64 = 0.01;
 
@@ -76,10 +79,36 @@ pub(super) fn helps(before: &Score, after: &Score) -> bool {
         && better as f64 > LEAST_BLOCKS * before.held_blocks.len() as f64
 }
 
-/// Whether two models with `a_len` and `b_len` parameters leave the same error within noise.
+/// Whether two models with `a_len` and `b_len` parameters leave the same error within noise, on all held-back blocks
+/// but the one in which they differ most: what was before a record began is not known, so that its first block may
+/// speak for either.
 pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
     let penalty = (b_len as f64 - a_len as f64) * libm::log(a.held_count);
-    (statistic(b, a) + penalty).abs() < SAME_STATISTIC && fall(b, a).abs() < SAME_SHARE
+    let (own, other) = usual_errors(a, b);
+    let effective = a.held_count / a.correlation.max(1.0);
+    let statistic = 2.0 * effective * libm::log(other / own);
+    (statistic + penalty).abs() < SAME_STATISTIC && (1.0 - own / other).abs() < SAME_SHARE
+}
+
+/// Errors of two models on all held-back blocks but the one in which they differ most.
+fn usual_errors(a: &Score, b: &Score) -> (f64, f64) {
+    let blocks = a.held_blocks.iter().zip(&b.held_blocks);
+    let differs = |(a, b): (&f64, &f64)| (a - b).abs();
+    let most = blocks
+        .clone()
+        .enumerate()
+        .max_by(|x, y| differs(x.1).total_cmp(&differs(y.1)));
+    let Some((odd, _)) = most.filter(|_| a.held_blocks.len() >= FEWEST_BLOCKS) else {
+        return (a.error, b.error);
+    };
+    let rest = blocks.enumerate().filter(|(k, _)| *k != odd);
+    let (own, other) = rest.fold((0.0, 0.0), |sum, (_, (a, b))| (sum.0 + a, sum.1 + b));
+    // In proportion to the whole, so that blocks of unlike length do not matter.
+    let all = |blocks: &[f64]| blocks.iter().sum::<f64>();
+    (
+        a.error * (own / all(&a.held_blocks)).sqrt(),
+        b.error * (other / all(&b.held_blocks)).sqrt(),
+    )
 }
 
 /// Whether a `part` of an effect does as well as the `whole` for all that the data can tell: what is left may be
