@@ -25,19 +25,17 @@ fn copied(harness: &mut App) -> Option<String> {
 
 #[test]
 fn a_mystery_is_made_sealed_handed_on_and_revealed() {
-    // The teacher hides dry friction.
+    // The teacher hides a dead time.
     let mut teacher = app("mystery", WIDE);
+    click(&mut teacher, "Relay");
     click(&mut teacher, "I choose");
-    click(&mut teacher, "Coulomb friction");
+    click(&mut teacher, "Input delay");
     picture(&mut teacher, "mystery_choices");
     harness_refuses_without_a_word(&mut teacher);
     type_over(&mut teacher, "Word", WORD);
     click(&mut teacher, "Make the mystery");
     let page = state(&teacher)["link"].as_str().expect("a link").to_owned();
-    assert!(
-        !page.contains("coulomb") && !page.contains("whale"),
-        "{page}"
-    );
+    assert!(!page.contains("delay") && !page.contains("whale"), "{page}");
     teacher.get_by_label("Copy the mystery's link").click();
     let link = copied(&mut teacher).expect("a link on the clipboard");
     assert!(link.len() <= 16_384, "{} characters", link.len());
@@ -74,7 +72,7 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     // Revealed too early, the model has missed it.
     type_over(&mut student, "Word", WORD);
     click(&mut student, "Reveal the truth");
-    student.get_by_label("Coulomb friction: missed");
+    student.get_by_label("Input delay: missed");
 }
 
 #[test]

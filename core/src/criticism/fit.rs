@@ -233,8 +233,9 @@ impl Fit {
     }
 
     /// Motion with new values; where it got worse than the `present` cost, each window starts from the better of its
-    /// new and its present state, improved with the values kept: near a kink, such as sticking, a step in the state may
-    /// lead anywhere, and judged with wrong states no step of the values along a valley would seem to lower the cost.
+    /// new and its present state: near a kink a step in the state may lead anywhere. Where a body sticks that state is
+    /// then improved with the values kept: judged with wrong states, no step of the values along a valley would seem to
+    /// lower the cost.
     fn motion_from(
         &self,
         data: &Data,
@@ -245,7 +246,8 @@ impl Fit {
         scales: &Scales,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-        let sees_load = data.excitation.sees_load_of(&self.structure.model(values));
+        let model = self.structure.model(values);
+        let sees_load = data.excitation.sees_load_of(&model);
         if !sees_load && self.objective(data, &moved, values, scale) <= present {
             return (starts, moved);
         }
@@ -258,7 +260,7 @@ impl Fit {
         trial.take_better(data, self.starts.clone());
         if sees_load {
             trial.polish_starts(data, scales);
-        } else {
+        } else if model.friction.breakaway() > 0.0 {
             trial.polish_once(data, scales);
         }
         (trial.starts, trial.motion)

@@ -16,7 +16,7 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
         ),
         Experiment::Relay => (
             "Relay",
-            "A relay on the velocity: shows friction and what comes late.",
+            "A relay on the velocity: shows what comes late and what pushes to one side.",
         ),
         Experiment::Stairs => (
             "Staircase",
