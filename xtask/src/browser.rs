@@ -2,6 +2,7 @@
 
 mod driver;
 mod mystery;
+mod same;
 mod speed;
 mod watch;
 
@@ -46,6 +47,7 @@ pub fn test() -> Result<(), String> {
     })?;
     busy.read(&session)?;
     let error = before["error"].as_f64().ok_or("no error is shown")?;
+    same::check(&before, "drive-02")?;
     look(&session, &folder.join("compare.png"))?;
     Busy::begin(&session)?;
     click(&session, "add:coulomb_friction")?;
