@@ -11,7 +11,7 @@ const WORD: &str = "blue whale";
 pub fn journey(session: &Session, page: &str) -> Result<(), String> {
     click(session, "page:mystery")?;
     click(session, "mystery:choose")?;
-    click(session, "mystery:hide:coulomb_friction")?;
+    click(session, "mystery:hide:input_delay")?;
     // The word stands below a long list.
     session.scroll(300.0, 500.0)?;
     wait(session, "the end of the page", |s| {
@@ -33,9 +33,9 @@ pub fn journey(session: &Session, page: &str) -> Result<(), String> {
     if before.to_string().contains("whale") {
         return Err("the word is in the page".to_owned());
     }
-    click(session, "add:coulomb_friction")?;
-    let after = wait(session, "the model with Coulomb friction", |s| {
-        s["busy"] == false && s["effects"].to_string().contains("coulomb_friction")
+    click(session, "add:input_delay")?;
+    let after = wait(session, "the model with the input delay", |s| {
+        s["busy"] == false && s["effects"].to_string().contains("input_delay")
     })?;
     click(session, "look:reveal")?;
     type_word(session, "reveal:word")?;
