@@ -19,7 +19,6 @@
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`drive`] | what does a drive with a hidden gap do? |
 //! | [`scenario`] | a loop or a drive in a file |
-//! | [`backlash`] | how wide is the hidden gap? |
 //! | [`effect`] | which physics can be added? |
 //! | [`user_model`] | what does the user know of the model? |
 //! | [`rig`] | what would a bench measure, by other physics? |
