@@ -220,12 +220,16 @@ impl Data {
             return self.clone();
         }
         let felt = self.felt_pairs(samples / 2);
-        let mut part = self.clone();
         // At no fixed distance, which could meet the same phase of a periodic motion each time.
-        let chosen = |window: usize| {
+        self.only(|window| {
             let pair = window / 2;
             (pair as f64 * GOLDEN).fract() < share || felt.contains(&pair)
-        };
+        })
+    }
+
+    /// The windows that are `chosen` by their number.
+    pub fn only(&self, chosen: impl Fn(usize) -> bool) -> Self {
+        let mut part = self.clone();
         part.windows = (0..self.windows.len())
             .filter(|w| chosen(*w))
             .map(|w| self.windows[w])

@@ -207,7 +207,10 @@ impl Fit {
         for (j, _, tolerance) in &priors {
             self.information[(*j, *j)] += (1.0 - 1.0 / share) / (tolerance * tolerance);
         }
-        if !lowered {
+        let sticks = self.structure.model(&self.values).friction.breakaway() > 0.0;
+        if !lowered && sticks && self.mend_odd_windows(data, scales) {
+            self.damping = RESTART_DAMPING;
+        } else if !lowered {
             // Once more with long difference steps, which see past the kinks around a stall.
             self.stalls += 1;
             self.damping = RESTART_DAMPING;
@@ -536,7 +539,7 @@ impl Fit {
     }
 
     /// One step of the states of all windows, taken where it helps; true if there is a seen load.
-    fn polish_once(&mut self, data: &Data, scales: &Scales) -> bool {
+    pub(super) fn polish_once(&mut self, data: &Data, scales: &Scales) -> bool {
         let columns = self.columns(data, &[], scales);
         let (_, _, windows) = self.normal_equations(data, &columns, 0, f64::INFINITY);
         let sees_load = columns.len() == STATES;
@@ -552,8 +555,14 @@ impl Fit {
         sees_load
     }
 
+    /// Takes up the motion from the present starts.
+    pub(super) fn follow_starts(&mut self, data: &Data) {
+        self.motion = simulate(data, &self.structure, &self.values, &self.starts);
+        self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
+    }
+
     /// Takes for each window its state of `trial` where that fits better.
-    fn take_better(&mut self, data: &Data, trial: Vec<Start>) {
+    pub(super) fn take_better(&mut self, data: &Data, trial: Vec<Start>) {
         let motion = simulate(data, &self.structure, &self.values, &trial);
         let before = window_costs(data, &self.motion);
         let after = window_costs(data, &motion);
@@ -562,8 +571,7 @@ impl Fit {
                 self.starts[k] = start;
             }
         }
-        self.motion = simulate(data, &self.structure, &self.values, &self.starts);
-        self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
+        self.follow_starts(data);
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance; 0 for fixed ones.

@@ -14,6 +14,7 @@ mod locate;
 mod missing;
 mod next_experiment;
 mod noise;
+mod odd_windows;
 mod race;
 mod report;
 mod residual_test;

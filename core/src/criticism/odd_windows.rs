@@ -1,0 +1,80 @@
+//! Windows that start from a wrong state while the others are right.
+//!
+//! Where a body sticks, the motion depends on the state at the start of a window by leaps: a little slower and it
+//! stays where it is, a little faster and it breaks loose. A fit that follows derivatives stops on the wrong side of
+//! such a leap, and one window may then cost more than all the others. Its state is looked for on either side.
+
+use super::cost::window_costs;
+use super::data::Data;
+use super::fit::Fit;
+use crate::effect::Scales;
+
+/// Mean square from which a window is odd, in times of the median one, or of the noise where that is more.
+const ODD_TIMES: f64 = 3.0;
+
+/// Share of windows that may be odd: where more are, it is the model that is wrong.
+const MOST: f64 = 0.25;
+
+/// Velocities that are tried on either side, as shares of the typical speed.
+const STEPS: [f64; 7] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
+
+impl Fit {
+    /// Looks for better states of odd windows; true if it found one.
+    pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) -> bool {
+        let costs = window_costs(data, &self.motion);
+        let odd = odd(data, &costs);
+        if !odd.contains(&true) {
+            return false;
+        }
+        let part = data.only(|window| odd[window]);
+        let chosen = self.starts.iter().zip(&odd).filter(|(_, odd)| **odd);
+        let starts = chosen.map(|(start, _)| *start).collect();
+        let structure = self.structure.clone();
+        let mut own = Self::new(&part, structure, self.values.clone(), starts, scales);
+        for step in STEPS {
+            for side in [1.0, -1.0] {
+                own.try_faster(side * step * scales.speed, &part, scales);
+            }
+        }
+        own.polish_starts(&part, scales);
+        let mut better = self.starts.clone();
+        let places = (0..better.len()).filter(|k| odd[*k]);
+        for (place, start) in places.zip(&own.starts) {
+            better[place] = *start;
+        }
+        let before = self.cost;
+        self.take_better(data, better);
+        self.cost < before
+    }
+
+    /// Starts every window faster by this, improves the states, and keeps those that fit better than before.
+    fn try_faster(&mut self, faster: f64, data: &Data, scales: &Scales) {
+        let mut trial = self.clone();
+        for start in &mut trial.starts {
+            start.velocity += faster;
+        }
+        trial.follow_starts(data);
+        trial.polish_once(data, scales);
+        self.take_better(data, trial.starts);
+    }
+}
+
+/// Which windows are far worse than usual; none where many are.
+fn odd(data: &Data, costs: &[f64]) -> Vec<bool> {
+    let spans = data.spans();
+    let squares: Vec<f64> = costs
+        .iter()
+        .zip(&spans)
+        .map(|(cost, (from, to))| cost / ((to - from) * data.outputs.len()).max(1) as f64)
+        .collect();
+    let mut sorted = squares.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let limit = ODD_TIMES * usual.max(1.0);
+    let odd: Vec<bool> = squares.iter().map(|square| *square > limit).collect();
+    let count = odd.iter().filter(|odd| **odd).count() as f64;
+    if count > MOST * odd.len() as f64 {
+        return vec![false; odd.len()];
+    }
+    odd
+}
