@@ -72,7 +72,7 @@ pub struct StepJob {
     earlier: Vec<EffectId>,
     /// Effects that are not added any more: they may be imitations.
     barred: Vec<EffectId>,
-    /// Times that the model was, or could have been, fitted once more.
+    /// Times that the model was fitted once more.
     visits: usize,
 }
 
@@ -325,15 +325,18 @@ impl StepJob {
         })
     }
 
-    /// Where an effect helps a model that bends as sharply as friction does, the model itself may have stopped in a
-    /// worse valley than it need have: it is fitted again from where the effect led.
+    /// Where the model with an effect on top costs much less, the model itself may have stopped in a worse valley than it
+    /// need have: it is fitted again from where the effect led.
     fn revisit_stage(&mut self) -> Stage {
         let search = self.model.as_ref().and_then(|model| {
-            let (_, with) = self.suggestion(model)?;
+            let costs = self.tried.iter().map(|(_, with)| &with.fit);
+            let best = costs.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
             let bends = !model.fit.structure.effects.is_empty();
-            (bends && self.visits < MAX_VISITS).then(|| Search::revisiting(&model.fit, &with.fit))
+            let lower = best.cost < BETTER_VALLEY * model.fit.cost;
+            (bends && lower && self.visits < MAX_VISITS)
+                .then(|| Search::revisiting(&model.fit, best))
         });
-        self.visits += 1;
+        self.visits += usize::from(search.is_some());
         search.map_or_else(|| self.remove_stage(0), Stage::Revisit)
     }
 
