@@ -9,6 +9,7 @@ mod data;
 mod fingerprint;
 mod fit;
 mod job;
+mod judge;
 mod knowledge;
 mod locate;
 mod missing;

@@ -26,6 +26,15 @@ pub(super) struct Scored {
     pub score: Score,
 }
 
+impl Scored {
+    /// Standard errors of the values, widened by what the model leaves and by how that is correlated.
+    pub fn standard_errors(&self) -> Vec<f64> {
+        let left = self.score.error_fit.powi(2).max(1.0);
+        self.fit
+            .standard_errors(left * self.score.correlation.max(1.0))
+    }
+}
+
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
 
@@ -259,9 +268,8 @@ impl Session {
 
     /// Every parameter with its standard error.
     pub fn parameters(&self, scored: &Scored) -> Vec<Parameter> {
-        let Scored { fit, score } = scored;
-        let inflation = score.error_fit.powi(2).max(1.0) * score.correlation.max(1.0);
-        let errors = fit.standard_errors(inflation);
+        let fit = &scored.fit;
+        let errors = scored.standard_errors();
         let known = fit.structure.known();
         let status = |j: usize| known[j].map_or(Status::Free, |k| k.status);
         let mut parameters: Vec<Parameter> = baseline::parameters(self.kind())

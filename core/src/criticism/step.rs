@@ -1,24 +1,23 @@
 //! One step of a diagnosis: fits one model and tries every effect on top of it.
 
 use super::fingerprint::fingerprints;
+use super::judge::{
+    alike, helps_clearly, is_certain, may_hide, nested, part_does, same_body, tied,
+};
 use super::knowledge::contradictions;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::{Piece, Race, one_by_one};
 use super::residual_test::residual_tests;
-use super::score::Score;
 use super::search::Search;
-use super::select::{
-    delta_bic, fall, helps, is_noise, is_plain_noise, matters, outweighs, same, suffices,
-    usual_fall,
-};
+use super::select::{delta_bic, helps, is_noise, is_plain_noise, outweighs};
 use super::session::{Scored, Session};
 use super::verdict::{Class, add_experiments, add_idle, add_imitations, add_rest, verdict};
 use super::{
     Candidate, Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport,
 };
 use crate::effect::{self, Effect, EffectId};
-use crate::measurement::{Kind, Measurement};
+use crate::measurement::Measurement;
 use crate::user_model::UserModel;
 
 /// Error of a perfect model in noise units.
@@ -74,11 +73,6 @@ pub struct StepJob {
     barred: Vec<EffectId>,
     /// Times that the model was fitted once more.
     visits: usize,
-}
-
-/// Whether two effects are the same or one contains the other.
-fn nested(a: &dyn Effect, b: &dyn Effect) -> bool {
-    a.id() == b.id() || a.contains().contains(&b.id()) || b.contains().contains(&a.id())
 }
 
 impl StepJob {
@@ -415,8 +409,7 @@ impl StepJob {
             let swapped = self.session.scored(fit);
             if own.contains().contains(&effect.id()) {
                 let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
-                let enough = enough(model, &swapped, self.session.first(model));
-                if (enough || !is_seen(&swapped, model, place))
+                if part_does(model, &swapped, place, self.session.first(model))
                     && self.simpler.as_ref().is_none_or(fewer)
                 {
                     self.simpler = Some(swapped);
@@ -466,7 +459,7 @@ impl StepJob {
             .filter(|(e, s)| {
                 if best.0.contains().contains(&e.id()) {
                     let place = best.1.fit.structure.effects.len() - 1;
-                    enough(&best.1, s, first) || !is_seen(s, &best.1, place)
+                    part_does(&best.1, s, place, first)
                 } else {
                     let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
                     alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
@@ -607,12 +600,7 @@ impl StepJob {
                         !nested(*other, *effect)
                             && helps_clearly(model, scored, first)
                             && helps_clearly(model, o, first)
-                            && same(
-                                &scored.score,
-                                scored.fit.values.len(),
-                                &o.score,
-                                o.fit.values.len(),
-                            )
+                            && alike(scored, o)
                     })
                     .map(|(other, _)| other.id())
                     .collect();
@@ -681,8 +669,8 @@ impl StepJob {
                 (place, e.id(), without, completed)
             })
             .filter(|(place, _, without, completed)| {
-                let clear = |model| stands_out(without, model, *place, CLEAR_ERRORS);
-                !outweighs(*completed, error) || !self.model.as_ref().is_none_or(clear)
+                let certain = |model| is_certain(without, model, *place);
+                !outweighs(*completed, error) || !self.model.as_ref().is_none_or(certain)
             })
             .min_by(|a, b| a.3.total_cmp(&b.3))
             .map(|(_, id, without, _)| (id, without.clone()))
@@ -698,10 +686,7 @@ impl StepJob {
             .tried
             .iter()
             .map(|(_, s)| s)
-            .filter(|s| {
-                fall(&model.score, &s.score) > LARGE_FALL
-                    || usual_fall(&model.score, &s.score) > HUGE_FALL
-            })
+            .filter(|s| may_hide(model, s))
             .collect();
         seen.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
         seen.truncate(count);
@@ -730,95 +715,4 @@ impl StepJob {
         others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
         others.into_iter().take(count).cloned().collect()
     }
-}
-
-/// Whether a part of an effect does in place of the whole: as well, or so that noise alone is left.
-fn enough(whole: &Scored, part: &Scored, first: &Score) -> bool {
-    alike(whole, part) || is_plain_noise(&part.score) || suffices(&part.score, &whole.score, first)
-}
-
-/// Whether two models leave the same error within noise.
-fn alike(a: &Scored, b: &Scored) -> bool {
-    same(&a.score, a.fit.values.len(), &b.score, b.fit.values.len())
-}
-
-/// Relative difference of error up to which two models do exactly the same.
-const TIED: f64 = 1e-3;
-
-/// Whether two models leave the same error for all that can be computed.
-fn tied(a: &Scored, b: &Scored) -> bool {
-    (a.score.error / b.score.error - 1.0).abs() < TIED
-}
-
-/// Relative difference of inertia (of a process: gain and time constant) up to which two models speak of
-/// the same body.
-const SAME_BODY: f64 = 0.2;
-
-/// Whether two models agree on the body, which the user knows roughly: with two levels of input a huge
-/// dead zone looks like a small load, on a motor half as heavy.
-fn same_body(a: &Scored, b: &Scored) -> bool {
-    let essential = match a.fit.structure.kind {
-        Kind::Drive => 1,
-        Kind::Process => 2,
-    };
-    let pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
-    pairs
-        .into_iter()
-        .all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
-}
-
-/// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how
-/// many standard errors; a larger fall asks for less, since its errors are widened by what is left.
-const LARGE_FALL: f64 = 0.1;
-const CLEAR_ERRORS: f64 = 3.0;
-const LEAST_ERRORS: f64 = 1.5;
-
-/// Fall of the error that speaks for itself.
-const HUGE_FALL: f64 = 0.5;
-
-/// Whether the last effect of `with` helps `model`, and is itself seen.
-fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
-    let last = with.fit.structure.effects.len().checked_sub(1);
-    helps(&model.score, &with.score)
-        && matters(&model.score, &with.score, first)
-        && last.is_some_and(|place| is_seen(model, with, place))
-}
-
-/// Whether the effect at this place of `with`, which `model` has not, or only a part of, stands out by itself.
-fn is_seen(model: &Scored, with: &Scored, place: usize) -> bool {
-    let fall = fall(&model.score, &with.score);
-    if fall > HUGE_FALL {
-        return true;
-    }
-    let clear = if fall > LARGE_FALL {
-        LEAST_ERRORS
-    } else {
-        CLEAR_ERRORS
-    };
-    stands_out(model, with, place, clear)
-}
-
-/// Whether the parameter that tells of the effect at this place of `with` is this many standard errors off 0.
-fn stands_out(model: &Scored, with: &Scored, place: usize, clear: f64) -> bool {
-    let inflation = with.score.error_fit.powi(2).max(1.0) * with.score.correlation.max(1.0);
-    let errors = with.fit.standard_errors(inflation);
-    let structure = &with.fit.structure;
-    let j = structure.range(place).start + telling(model, structure.effects[place]);
-    with.fit.values[j].abs() > clear * errors[j]
-}
-
-/// The place of the parameter that tells whether `effect` is there: its first one; in the place of a part of it in
-/// `model`, the first that the part has not, or not so large. A level of friction that both have tells nothing.
-fn telling(model: &Scored, effect: &dyn Effect) -> usize {
-    let effects = model.fit.structure.effects.iter();
-    let part = effects
-        .copied()
-        .find(|e| effect.contains().contains(&e.id()));
-    part.and_then(|part| {
-        effect.parameters().iter().position(|own| {
-            let mut others = part.parameters().iter();
-            others.all(|other| other.symbol != own.symbol || other.range != own.range)
-        })
-    })
-    .unwrap_or(0)
 }
