@@ -26,9 +26,9 @@ mod support;
 
 use hysteron_core::effect::EffectId;
 use hysteron_core::rig::Random;
+use hysteron_core::rig::process::{self, ProcessRig};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, relay};
 use support::case::{Bench, Case, Hidden};
-use support::process_rig::ProcessRig;
 use support::score::{NEAR_FLOOR, Outcome, Totals, report, run};
 use support::{drive_cases, process_cases};
 
@@ -194,7 +194,7 @@ fn the_rig_obeys_the_exact_solution() {
     }
     // A process under a constant input: y = K u (1 - exp(-t/T)).
     let process = ProcessRig {
-        excitation: support::process_rig::Excitation::Staircase { top: 1.0 },
+        excitation: process::Excitation::Staircase { top: 1.0 },
         samples: 110,
         ..ProcessRig::default()
     };

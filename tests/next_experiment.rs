@@ -13,10 +13,10 @@ use hysteron_core::criticism::{
     Progress,
 };
 use hysteron_core::measurement::Measurement;
+use hysteron_core::rig::process::{self, ProcessRig};
 use hysteron_core::rig::{self, DriveRig, SAMPLING, relay};
 use hysteron_core::user_model::UserModel;
 use support::diagnosis::{classes, finish};
-use support::process_rig::{self, ProcessRig};
 use support::proposed;
 
 /// These two act alike where the input has two opposite levels.
@@ -71,8 +71,8 @@ impl Bench for ProcessRig {
     fn set(self, proposal: &NextExperiment) -> Self {
         Self {
             seed: self.seed + 1000,
-            excitation: process_rig::Excitation::Proposed(proposed::of(proposal)),
-            samples: (proposal.duration / process_rig::SAMPLING).round() as usize,
+            excitation: process::Excitation::Proposed(proposed::of(proposal)),
+            samples: (proposal.duration / process::SAMPLING).round() as usize,
             ..self
         }
     }
@@ -126,7 +126,7 @@ fn a_constant_load_on_a_drive_is_told_from_gain_asymmetry() {
     check(rig, &OFFSET, "constant_load", 0.03);
 }
 
-const BINARY: process_rig::Excitation = process_rig::Excitation::Binary { level: 1.0 };
+const BINARY: process::Excitation = process::Excitation::Binary { level: 1.0 };
 
 #[test]
 fn gain_asymmetry_of_a_process_is_told_from_a_constant_load() {

@@ -1,9 +1,8 @@
 //! One blind case: a measurement, what is hidden in it, and what a fair diagnosis may say.
 
 use hysteron_core::measurement::Measurement;
-
-use super::process_rig::ProcessRig;
 use hysteron_core::rig::DriveRig;
+use hysteron_core::rig::process::ProcessRig;
 
 /// A hidden effect.
 #[derive(Clone, Debug)]

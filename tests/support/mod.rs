@@ -15,6 +15,5 @@ pub mod case;
 pub mod diagnosis;
 pub mod drive_cases;
 pub mod process_cases;
-pub mod process_rig;
 pub mod proposed;
 pub mod score;

@@ -1,8 +1,8 @@
 //! What is hidden in the processes.
 
 use super::case::{Bench, Case, Truth};
-use super::process_rig::{Excitation, ProcessRig, Stranger};
 use hysteron_core::rig::Random;
+use hysteron_core::rig::process::{Excitation, ProcessRig, Stranger};
 
 /// With two levels of input, a static map of it is a gain and an offset.
 const OFFSET: &[&str] = &["gain_asymmetry", "constant_load"];

@@ -1,15 +1,17 @@
-//! A drive on a test bench, by other physics and other numerics than the models that are fitted.
+//! A drive on a test bench, by other physics and other numerics than the models that are fitted, and a
+//! [`process`].
 //!
 //! It uses nothing of [`crate::model`] or [`crate::simulate`]: a model that explains its records does not do
 //! so by construction.
 //!
-//! Friction is a bristle (Canudas de Wit et al. 1995, "A new model for control of systems with
+//! The drive's friction is a bristle (Canudas de Wit et al. 1995, "A new model for control of systems with
 //! friction") with a Stribeck curve; contact in the gap is a stiff, damped spring that cannot pull
 //! (Nordin & Gutman 2002); the relay runs in a sampled controller; the encoder quantises and the
 //! velocity is noisy. Implicit midpoint steps of a few microseconds, the bristle and the actuator lag
 //! by their exact exponentials within a step (both are stiff).
 
 mod controller;
+pub mod process;
 mod proposed;
 mod random;
 mod run;

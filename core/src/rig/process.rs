@@ -3,13 +3,12 @@
 //! Runge-Kutta steps of 5 ms on a chain of lags with a transport delay line; the controller is sampled,
 //! the sensor is noisy.
 
-use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
-
-use hysteron_core::rig::Proposed;
-use hysteron_core::rig::Random;
+use super::{Proposed, Random};
+use crate::measurement::{Channel, Kind, Measurement, Quantity};
 
 /// Sampling time of the controller and the record, s.
 pub const SAMPLING: f64 = 0.2;
+/// Steps of integration in that time.
 const SUBSTEPS: usize = 40;
 /// Standard deviation of the noise of y.
 const NOISE: f64 = 0.01;
@@ -18,11 +17,22 @@ const NOISE: f64 = 0.01;
 #[derive(Clone, Copy, Debug)]
 pub enum Excitation {
     /// Relay of this gain on the measured output.
-    Relay { gain: f64, hysteresis: f64 },
-    /// Five levels up to this size, held 24 s each, in an irregular order.
-    Staircase { top: f64 },
+    Relay {
+        /// In the unit of the input.
+        gain: f64,
+        /// In the unit of the output.
+        hysteresis: f64,
+    },
+    /// Levels up to this size, held 24 s each, in an irregular order.
+    Staircase {
+        /// The largest level, in the unit of the input.
+        top: f64,
+    },
     /// Two levels, held for random multiples of 3 s.
-    Binary { level: f64 },
+    Binary {
+        /// Of both signs, in the unit of the input.
+        level: f64,
+    },
     /// What a proposed experiment asks for.
     Proposed(Proposed),
 }
@@ -31,38 +41,66 @@ pub enum Excitation {
 #[derive(Clone, Copy, Debug)]
 pub enum Stranger {
     /// The gain changes by this factor in the middle of the record.
-    GainSteps { factor: f64 },
-    /// A disturbance of the input that swings: amplitude and period in s.
-    Swing { amplitude: f64, period: f64 },
-    /// The valve sticks: play of this width in the input.
-    StickyValve { width: f64 },
-    /// The output first goes the wrong way (right half-plane zero, time constant in s).
-    WrongWay { time: f64 },
-    /// The time constant depends on the direction: this factor when falling.
-    SlowFall { factor: f64 },
+    GainSteps {
+        /// Of the change.
+        factor: f64,
+    },
+    /// A disturbance of the input that swings.
+    Swing {
+        /// In the unit of the input.
+        amplitude: f64,
+        /// s.
+        period: f64,
+    },
+    /// The valve sticks: play in the input.
+    StickyValve {
+        /// Half width, in the unit of the input.
+        width: f64,
+    },
+    /// The output first goes the wrong way: a zero in the right half-plane.
+    WrongWay {
+        /// Its time constant, s.
+        time: f64,
+    },
+    /// The time constant depends on the direction.
+    SlowFall {
+        /// Of the time constant when falling.
+        factor: f64,
+    },
 }
 
-/// One experiment and everything that is hidden in it.
+/// One experiment and everything that is hidden in it; values are taken as they are.
 #[derive(Clone, Copy, Debug)]
 pub struct ProcessRig {
+    /// Of the noise and of what is random in the input.
     pub seed: u64,
+    /// What drives it.
     pub excitation: Excitation,
+    /// Length of the record.
     pub samples: usize,
-    /// Output unit per input unit; s.
+    /// Output unit per input unit.
     pub gain: f64,
+    /// Of the first lag, s.
     pub time_constant: f64,
+    /// Time constant of a lag behind it, s; 0 for none.
     pub second_lag: f64,
+    /// Time constant of one behind both, s; 0 for none.
     pub third_lag: f64,
+    /// Of the input, s; met to a step of integration.
     pub dead_time: f64,
+    /// Share by which positive input acts more and negative input less.
     pub gain_asymmetry: f64,
-    /// Added to the input of the process; and its growth per s.
+    /// Added to the input of the process.
     pub constant_load: f64,
+    /// Its growth, input unit per s.
     pub load_ramp: f64,
     /// The largest input that the valve passes.
     pub saturation: f64,
     /// The output is `y + curvature y^2`, 1/output unit.
     pub curvature: f64,
+    /// Time constant of the sensor, s; 0 for none.
     pub sensor_lag: f64,
+    /// Physics that no library of the project knows.
     pub stranger: Option<Stranger>,
 }
 
@@ -119,7 +157,8 @@ impl ProcessRig {
             acting.push(self.passed(u, &mut valve));
             for j in 0..SUBSTEPS {
                 let now = i * SUBSTEPS + j;
-                let u = now.checked_sub(late).map_or(0.0, |n| acting[n / SUBSTEPS]);
+                let then = now.checked_sub(late).and_then(|n| acting.get(n / SUBSTEPS));
+                let u = then.copied().unwrap_or(0.0);
                 s = self.step(s, u, t + j as f64 * h, h);
             }
         }
@@ -172,7 +211,7 @@ impl ProcessRig {
         let mut gain = self.gain;
         match self.stranger {
             Some(Stranger::Swing { amplitude, period }) => {
-                push += amplitude * (std::f64::consts::TAU * t / period).sin();
+                push += amplitude * libm::sin(std::f64::consts::TAU * t / period);
             }
             Some(Stranger::GainSteps { factor }) if t > 0.5 * self.samples as f64 * SAMPLING => {
                 gain *= factor;
@@ -241,7 +280,9 @@ impl Controller {
             Excitation::Proposed(proposed) => proposed.input(t, y, &mut self.high),
             Excitation::Staircase { top } => {
                 const SHARES: [f64; 8] = [0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0];
-                top * SHARES[(t / 24.0) as usize % SHARES.len()]
+                top * SHARES
+                    .get((t / 24.0) as usize % SHARES.len())
+                    .unwrap_or(&0.0)
             }
             Excitation::Binary { level } => {
                 if t >= self.until {
