@@ -28,25 +28,25 @@ const STAGES: [Stage; 7] = [
         )
     }),
     ("documentation", || {
-        let arguments = ["doc", "--no-deps", "--workspace"];
-        let mut command = Command::new("cargo");
-        command.args(arguments).env("RUSTDOCFLAGS", "-D warnings");
-        check(command.current_dir(root()), "cargo", &arguments)
+        let flags = ("RUSTDOCFLAGS", "-D warnings");
+        cargo(&["doc", "--no-deps", "--workspace"], Some(flags))
     }),
     ("tests: core, command line, app", || {
-        let arguments = ["test", "--workspace", "--no-fail-fast"];
-        let mut command = Command::new("cargo");
-        command.args(arguments);
         // The same random cases each time, so that a failure is of this change; `cargo test` by itself looks
         // for new ones.
-        if std::env::var_os(SEED).is_none() {
-            command.env(SEED, "1");
-        }
-        check(command.current_dir(root()), "cargo", &arguments)
+        let seed = std::env::var_os(SEED).is_none().then_some((SEED, "1"));
+        cargo(&["test", "--workspace", "--no-fail-fast"], seed)
     }),
     ("web build", web::build),
     ("page in headless Chromium", browser::test),
 ];
+
+/// Runs cargo in the project's folder, with a variable of the environment.
+fn cargo(arguments: &[&str], variable: Option<(&str, &str)>) -> Result<(), String> {
+    let mut command = Command::new("cargo");
+    command.args(arguments).envs(variable).current_dir(root());
+    check(&mut command, "cargo", arguments)
+}
 
 /// Runs all stages; a failure does not keep the later ones from running.
 pub fn test() -> Result<(), String> {

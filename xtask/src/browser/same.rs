@@ -9,8 +9,8 @@ use crate::run::{output, root, run};
 /// Largest relative difference of an error.
 const EQUAL: f64 = 1e-9;
 
-/// Compares the errors of the baseline and of every effect on top of it, as the page has `shown` them for a measurement of the
-/// assets, with those of the command line.
+/// Compares the errors of the baseline and of every effect on top of it, as the page has `shown` them for a
+/// measurement of the assets, with those of the command line.
 pub fn check(shown: &Value, file: &str) -> Result<(), String> {
     let path = format!("assets/measurements/{file}.csv");
     // The tests before this one have built it.
