@@ -2,12 +2,13 @@
 
 mod support;
 
+use hysteron_core::backlash::estimate_gap;
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Parameter};
 use hysteron_core::effect::EffectId;
-use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::measurement::{Kind, Measurement, import_csv};
 use hysteron_core::mystery::{
     Answer, Choice, Experiment, Hidden, Mark, Mystery, MysteryError, Pick, Request, Reveal, Row,
-    SALT, Strength, Truth, hideable, make, seal_of,
+    SALT, Strength, Truth, columns, hideable, make, seal_of,
 };
 use proptest::prelude::*;
 use support::diagnosis::finish;
@@ -27,8 +28,8 @@ fn request(experiment: Experiment, choice: Choice, salt: u8) -> Request {
 }
 
 /// A pick of medium strength.
-fn pick(id: &str) -> Pick {
-    let effect = hideable().iter().find(|h| h.id.as_str() == id);
+fn pick(kind: Kind, id: &str) -> Pick {
+    let effect = hideable(kind).iter().find(|h| h.id.as_str() == id);
     let effect = effect.expect("an effect of the menu");
     Pick {
         effect: effect.id,
@@ -37,7 +38,8 @@ fn pick(id: &str) -> Pick {
 }
 
 fn mystery(experiment: Experiment, ids: &[&str]) -> Mystery {
-    let choice = Choice::Chosen(ids.iter().map(|id| pick(id)).collect());
+    let kind = experiment.kind();
+    let choice = Choice::Chosen(ids.iter().map(|id| pick(kind, id)).collect());
     make(&request(experiment, choice, 5)).expect("a mystery")
 }
 
@@ -104,13 +106,37 @@ fn a_diagnosis_finds_what_is_hidden_and_the_truth_gives_it_the_points() {
         (Experiment::Sines, &[], 97.0),
         // A relay cannot tell an offset from an asymmetry: the class is right, and no number is asked.
         (Experiment::Relay, &["gain_asymmetry"], 97.0),
+        (
+            Experiment::ProcessBinary,
+            &["input_delay", "second_lag"],
+            97.0,
+        ),
+        // Two lags in a row are the same in either order.
+        (Experiment::ProcessBinary, &["sensor_lag"], 97.0),
+        (
+            Experiment::ProcessRelay,
+            &["input_delay", "load_ramp"],
+            97.0,
+        ),
+        (
+            Experiment::ProcessStairs,
+            &["input_delay", "saturation"],
+            97.0,
+        ),
+        (Experiment::ProcessStairs, &["static_curvature"], 97.0),
+        (
+            Experiment::ProcessStairs,
+            &["second_lag", "constant_load"],
+            97.0,
+        ),
+        (Experiment::ProcessRelay, &[], 97.0),
     ] {
         let made = mystery(experiment, ids);
         let diagnosis = diagnosed(&made);
         let reveal = Reveal::open(&made.seal, WORD, &answer(&diagnosis)).expect("the word");
         let found = reveal.rows.iter().all(|r| match r.mark {
             Mark::Right => true,
-            Mark::Alike(_) => ids == ["gain_asymmetry"],
+            Mark::Alike(_) => ["gain_asymmetry", "sensor_lag", "second_lag"].contains(&ids[0]),
             _ => false,
         });
         assert!(
@@ -120,6 +146,18 @@ fn a_diagnosis_finds_what_is_hidden_and_the_truth_gives_it_the_points() {
         assert!(reveal.points() >= least, "{ids:?}: {reveal:?}");
         assert!(diagnosis.verdict.complete, "{ids:?}");
     }
+}
+
+#[test]
+fn a_hidden_gap_is_measured_from_the_motor_alone() {
+    let made = mystery(Experiment::Drifting, &["backlash"]);
+    assert!(made.link().len() < LINK, "{}", made.link().len());
+    let found = estimate_gap(&measured(&made)).expect("an estimate").gap;
+    let found = found.expect("a gap") / 2.0;
+    let truth = pick(Kind::Drive, "backlash").value;
+    assert!((found / truth - 1.0).abs() < 0.05, "{found} for {truth}");
+    let without = measured(&mystery(Experiment::Drifting, &[]));
+    assert_eq!(estimate_gap(&without).expect("an estimate").gap, None);
 }
 
 #[test]
@@ -188,8 +226,15 @@ fn only_the_word_opens_the_seal() {
 
 #[test]
 fn a_file_and_a_link_are_the_same_measurement_and_the_link_is_short() {
-    for experiment in [Experiment::Relay, Experiment::Sines, Experiment::Stairs] {
-        let made = mystery(experiment, &["coulomb_friction"]);
+    for (experiment, id, samples) in [
+        (Experiment::Relay, "coulomb_friction", 8000),
+        (Experiment::Sines, "coulomb_friction", 8000),
+        (Experiment::Stairs, "coulomb_friction", 8000),
+        (Experiment::ProcessRelay, "second_lag", 2000),
+        (Experiment::ProcessStairs, "saturation", 2000),
+        (Experiment::ProcessBinary, "input_delay", 2000),
+    ] {
+        let made = mystery(experiment, &[id]);
         let link = made.link();
         assert!(link.len() < LINK, "{experiment:?}: {}", link.len());
         let read = Mystery::from_link(&link).expect("a link of ours");
@@ -203,30 +248,59 @@ fn a_file_and_a_link_are_the_same_measurement_and_the_link_is_short() {
         let measurement = measured(&made);
         assert_eq!(
             (measurement.len(), &measurement.warnings[..]),
-            (8000, &[][..])
+            (samples, &[][..])
         );
-        assert_eq!(measurement.input.unit, "N m");
+        assert_eq!(measurement.kind, experiment.kind());
+        let unit = match measurement.kind {
+            Kind::Drive => "N m",
+            Kind::Process => "1",
+        };
+        assert_eq!(measurement.input.unit, unit);
     }
     assert_eq!(seal_of(b"# a comment\nt [s],u [N m],x1 [rad]\n"), None);
 }
 
 #[test]
 fn a_surprise_is_none_one_or_two_effects_that_the_experiment_shows() {
-    let mut seen = [0; 3];
-    for salt in 0..14 {
-        let made = make(&request(Experiment::Stairs, Choice::Surprise, salt)).expect("a mystery");
-        let reveal = Reveal::open(&made.seal, WORD, &Answer::default()).expect("the word");
-        let hidden = &reveal.truth.hidden;
-        seen[hidden.len()] += 1;
-        for Hidden { effect, parameters } in hidden {
-            let item = hideable().iter().find(|h| h.id == *effect);
-            let item = item.expect("an effect of the menu");
-            assert!(item.shown_by.contains(&Experiment::Stairs), "{effect}");
+    for experiment in [Experiment::Stairs, Experiment::ProcessStairs] {
+        let mut seen = [0; 3];
+        for salt in 0..14 {
+            let made = make(&request(experiment, Choice::Surprise, salt)).expect("a mystery");
+            let reveal = Reveal::open(&made.seal, WORD, &Answer::default()).expect("the word");
+            let hidden = &reveal.truth.hidden;
+            seen[hidden.len()] += 1;
+            for Hidden { effect, parameters } in hidden {
+                let mut menu = hideable(experiment.kind()).iter();
+                let item = menu.find(|h| h.id == *effect);
+                let item = item.expect("an effect of the menu");
+                assert!(item.shown_by.contains(&experiment), "{effect}");
+                let [least, most] = item.range;
+                assert!((least..=most).contains(&parameters[0].1), "{effect}");
+            }
+        }
+        assert!(seen.iter().all(|n| *n > 0), "{seen:?}");
+    }
+}
+
+#[test]
+fn the_menu_says_what_the_library_has() {
+    for kind in [Kind::Drive, Kind::Process] {
+        for item in hideable(kind) {
+            let effect = item.effect().expect("an effect of the library");
+            assert!(effect.kinds().contains(&kind), "{}", item.id);
+            let (symbol, label, _) = item.parameter();
+            assert!(!symbol.is_empty() && !label.is_empty(), "{}", item.id);
+            assert!(
+                item.shown_by.iter().all(|e| e.kind() == kind),
+                "{}",
+                item.id
+            );
             let [least, most] = item.range;
-            assert!((least..=most).contains(&parameters[0].1), "{effect}");
+            for value in Strength::ALL.map(|s| item.value(s)) {
+                assert!((least..=most).contains(&value), "{}", item.id);
+            }
         }
     }
-    assert!(seen.iter().all(|n| *n > 0), "{seen:?}");
 }
 
 #[test]
@@ -250,14 +324,15 @@ fn what_the_bench_cannot_do_is_refused_in_one_sentence() {
     for value in [0.0, 1e9, f64::NAN, f64::INFINITY] {
         let much = Pick {
             value,
-            ..pick("coulomb_friction")
+            ..pick(Kind::Drive, "coulomb_friction")
         };
         assert!(refused(vec![much], WORD).contains("0.005 to 0.12 N m"));
     }
-    let both = vec![pick("coulomb_friction"), pick("stribeck_friction")];
+    let drive = |id| pick(Kind::Drive, id);
+    let both = vec![drive("coulomb_friction"), drive("stribeck_friction")];
     assert!(refused(both, WORD).contains("cannot be hidden together"));
     let four = ["coulomb_friction", "input_delay", "dead_zone", "cogging"];
-    let four = four.into_iter().map(pick).collect();
+    let four = four.into_iter().map(drive).collect();
     assert!(refused(four, WORD).contains("At most 3"));
 }
 
@@ -268,6 +343,7 @@ fn truth() -> Truth {
         parameters: vec![(symbol.to_owned(), value)],
     };
     Truth {
+        kind: Kind::Drive,
         hidden: vec![
             hidden("coulomb_friction", "c", 0.04),
             hidden("input_delay", "tau", 1e-3),
@@ -362,16 +438,15 @@ fn the_points_follow_the_rule() {
 }
 
 fn some_mystery() -> impl Strategy<Value = Mystery> {
-    let row = (any::<i32>(), any::<i32>(), any::<i32>());
-    let rows = prop::collection::vec(row, 20..200);
+    let kind = prop_oneof![Just(Kind::Drive), Just(Kind::Process)];
+    let rows = prop::collection::vec(any::<[i32; 3]>(), 20..200);
     let seal = prop::collection::vec(any::<u8>(), 0..100);
-    (1..=u32::MAX, rows, seal).prop_map(|(step, rows, seal)| Mystery {
+    (kind, 1..=u32::MAX, rows, seal).prop_map(|(kind, step, rows, seal)| Mystery {
+        kind,
         step,
-        columns: [
-            rows.iter().map(|r| r.0).collect(),
-            rows.iter().map(|r| r.1).collect(),
-            rows.iter().map(|r| r.2).collect(),
-        ],
+        columns: (0..columns(kind).len())
+            .map(|i| rows.iter().map(|row| row[i]).collect())
+            .collect(),
         seal,
     })
 }

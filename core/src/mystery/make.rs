@@ -2,45 +2,132 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{COUNTS, INPUT_STEP, VELOCITY_STEP};
+use super::record::{INPUT_STEP, VELOCITY_STEP};
 use super::seal::{Keys, SALT};
-use super::{Hideable, Mystery, MysteryError, Truth, hideable};
+use super::{Hideable, Mystery, MysteryError, Truth, columns, hideable};
 use crate::effect::EffectId;
-use crate::measurement::{Channel, Measurement, Quantity};
-use crate::rig::{self, DriveRig, ENCODER, Excitation, Random};
+use crate::measurement::{Kind, Measurement};
+use crate::rig::process::{self, ProcessRig};
+use crate::rig::{self, DriveRig, ENCODER, Excitation, Random, carried_over, drifting};
 
 /// Most effects that are hidden.
 const MOST_EFFECTS: usize = 3;
 
-/// Length of the record.
+/// Length of a record: of a drive, of a process.
 const SAMPLES: usize = 8000;
+const SAMPLES_PROCESS: usize = 2000;
+
+/// Time after which the drift turns round, s, and how far the motor shall come: beyond every gap of the menu, rad.
+const FLIP: f64 = 0.8;
+const TRAVEL: f64 = 0.012;
 
 /// Shares of mysteries without and with one effect, where the bench chooses; the others have two.
 const NONE: f64 = 0.2;
 const ONE: f64 = 0.5;
 
-/// What the motor is driven with.
+/// What is measured, and what it is driven with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "snake_case")]
 pub enum Experiment {
-    /// A relay on the velocity, a little asymmetric.
+    /// A relay on the velocity of a drive, a little asymmetric.
     Relay,
-    /// A sum of sines.
+    /// A sum of sines on a drive.
     #[default]
     Sines,
-    /// Steps of growing size in both directions.
+    /// Steps of growing size in both directions on a drive.
     Stairs,
+    /// A relay on the velocity of a drive that lets it drift to and fro.
+    Drifting,
+    /// A relay on the output of a process.
+    ProcessRelay,
+    /// Levels of several sizes on a process.
+    ProcessStairs,
+    /// Two levels on a process, held for random times.
+    ProcessBinary,
 }
 
 impl Experiment {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Sines, Self::Relay, Self::Stairs];
+    /// All of them on such a system.
+    pub const fn of(kind: Kind) -> &'static [Self] {
+        match kind {
+            Kind::Drive => &[Self::Sines, Self::Relay, Self::Stairs, Self::Drifting],
+            Kind::Process => &[Self::ProcessBinary, Self::ProcessRelay, Self::ProcessStairs],
+        }
+    }
 
-    fn excitation(self) -> Excitation {
+    /// What is measured.
+    pub const fn kind(self) -> Kind {
         match self {
-            Self::Relay => rig::relay(0.1),
-            Self::Sines => Excitation::Multisine { amplitude: 0.08 },
-            Self::Stairs => Excitation::Staircase { top: 0.3 },
+            Self::Relay | Self::Sines | Self::Stairs | Self::Drifting => Kind::Drive,
+            Self::ProcessRelay | Self::ProcessStairs | Self::ProcessBinary => Kind::Process,
+        }
+    }
+
+    /// A bench of its own kind, where nothing is hidden yet.
+    fn bench(self, random: &mut Random) -> Bench {
+        let drive = |excitation, random: &mut Random| {
+            Bench::Drive(DriveRig {
+                seed: random.seed(),
+                excitation,
+                samples: SAMPLES,
+                encoder: ENCODER,
+                input_step: INPUT_STEP,
+                velocity_step: VELOCITY_STEP,
+                inertia: 8.8e-4 * random.between(0.9, 1.1),
+                viscous: 2e-3 * random.between(0.8, 1.2),
+                ..DriveRig::default()
+            })
+        };
+        let process = |excitation, random: &mut Random| {
+            Bench::Process(ProcessRig {
+                seed: random.seed(),
+                excitation,
+                samples: SAMPLES_PROCESS,
+                gain: 2.0 * random.between(0.9, 1.1),
+                time_constant: 30.0 * random.between(0.85, 1.15),
+                ..ProcessRig::default()
+            })
+        };
+        match self {
+            Self::Relay => drive(rig::relay(0.1), random),
+            Self::Sines => drive(Excitation::Multisine { amplitude: 0.08 }, random),
+            Self::Stairs => drive(Excitation::Staircase { top: 0.3 }, random),
+            Self::Drifting => drive(drifting(FLIP), random),
+            Self::ProcessRelay => {
+                let (gain, hysteresis) = (1.0, 0.1);
+                process(process::Excitation::Relay { gain, hysteresis }, random)
+            }
+            Self::ProcessStairs => process(process::Excitation::Staircase { top: 1.0 }, random),
+            Self::ProcessBinary => process(process::Excitation::Binary { level: 1.0 }, random),
+        }
+    }
+}
+
+/// What the experiment runs on.
+pub(super) enum Bench {
+    Drive(DriveRig),
+    Process(ProcessRig),
+}
+
+impl Bench {
+    /// Symbols and values of the simplest model, SI.
+    fn baseline(&self) -> [(String, f64); 2] {
+        let named = match self {
+            Self::Drive(rig) => [("J1", rig.inertia), ("d1", rig.viscous)],
+            Self::Process(rig) => [("K", rig.gain), ("T", rig.time_constant)],
+        };
+        named.map(|(symbol, value)| (symbol.to_owned(), value))
+    }
+
+    /// Runs the experiment.
+    fn measure(self, experiment: Experiment) -> Measurement {
+        match self {
+            Self::Process(rig) => rig.measure(),
+            // Whether there is a gap or not: else the relay would tell.
+            Self::Drive(rig) if experiment == Experiment::Drifting => {
+                carried_over(&rig, TRAVEL, FLIP, |rig| rig).measure()
+            }
+            Self::Drive(rig) => rig.measure(),
         }
     }
 }
@@ -67,7 +154,7 @@ pub enum Choice {
 /// Everything that a mystery follows from: the same request gives the same record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Request {
-    /// What the motor is driven with.
+    /// What is measured, and what it is driven with.
     pub experiment: Experiment,
     /// What to hide.
     pub choice: Choice,
@@ -84,47 +171,46 @@ pub struct Request {
 pub fn make(request: &Request) -> Result<Mystery, MysteryError> {
     let keys = Keys::new(&request.word, &request.salt)?;
     let mut random = Random::new(keys.seed);
-    let mut rig = DriveRig {
-        seed: random.seed(),
-        excitation: request.experiment.excitation(),
-        samples: SAMPLES,
-        encoder: ENCODER,
-        input_step: INPUT_STEP,
-        velocity_step: VELOCITY_STEP,
-        inertia: 8.8e-4 * random.between(0.9, 1.1),
-        viscous: 2e-3 * random.between(0.8, 1.2),
-        ..DriveRig::default()
-    };
+    let kind = request.experiment.kind();
+    let mut bench = request.experiment.bench(&mut random);
     let picks = match &request.choice {
-        Choice::Chosen(picks) => chosen(picks)?,
+        Choice::Chosen(picks) => chosen(kind, picks)?,
         Choice::Surprise => surprise(request.experiment, &mut random),
     };
     let hidden = picks
         .into_iter()
-        .map(|(effect, value)| effect.hide(value, &mut rig, &mut random))
+        .map(|(effect, value)| effect.hide(value, &mut bench, &mut random))
         .collect::<Result<_, _>>()?;
     let truth = Truth {
+        kind,
         hidden,
-        baseline: vec![
-            ("J1".to_owned(), rig.inertia),
-            ("d1".to_owned(), rig.viscous),
-        ],
+        baseline: bench.baseline().into(),
     };
+    let measurement = bench.measure(request.experiment);
     Ok(Mystery {
-        step: (rig.sampling * 1e6).round() as u32,
-        columns: counts(&rig.measure()),
+        kind,
+        step: (step(&measurement) * 1e6).round() as u32,
+        columns: counts(&measurement),
         seal: keys.seal(&request.salt, &truth.text())?,
     })
 }
 
+/// Sampling time of what was measured, s.
+fn step(measurement: &Measurement) -> f64 {
+    match measurement.time.as_slice() {
+        [first, second, ..] => second - first,
+        _ => 0.0,
+    }
+}
+
 /// What was picked, as far as the bench can do it.
-fn chosen(picks: &[Pick]) -> Result<Vec<(&'static Hideable, f64)>, MysteryError> {
+fn chosen(kind: Kind, picks: &[Pick]) -> Result<Vec<(&'static Hideable, f64)>, MysteryError> {
     if picks.len() > MOST_EFFECTS {
         return Err(MysteryError::TooMany(MOST_EFFECTS));
     }
     let mut found: Vec<(&Hideable, f64)> = Vec::new();
     for pick in picks {
-        let effect = hideable().iter().find(|h| h.id == pick.effect);
+        let effect = hideable(kind).iter().find(|h| h.id == pick.effect);
         let unknown = || MysteryError::UnknownEffect(pick.effect.to_string());
         let effect = effect.ok_or_else(unknown)?;
         if let Some((other, _)) = found.iter().find(|(other, _)| !other.goes_with(effect)) {
@@ -139,7 +225,7 @@ fn chosen(picks: &[Pick]) -> Result<Vec<(&'static Hideable, f64)>, MysteryError>
 fn surprise(experiment: Experiment, random: &mut Random) -> Vec<(&'static Hideable, f64)> {
     let share = random.uniform();
     let count = usize::from(share >= NONE) + usize::from(share >= NONE + ONE);
-    let mut left: Vec<&Hideable> = hideable()
+    let mut left: Vec<&Hideable> = hideable(experiment.kind())
         .iter()
         .filter(|h| h.shown_by.contains(&experiment))
         .collect();
@@ -154,18 +240,15 @@ fn surprise(experiment: Experiment, random: &mut Random) -> Vec<(&'static Hideab
 }
 
 /// The columns as the bench has counted them.
-fn counts(measurement: &Measurement) -> [Vec<i32>; 3] {
-    let count = |channel: Option<&Channel>, step: f64| {
+fn counts(measurement: &Measurement) -> Vec<Vec<i32>> {
+    let count = |column: &super::Column| {
+        let output = || measurement.output(column.quantity);
+        let channel = Some(&measurement.input).filter(|c| c.quantity == column.quantity);
+        let channel = channel.or_else(output);
         let values = channel.map(|c| c.values.as_slice()).unwrap_or_default();
         // A cast of a number beyond all bounds gives the bound.
-        values.iter().map(|v| (v / step).round() as i32).collect()
+        let counts = values.iter().map(|v| (v / column.step).round() as i32);
+        counts.collect()
     };
-    [
-        count(Some(&measurement.input), INPUT_STEP),
-        count(
-            measurement.output(Quantity::Position),
-            std::f64::consts::TAU / COUNTS,
-        ),
-        count(measurement.output(Quantity::Velocity), VELOCITY_STEP),
-    ]
+    columns(measurement.kind).iter().map(count).collect()
 }

@@ -15,7 +15,7 @@ mod truth;
 pub use error::MysteryError;
 pub use make::{Choice, Experiment, Pick, Request, make};
 pub use menu::{Hideable, Strength, hideable};
-pub use record::{Mystery, seal_of};
+pub use record::{Column, Mystery, columns, seal_of};
 pub use reveal::{Answer, Compared, Mark, Reveal, Row};
 pub use seal::{SALT, SHORTEST_WORD};
 pub use truth::{Hidden, Truth};

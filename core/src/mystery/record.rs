@@ -11,20 +11,67 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use super::MysteryError;
-use crate::measurement::MIN_SAMPLES;
+use crate::measurement::{Kind, MIN_SAMPLES, Quantity};
 
-/// Version of the text in a link.
-const VERSION: u8 = 1;
+/// First byte of the text in a link.
+const DRIVE: u8 = 1;
+const PROCESS: u8 = 2;
 
 /// Counts of the encoder in a turn.
-pub(super) const COUNTS: f64 = 1_048_576.0;
+const COUNTS: f64 = 1_048_576.0;
 /// Step of the commanded torque, N m.
 pub(super) const INPUT_STEP: f64 = 1e-3;
 /// Step of the velocity, rad/s.
 pub(super) const VELOCITY_STEP: f64 = 1e-3;
 
-/// What the columns of a file are.
-const HEADER: &str = "t [us],u [mN m],x1 [counts, 1048576/rev],v1 [mrad/s]";
+/// Step of the input and of the output of a process, in their units.
+const PROCESS_STEP: f64 = 1e-3;
+
+/// What is counted.
+#[derive(Debug)]
+pub struct Column {
+    /// Name and unit in a file.
+    pub title: &'static str,
+    /// Counts in one of that unit.
+    pub counts: f64,
+    /// One count, SI.
+    pub step: f64,
+    /// What was measured.
+    pub quantity: Quantity,
+}
+
+const fn column(title: &'static str, counts: f64, step: f64, quantity: Quantity) -> Column {
+    Column {
+        title,
+        counts,
+        step,
+        quantity,
+    }
+}
+
+const DRIVE_COLUMNS: [Column; 3] = [
+    column("u [mN m]", 1.0, INPUT_STEP, Quantity::Input),
+    column(
+        "x1 [counts, 1048576/rev]",
+        1.0,
+        std::f64::consts::TAU / COUNTS,
+        Quantity::Position,
+    ),
+    column("v1 [mrad/s]", 1.0, VELOCITY_STEP, Quantity::Velocity),
+];
+
+const PROCESS_COLUMNS: [Column; 2] = [
+    column("u [1]", 1e3, PROCESS_STEP, Quantity::Input),
+    column("y [1]", 1e3, PROCESS_STEP, Quantity::Output),
+];
+
+/// The columns of a record beside its time.
+pub const fn columns(kind: Kind) -> &'static [Column] {
+    match kind {
+        Kind::Drive => &DRIVE_COLUMNS,
+        Kind::Process => &PROCESS_COLUMNS,
+    }
+}
 
 /// What stands before the sealed truth in a file.
 const SEAL: &str = "# sealed truth 1: ";
@@ -41,10 +88,12 @@ const LEVEL: u8 = 9;
 /// A record with the truth about it, sealed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mystery {
+    /// What was measured.
+    pub kind: Kind,
     /// Sampling time, us.
     pub step: u32,
-    /// Input in mN m, position in counts of 2^20 a turn, velocity in mrad/s; equally many of each.
-    pub columns: [Vec<i32>; 3],
+    /// Counts of [`columns`], equally many of each.
+    pub columns: Vec<Vec<i32>>,
     /// The truth, sealed.
     pub seal: Vec<u8>,
 }
@@ -62,23 +111,40 @@ impl Mystery {
 
     /// The file: an ordinary measurement, with the seal in a comment.
     pub fn csv(&self) -> String {
+        let columns = columns(self.kind);
+        let titles: Vec<&str> = columns.iter().map(|c| c.title).collect();
         let mut text = format!(
             "# A mystery of Hysteron. Open this file in Compare, find what is missing, then reveal the truth.\n\
-             {SEAL}{}\n{HEADER}\n",
-            LETTERS.encode(&self.seal)
+             {SEAL}{}\nt [us],{}\n",
+            LETTERS.encode(&self.seal),
+            titles.join(",")
         );
-        let [u, x, v] = &self.columns;
-        for (i, ((u, x), v)) in u.iter().zip(x).zip(v).enumerate() {
+        for i in 0..self.len() {
             // Writing into a string cannot fail.
-            let _ = writeln!(text, "{},{u},{x},{v}", i as u64 * u64::from(self.step));
+            let _ = write!(text, "{}", i as u64 * u64::from(self.step));
+            for (column, counts) in columns.iter().zip(&self.columns) {
+                let count = counts.get(i).copied().map_or(0.0, f64::from);
+                let _ = write!(text, ",{}", count / column.counts);
+            }
+            text.push('\n');
         }
         text
+    }
+
+    /// How many samples there are.
+    pub fn len(&self) -> usize {
+        self.columns.iter().map(Vec::len).min().unwrap_or(0)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// The text for a link.
     pub fn link(&self) -> String {
         let mut bytes = Vec::new();
-        let length = self.columns.iter().map(Vec::len).min().unwrap_or(0);
+        let length = self.len();
         for number in [u64::from(self.step), length as u64, self.seal.len() as u64] {
             push(number, &mut bytes);
         }
@@ -92,7 +158,10 @@ impl Mystery {
                 last = value;
             }
         }
-        let mut packed = vec![VERSION];
+        let mut packed = vec![match self.kind {
+            Kind::Drive => DRIVE,
+            Kind::Process => PROCESS,
+        }];
         packed.extend(miniz_oxide::deflate::compress_to_vec(&bytes, LEVEL));
         LETTERS.encode(packed)
     }
@@ -106,8 +175,10 @@ impl Mystery {
         let packed = LETTERS
             .decode(text)
             .map_err(|_| bad("it has letters that do not belong there"))?;
-        let Some((&VERSION, packed)) = packed.split_first() else {
-            return Err(bad("it is of another version"));
+        let (kind, packed) = match packed.split_first() {
+            Some((&DRIVE, packed)) => (Kind::Drive, packed),
+            Some((&PROCESS, packed)) => (Kind::Process, packed),
+            _ => return Err(bad("it is of another version")),
         };
         let bytes = miniz_oxide::inflate::decompress_to_vec_with_limit(packed, MOST_BYTES)
             .map_err(|_| bad("it is cut off or changed"))?;
@@ -125,7 +196,7 @@ impl Mystery {
         let sealed = usize::try_from(sealed).unwrap_or(usize::MAX);
         let (seal, after) = rest.split_at_checked(sealed).ok_or_else(cut)?;
         rest = after;
-        let mut columns = [Vec::new(), Vec::new(), Vec::new()];
+        let mut columns = vec![Vec::new(); columns(kind).len()];
         for column in &mut columns {
             let (mut last, mut slope) = (0_i64, 0_i64);
             for _ in 0..length {
@@ -143,6 +214,7 @@ impl Mystery {
             return Err(bad("it goes on behind its end"));
         }
         Ok(Self {
+            kind,
             step,
             columns,
             seal: seal.to_vec(),

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Hidden, MysteryError, Truth, seal};
 use crate::criticism::Parameter;
 use crate::effect::{Effect, EffectId, Motion, VISCOUS_FRICTION, find};
+use crate::measurement::Kind;
 
 /// Points for the effects and for the numbers; together 100.
 const EFFECT_POINTS: f64 = 70.0;
@@ -164,23 +165,30 @@ impl Reveal {
 }
 
 fn numbers(truth: &Truth, marks: &[Mark], answer: &Answer) -> Vec<Compared> {
-    let mut numbers = Vec::new();
+    let (kind, mut numbers) = (truth.kind, Vec::new());
     if !marks.iter().any(|m| matches!(m, Mark::Alike(_))) {
         let baseline = truth.baseline.iter();
-        numbers.extend(baseline.map(|(symbol, value)| compare(None, symbol, *value, answer)));
+        numbers.extend(baseline.map(|(symbol, value)| compare(kind, None, symbol, *value, answer)));
     }
     for (Hidden { effect, parameters }, mark) in truth.hidden.iter().zip(marks) {
         if !matches!(mark, Mark::Alike(_)) {
             let own = parameters.iter();
-            numbers
-                .extend(own.map(|(symbol, value)| compare(Some(*effect), symbol, *value, answer)));
+            numbers.extend(
+                own.map(|(symbol, value)| compare(kind, Some(*effect), symbol, *value, answer)),
+            );
         }
     }
     numbers
 }
 
 /// One number; those that may have either sign with the same meaning are compared by size.
-fn compare(effect: Option<EffectId>, symbol: &str, truth: f64, answer: &Answer) -> Compared {
+fn compare(
+    kind: Kind,
+    effect: Option<EffectId>,
+    symbol: &str,
+    truth: f64,
+    answer: &Answer,
+) -> Compared {
     let found = answer
         .parameters
         .iter()
@@ -199,17 +207,20 @@ fn compare(effect: Option<EffectId>, symbol: &str, truth: f64, answer: &Answer) 
         symbol: symbol.to_owned(),
         truth,
         found: found.map(|p| (value(p), p.std_error)),
-        unit: found.map_or_else(|| unit(effect, symbol), |p| p.unit.clone()),
+        unit: found.map_or_else(|| unit(kind, effect, symbol), |p| p.unit.clone()),
         mark,
     }
 }
 
 /// The unit that the library gives a parameter; empty where it does not know it.
-fn unit(effect: Option<EffectId>, symbol: &str) -> String {
+fn unit(kind: Kind, effect: Option<EffectId>, symbol: &str) -> String {
+    let motion = match kind {
+        Kind::Drive => Motion::Rotational,
+        Kind::Process => Motion::None,
+    };
     let parameters = effect.and_then(find).map(Effect::parameters);
     let own = parameters.unwrap_or_default().iter();
     let mut own = own.filter(|p| p.symbol == symbol);
-    own.next().map_or_else(String::new, |p| {
-        p.dimension.unit(Motion::Rotational).to_owned()
-    })
+    own.next()
+        .map_or_else(String::new, |p| p.dimension.unit(motion).to_owned())
 }

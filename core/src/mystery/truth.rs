@@ -6,9 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::MysteryError;
 use crate::effect::EffectId;
+use crate::measurement::Kind;
 
-/// First word of a sealed text.
-const BEGIN: &str = "truth";
+/// First line of a sealed text.
+const DRIVE: &str = "truth";
+const PROCESS: &str = "truth:process";
 
 /// One hidden effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,8 +23,10 @@ pub struct Hidden {
 }
 
 /// All that is true of a record.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
+    /// What was measured.
+    pub kind: Kind,
     /// The hidden effects; none where nothing is missing.
     pub hidden: Vec<Hidden>,
     /// Parameters of the simplest model: symbol and value in SI.
@@ -32,7 +36,11 @@ pub struct Truth {
 impl Truth {
     /// One line a group: a name, then symbols and values in turn.
     pub(super) fn text(&self) -> String {
-        let mut text = BEGIN.to_owned();
+        let begin = match self.kind {
+            Kind::Drive => DRIVE,
+            Kind::Process => PROCESS,
+        };
+        let mut text = begin.to_owned();
         let baseline = std::iter::once(("baseline", &self.baseline));
         let hidden = self.hidden.iter();
         for (name, parameters) in baseline.chain(hidden.map(|h| (h.effect.as_str(), &h.parameters)))
@@ -49,10 +57,17 @@ impl Truth {
     /// Reads what [`Self::text`] has written.
     pub(super) fn read(text: &str) -> Result<Self, MysteryError> {
         let mut lines = text.lines();
-        if lines.next().map(str::trim) != Some(BEGIN) {
-            return Err(MysteryError::BadSeal);
-        }
-        let mut truth = Self::default();
+        let kind = match lines.next().map(str::trim) {
+            Some(DRIVE) => Kind::Drive,
+            Some(PROCESS) => Kind::Process,
+            _ => return Err(MysteryError::BadSeal),
+        };
+        let (hidden, baseline) = (Vec::new(), Vec::new());
+        let mut truth = Self {
+            kind,
+            hidden,
+            baseline,
+        };
         for line in lines {
             let mut words = line.split_whitespace();
             let Some(name) = words.next() else {

@@ -1,6 +1,7 @@
 //! The experiment, and what to hide.
 
 use egui::Ui;
+use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
@@ -22,8 +23,30 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
             "Staircase",
             "Steps of growing size in both directions: tells offsets from asymmetry.",
         ),
+        Experiment::Drifting => (
+            "Drifting relay",
+            "A relay whose levels differ, so that the motor drifts to and fro: shows a gap behind it. Backlash measures that at once, Compare looks for it for minutes.",
+        ),
+        Experiment::ProcessBinary => (
+            "Two levels",
+            "Two levels, held for random times: shows what comes late.",
+        ),
+        Experiment::ProcessRelay => (
+            "Relay",
+            "A relay on the output: shows what comes late and what drifts.",
+        ),
+        Experiment::ProcessStairs => (
+            "Staircase",
+            "Levels of several sizes and both signs: tells offsets from asymmetry, and shows what is bent or cut off.",
+        ),
     }
 }
+
+/// Name of what can be measured, and its name for tests.
+const MACHINES: [(Kind, &str, &str); 2] = [
+    (Kind::Drive, "drive", "A drive"),
+    (Kind::Process, "process", "A process"),
+];
 
 const fn strength_name(strength: Strength) -> &'static str {
     match strength {
@@ -40,6 +63,7 @@ fn handy(unit: &'static str) -> (f64, &'static str) {
         "N m" => (1e3, "mN m"),
         "rad" => (1e3, "mrad"),
         "1" => (1e2, "%"),
+        "1/s" => (6e3, "%/min"),
         "N m s^2/rad^2" => (1e6, "µN m s²/rad²"),
         other => (1.0, other),
     }
@@ -47,9 +71,18 @@ fn handy(unit: &'static str) -> (f64, &'static str) {
 
 impl Bench {
     pub(super) fn choices_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
-        ui.heading(tr("1. How is the drive driven?"));
+        ui.heading(tr("1. What is measured, and how is it driven?"));
         ui.horizontal_wrapped(|ui| {
-            for experiment in Experiment::ALL {
+            for (kind, id, name) in MACHINES {
+                let radio = ui.radio(self.experiment.kind() == kind, tr(name));
+                desk.targets.note(format!("mystery:{id}"), ui, &radio);
+                if radio.clicked() {
+                    self.measure(kind);
+                }
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            for &experiment in Experiment::of(self.experiment.kind()) {
                 let (name, story) = words(experiment);
                 ui.selectable_value(&mut self.experiment, experiment, tr(name))
                     .on_hover_text(tr(story));
@@ -74,10 +107,25 @@ impl Bench {
         }
     }
 
+    /// Goes to the first experiment on such a system, unless it is one; what was picked stays behind.
+    fn measure(&mut self, kind: Kind) {
+        let first = Experiment::of(kind).first().copied();
+        if let Some(first) = first.filter(|_| self.experiment.kind() != kind) {
+            self.experiment = first;
+            self.picks.clear();
+        }
+    }
+
+    /// Everything that can be hidden in what is measured.
+    fn menu(&self) -> &'static [Hideable] {
+        hideable(self.experiment.kind())
+    }
+
     /// What the page may choose, in words.
     fn surprise(&self) -> String {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
-        let names: Vec<&str> = hideable()
+        let names: Vec<&str> = self
+            .menu()
             .iter()
             .filter(shown)
             .map(Hideable::name)
@@ -91,7 +139,7 @@ impl Bench {
     /// The menu of effects; those that this experiment shows stand first.
     fn menu_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
-        let (shown, others): (Vec<&Hideable>, Vec<_>) = hideable().iter().partition(shown);
+        let (shown, others): (Vec<&Hideable>, Vec<_>) = self.menu().iter().partition(shown);
         for effect in shown {
             self.effect_ui(ui, effect, desk);
         }
@@ -115,7 +163,8 @@ impl Bench {
     fn effect_ui(&mut self, ui: &mut Ui, effect: &'static Hideable, desk: &mut Desk) {
         let name = effect.name();
         let mut chosen = self.pick(effect.id).is_some();
-        let other = hideable()
+        let other = self
+            .menu()
             .iter()
             .find(|o| o.id != effect.id && !o.goes_with(effect) && self.pick(o.id).is_some());
         ui.horizontal_wrapped(|ui| {

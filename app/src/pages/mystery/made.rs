@@ -1,7 +1,8 @@
 //! A mystery that was made: its record, and the ways to hand it on.
 
 use egui_plot::Line;
-use hysteron_core::mystery::Mystery;
+use hysteron_core::measurement::Kind;
+use hysteron_core::mystery::{Mystery, columns};
 
 use crate::export::Table;
 use crate::language::tr;
@@ -27,7 +28,7 @@ pub(super) struct Product {
     samples: usize,
     /// Length of the record, s.
     duration: f64,
-    /// Velocity in rad/s over time in s.
+    /// The last column over time in s.
     curve: Vec<[f64; 2]>,
 }
 
@@ -35,16 +36,19 @@ impl Product {
     pub fn of(made: Made) -> Self {
         let Made { mystery, link } = made;
         let step = f64::from(mystery.step) * 1e-6;
-        let [_, _, velocities] = &mystery.columns;
-        let samples = velocities.len();
+        let samples = mystery.len();
         let time: Vec<f64> = (0..samples).map(|i| i as f64 * step).collect();
-        let speed: Vec<f64> = velocities.iter().map(|v| f64::from(*v) * 1e-3).collect();
+        let last = columns(mystery.kind).iter().zip(&mystery.columns).last();
+        let values: Vec<f64> = last.map_or_else(Vec::new, |(column, counts)| {
+            let value = |count: &i32| f64::from(*count) * column.step;
+            counts.iter().map(value).collect()
+        });
         Self {
             name: mystery.name(),
             link: format!("{VERSION};compare;compare.mystery={link}"),
             samples,
             duration: samples as f64 * step,
-            curve: envelope(&time, &speed, MOST_POINTS),
+            curve: envelope(&time, &values, MOST_POINTS),
             mystery,
         }
     }
@@ -99,22 +103,34 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
                 });
             }
         });
-        caption_ui(ui, "What was measured", &[("velocity", theme::MEASURED)]);
-        still("mystery_record", "time [s]", "v1 [rad/s]", 200.0).show(ui, |plot| {
-            plot.line(Line::new(tr("velocity"), curve(points)).color(theme::MEASURED));
+        let (quantity, axis) = match mystery.kind {
+            Kind::Drive => ("velocity", "v1 [rad/s]"),
+            Kind::Process => ("output", "y [1]"),
+        };
+        caption_ui(ui, "What was measured", &[(quantity, theme::MEASURED)]);
+        still("mystery_record", "time [s]", axis, 200.0).show(ui, |plot| {
+            plot.line(Line::new(tr(quantity), curve(points)).color(theme::MEASURED));
         });
     });
 }
 
 /// The record as a table.
 pub(super) fn table(product: &Product) -> Table {
-    let step = u64::from(product.mystery.step);
-    let [u, x, v] = &product.mystery.columns;
-    let time = (0..x.len() as u64).map(|i| (i * step) as f64 * 1e-6);
-    let column = |values: &[i32]| values.iter().map(|v| f64::from(*v)).collect::<Vec<_>>();
-    Table::new("mystery")
-        .with("t [s]", time)
-        .with("u [mN m]", column(u))
-        .with("x1 [counts, 1048576/rev]", column(x))
-        .with("v1 [mrad/s]", column(v))
+    let Mystery {
+        kind,
+        step,
+        columns: counts,
+        ..
+    } = &product.mystery;
+    let time = (0..product.samples as u64).map(|i| (i * u64::from(*step)) as f64 * 1e-6);
+    let table = Table::new("mystery").with("t [s]", time);
+    columns(*kind)
+        .iter()
+        .zip(counts)
+        .fold(table, |table, (column, counts)| {
+            table.with(
+                column.title,
+                counts.iter().map(|c| f64::from(*c) / column.counts),
+            )
+        })
 }

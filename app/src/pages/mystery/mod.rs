@@ -42,7 +42,7 @@ pub struct Bench {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
-    /// What the motor is driven with.
+    /// What is measured, and how.
     experiment: Experiment,
     /// Whether the teacher chooses what to hide.
     by_hand: bool,
@@ -79,7 +79,7 @@ impl Bench {
 
     fn page_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         theme::answer_ui(ui, "Which effect is hidden?");
-        ui.label(tr("The bench hides physics in a drive and measures it. The truth travels with the record, sealed with your word: find it, then reveal it."));
+        ui.label(tr("The bench hides physics in a drive or a process and measures it. The truth travels with the record, sealed with your word: find it, then reveal it."));
         ui.add_space(6.0);
         if self.made.is_none() {
             picture::ui(ui, self.experiment);

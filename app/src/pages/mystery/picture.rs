@@ -1,8 +1,10 @@
-//! What the bench does, drawn: it drives a motor, hides something on the way to the load, and measures.
+//! What the bench does, drawn: it drives a motor or a valve, hides something on the way to the load or the tank,
+//! and measures.
 
 use std::f32::consts::TAU;
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::Experiment;
 
 use crate::language::tr;
@@ -15,7 +17,10 @@ const WIDEST: f32 = 900.0;
 /// Points of a curve.
 const POINTS: usize = 160;
 
-/// Shares of the width: the torque, the drive, the velocity; the names in the drive need theirs.
+/// Time constant of the tank, as a share of the record.
+const TANK: f32 = 0.07;
+
+/// Shares of the width: what drives it, the system, what is measured; the names in the drive need theirs.
 const SHARES: [f32; 3] = [0.27, 0.46, 0.27];
 const NARROW_SHARES: [f32; 3] = [0.21, 0.58, 0.21];
 const NARROW: f32 = 500.0;
@@ -34,16 +39,21 @@ pub(super) fn ui(ui: &mut Ui, experiment: Experiment) {
     } else {
         SHARES
     };
-    let [torque, drive, velocity] = shares.map(|share| {
+    let [cause, system, effect] = shares.map(|share| {
         let width = share * rect.width();
         let part = Rect::from_min_size(pos2(left, rect.top()), vec2(width, HEIGHT));
         left += width;
         part.shrink2(vec2(4.0, 4.0))
     });
     let push = curve(|t| push(experiment, t));
-    pen.curve(torque, "torque", &push, theme::INPUT);
-    pen.drive(drive);
-    pen.curve(velocity, "velocity", &summed(&push), theme::MEASURED);
+    let (names, answer) = match experiment.kind() {
+        Kind::Drive => (["torque", "motor", "load", "velocity"], summed(&push)),
+        Kind::Process => (["input", "valve", "tank", "output"], followed(&push)),
+    };
+    let [input, near, far, output] = names;
+    pen.curve(cause, input, &push, theme::INPUT);
+    pen.system(system, near, far);
+    pen.curve(effect, output, &answer, theme::MEASURED);
 }
 
 struct Pen {
@@ -78,8 +88,8 @@ impl Pen {
             .add(Shape::line(points, Stroke::new(2.0, color)));
     }
 
-    /// Motor and load on a shaft, and what stands between them.
-    fn drive(&self, rect: Rect) {
+    /// Motor and load on a shaft, or valve and tank on a pipe, and what stands between them.
+    fn system(&self, rect: Rect, near: &str, far: &str) {
         let middle = rect.center().y + 10.0;
         let end = 0.12 * rect.width();
         for (tip, from) in [
@@ -98,12 +108,8 @@ impl Pen {
             Rect::from_center_size(pos2(left + 0.5 * width, middle), vec2(width, height))
         };
         for (part, name, color) in [
-            (block(inner.left(), side, 56.0), "motor", theme::MEASURED),
-            (
-                block(inner.right() - side, side, 84.0),
-                "load",
-                theme::NOISE,
-            ),
+            (block(inner.left(), side, 56.0), near, theme::MEASURED),
+            (block(inner.right() - side, side, 84.0), far, theme::NOISE),
         ] {
             self.painter.rect_filled(part, 5.0, color);
             self.text(
@@ -131,32 +137,56 @@ fn curve(f: impl Fn(f32) -> f32) -> Vec<f32> {
     (0..POINTS).map(|i| f(time(i))).collect()
 }
 
-/// The torque over the share of the record, from -1 to 1.
+/// What drives it over the share of the record, from -1 to 1.
 fn push(experiment: Experiment, t: f32) -> f32 {
+    // One of the levels that take turns.
+    let level = |levels: &[f32]| {
+        let turn = (levels.len() as f32 * t) as usize;
+        levels.get(turn).or(levels.last()).copied().unwrap_or(0.0)
+    };
+    let square = |turns: f32| (TAU * (turns * t + 0.25)).sin().signum();
     match experiment {
         Experiment::Sines => [1.0, 2.0, 5.0, 11.0]
             .iter()
             .map(|n| 0.3 * (TAU * n * t + n * n).sin())
             .sum(),
-        Experiment::Relay => (TAU * (4.0 * t + 0.25)).sin().signum(),
+        Experiment::Relay => square(4.0),
         Experiment::Stairs => {
             let step = (16.0 * t).min(15.9).floor();
             let level = 0.4 + 0.2 * (step / 4.0).floor();
             [level, 0.0, -level, 0.0][step as usize % 4]
         }
+        Experiment::Drifting => square(8.0) + if t < 0.5 { 0.15 } else { -0.15 },
+        Experiment::ProcessRelay => square(6.0),
+        Experiment::ProcessStairs => level(&[0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0]),
+        Experiment::ProcessBinary => level(&[
+            1.0, 1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0,
+        ]),
     }
 }
 
 /// What a body does that nothing holds: its velocity sums up the torque. Without its mean, from -1 to 1.
 fn summed(torque: &[f32]) -> Vec<f32> {
     let mut sum = 0.0;
-    let raw: Vec<f32> = torque
-        .iter()
-        .map(|u| {
-            sum += u;
-            sum
-        })
-        .collect();
+    scaled(torque.iter().map(|u| {
+        sum += u;
+        sum
+    }))
+}
+
+/// What a tank does: its level follows the input late.
+fn followed(input: &[f32]) -> Vec<f32> {
+    let mut level = 0.0;
+    let share = 1.0 / (TANK * input.len() as f32);
+    scaled(input.iter().map(|u| {
+        level += share * (u - level);
+        level
+    }))
+}
+
+/// From -1 to 1.
+fn scaled(values: impl Iterator<Item = f32>) -> Vec<f32> {
+    let raw: Vec<f32> = values.collect();
     let (low, high) = raw
         .iter()
         .fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));

@@ -1,0 +1,109 @@
+//! What can be hidden in a process.
+
+use super::{Family, Hide, Hideable};
+use crate::effect::EffectId;
+use crate::mystery::Experiment::{ProcessBinary, ProcessRelay, ProcessStairs};
+
+/// Shares of a time constant of some 30 s and of an input of 1. What shifts, bends or cuts off the static
+/// characteristic is one family: of two such effects a diagnosis may find neither.
+pub(super) const MENU: &[Hideable] = &[
+    Hideable {
+        id: EffectId::new("input_delay"),
+        main: "tau",
+        strengths: [3.0, 5.0, 8.0],
+        range: [1.0, 15.0],
+        shown_by: &[ProcessRelay, ProcessBinary, ProcessStairs],
+        family: Family::Lateness,
+        hide: Hide::Process(|tau, rig, _| {
+            // In whole steps of the bench, so that it is met exactly.
+            rig.dead_time = (tau / 5e-3).round() * 5e-3;
+            vec![("tau", rig.dead_time)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("second_lag"),
+        main: "T2",
+        strengths: [4.0, 6.0, 8.0],
+        range: [2.0, 15.0],
+        shown_by: &[ProcessRelay, ProcessBinary, ProcessStairs],
+        family: Family::Storage,
+        hide: Hide::Process(|time, rig, _| {
+            rig.second_lag = time;
+            vec![("T2", time)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("sensor_lag"),
+        main: "T_s",
+        strengths: [3.0, 4.5, 6.0],
+        range: [1.5, 12.0],
+        shown_by: &[ProcessBinary, ProcessStairs],
+        // Two lags in a row are the same in either order.
+        family: Family::Storage,
+        hide: Hide::Process(|time, rig, _| {
+            rig.sensor_lag = time;
+            vec![("T_s", time)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("gain_asymmetry"),
+        main: "a",
+        strengths: [0.08, 0.12, 0.16],
+        range: [0.03, 0.4],
+        shown_by: &[ProcessStairs, ProcessBinary],
+        family: Family::Offset,
+        hide: Hide::Process(|a, rig, _| {
+            rig.gain_asymmetry = a;
+            vec![("a", a)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("constant_load"),
+        main: "F0",
+        strengths: [0.05, 0.08, 0.12],
+        range: [0.02, 0.3],
+        shown_by: &[ProcessStairs, ProcessBinary],
+        family: Family::Offset,
+        hide: Hide::Process(|load, rig, _| {
+            rig.constant_load = load;
+            vec![("F0", load)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("load_ramp"),
+        main: "r",
+        strengths: [3e-4, 5e-4, 8e-4],
+        range: [1e-4, 1.5e-3],
+        shown_by: &[ProcessRelay, ProcessStairs],
+        family: Family::Offset,
+        hide: Hide::Process(|slope, rig, _| {
+            rig.load_ramp = slope;
+            vec![("r", slope)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("saturation"),
+        main: "M",
+        strengths: [0.72, 0.66, 0.6],
+        range: [0.4, 0.9],
+        // The others have one size of input only.
+        shown_by: &[ProcessStairs],
+        family: Family::Offset,
+        hide: Hide::Process(|limit, rig, _| {
+            rig.saturation = limit;
+            vec![("M", limit)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("static_curvature"),
+        main: "p",
+        strengths: [0.04, 0.06, 0.08],
+        range: [0.02, 0.12],
+        shown_by: &[ProcessStairs],
+        family: Family::Offset,
+        hide: Hide::Process(|p, rig, _| {
+            rig.curvature = p;
+            vec![("p", p)]
+        }),
+    },
+];
