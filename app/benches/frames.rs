@@ -1,7 +1,7 @@
 //! How much work of its own a frame takes while someone drags: every slider and every number of every page in
-//! turn, and the pointer and the wheel over a finished diagnosis, 60 frames a second, so that what runs beside them has time to bring its results; and the shapes cut into
-//! triangles, as for a software rasteriser. What paints them is not measured; nor, on Linux, is the time that the
-//! thread waited for a processor. What else the machine did meanwhile is no work of the app: so a drag with a frame
+//! turn, and the pointer, the wheel and a drag over what is only looked at, 60 frames a second, so that what runs beside them
+//! has time to bring its results; and the shapes cut into triangles, as for a software rasteriser. What paints them
+//! is not measured; nor, on Linux, is the time that the thread waited for a processor. What else the machine did meanwhile is no work of the app: so a drag with a frame
 //! above 16 ms is made again, and counts as slow if it is so every time.
 //!
 //! ```text
@@ -34,32 +34,66 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// Time between two pictures at 60 a second.
 const FRAME: Duration = Duration::from_micros(16_667);
 
-/// What is opened: a name and a link.
-const PLACES: [(&str, &str); 12] = [
-    ("start", "v1;start"),
-    ("explore", "v1;explore"),
-    ("explore, Fig. 5", "v1;explore;explore.figure=5"),
-    ("maps", "v1;maps"),
-    ("tune, relay", "v1;tune"),
-    ("tune, ultimate gain", "v1;tune;tune.step=ultimate"),
-    ("tune, phase margin", "v1;tune;tune.step=adaptation"),
-    ("tune, model", "v1;tune;tune.step=model"),
-    ("tune, rules", "v1;tune;tune.step=rules"),
-    ("tune, loops", "v1;tune;tune.step=loops"),
-    ("backlash", "v1;backlash"),
-    ("backlash, measured", "v1;backlash;backlash.file=drive-10"),
+/// What is opened: a name, a link, and buttons that are pressed then.
+type Place = (&'static str, &'static str, &'static [&'static str]);
+
+/// Every slider and number there is dragged.
+const PLACES: [Place; 14] = [
+    ("start", "v1;start", &[]),
+    ("explore", "v1;explore", &[]),
+    ("explore, Fig. 5", "v1;explore;explore.figure=5", &[]),
+    ("maps", "v1;maps", &[]),
+    ("tune, relay", "v1;tune", &[]),
+    ("tune, ultimate gain", "v1;tune;tune.step=ultimate", &[]),
+    ("tune, phase margin", "v1;tune;tune.step=adaptation", &[]),
+    ("tune, model", "v1;tune;tune.step=model", &[]),
+    ("tune, rules", "v1;tune;tune.step=rules", &[]),
+    ("tune, loops", "v1;tune;tune.step=loops", &[]),
+    ("backlash", "v1;backlash", &[]),
+    (
+        "backlash, measured",
+        "v1;backlash;backlash.file=drive-10",
+        &[],
+    ),
+    (
+        "mystery, drive",
+        "v1;mystery;mystery.by_hand=true",
+        &[
+            "mystery:hide:coulomb_friction",
+            "mystery:hide:input_delay",
+            "mystery:hide:cogging",
+        ],
+    ),
+    (
+        "mystery, process",
+        "v1;mystery;mystery.by_hand=true;mystery.experiment=%22process_stairs%22",
+        &["mystery:hide:saturation", "mystery:hide:input_delay"],
+    ),
 ];
 
-/// A measurement with its model, and what is looked at: a name, and the button that shows it. There is nothing to
-/// drag on it; the pointer goes over it, and the wheel turns.
+/// A measurement with its model.
 const DIAGNOSIS: &str =
     "v1;compare;compare.file=drive-02;compare.effects=%5B%22coulomb_friction%22%5D";
-const LOOKS: [(&str, &str); 4] = [
-    ("compare, over time", "look:time"),
-    ("compare, beside before", "before"),
-    ("compare, places", "look:places"),
-    ("compare, fingerprint", "look:fingerprint"),
+
+/// There the pointer goes over the page, the wheel turns, and the plots are dragged.
+const LOOKS: [Place; 9] = [
+    ("explore, plots", "v1;explore", &[]),
+    ("maps, plots", "v1;maps", &[]),
+    ("lessons", "v1;lessons", &[]),
+    ("backlash, plots", "v1;backlash", &[]),
+    ("compare, over time", DIAGNOSIS, &["look:time"]),
+    (
+        "compare, beside before",
+        DIAGNOSIS,
+        &["look:time", "before"],
+    ),
+    ("compare, places", DIAGNOSIS, &["look:places"]),
+    ("compare, fingerprint", DIAGNOSIS, &["look:fingerprint"]),
+    ("mystery, list", "v1;mystery;mystery.by_hand=true", &[]),
 ];
+
+/// What is said of a measurement that is opened.
+const OPENING: &str = "compare, opening";
 
 /// Lines from the left to the right on which the pointer goes over a page, and how far the wheel turns in a frame.
 const LINES: usize = 8;
@@ -74,7 +108,7 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(link: &str) -> Self {
+    fn new(link: &str, buttons: &[&str]) -> Self {
         let mut bench = Self {
             ctx: Context::default(),
             app: HysteronApp::default(),
@@ -85,6 +119,12 @@ impl Bench {
         let opened = bench.app.open_link(&bench.ctx, link);
         assert_eq!(opened, Ok(()), "{link}");
         bench.settle();
+        while bench.app.hook_state()["busy"] == true && !buttons.is_empty() {
+            bench.settle();
+        }
+        for button in buttons {
+            bench.press(button);
+        }
         bench
     }
 
@@ -153,16 +193,24 @@ impl Bench {
     /// Drags from the left end of a place to its right end; the times of the frames.
     fn drag(&mut self, place: Rect) -> Vec<Duration> {
         let at = |share: f32| Pos2::new(place.left() + share * place.width(), place.center().y);
-        let button = |pos, pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        };
-        self.frame(vec![Event::PointerMoved(at(0.02))]);
-        self.frame(vec![button(at(0.02), true)]);
-        let frames = self.paced(|share| Event::PointerMoved(at(0.02 + 0.96 * share)));
-        self.frame(vec![button(at(0.98), false)]);
+        self.pull(|share| at(0.02 + 0.96 * share))
+    }
+
+    /// Drags to the right and back again, on a plot if there is one.
+    fn sway(&mut self, at: f32) -> Vec<Duration> {
+        let y = 0.4 * WINDOW.y;
+        self.pull(|share| {
+            let way = 1.0 - (2.0 * share - 1.0).abs();
+            Pos2::new((at + 0.1 * way) * WINDOW.x, y)
+        })
+    }
+
+    /// The frames of a drag along a path.
+    fn pull(&mut self, path: impl Fn(f32) -> Pos2) -> Vec<Duration> {
+        self.frame(vec![Event::PointerMoved(path(0.0))]);
+        self.frame(vec![button(path(0.0), true)]);
+        let frames = self.paced(|share| Event::PointerMoved(path(share)));
+        self.frame(vec![button(path(1.0), false)]);
         frames
     }
 
@@ -182,17 +230,8 @@ impl Bench {
     fn press(&mut self, name: &str) {
         let at = self.app.hook_state()["targets"][name].clone();
         let [x, y] = [0, 1].map(|i| at[i].as_f64().expect("a button") as f32);
-        let button = |pressed| Event::PointerButton {
-            pos: Pos2::new(x, y),
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        };
-        for event in [
-            Event::PointerMoved(Pos2::new(x, y)),
-            button(true),
-            button(false),
-        ] {
+        let at = Pos2::new(x, y);
+        for event in [Event::PointerMoved(at), button(at, true), button(at, false)] {
             self.frame(vec![event]);
         }
         self.settle();
@@ -217,6 +256,16 @@ impl Bench {
             phase: TouchPhase::Move,
             modifiers: Modifiers::NONE,
         })
+    }
+}
+
+/// The pointer's button goes down or up.
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
     }
 }
 
@@ -267,46 +316,58 @@ fn report(name: &str, movements: &[(String, Vec<Duration>)]) {
         let worst = frames.iter().max().copied().unwrap_or_default();
         let late = late(frames);
         println!(
-            "    {label}: {late} of {DRAG}, up to {:.1} ms",
+            "    {label}: {late} of {}, up to {:.1} ms",
+            frames.len(),
             milliseconds(worst)
         );
     }
 }
 
-/// The pointer on every line of a page, and the wheel on both sides of it; they leave it as it was.
-fn looked_at(button: &str) -> Vec<(String, Vec<Duration>)> {
-    let mut bench = Bench::new(DIAGNOSIS);
-    while bench.app.hook_state()["busy"] == true {
-        bench.settle();
-    }
-    bench.press(button);
+/// The pointer on every line of a page, the wheel and a drag on both sides of it; they leave it as it was.
+fn looked_at((_, link, buttons): Place) -> Vec<(String, Vec<Duration>)> {
+    let mut bench = Bench::new(link, buttons);
     let mut movements: Vec<_> = (0..LINES)
         .map(|line| (format!("line {line}"), least(|| bench.hover(line))))
         .collect();
     for (side, at) in [("left", 0.3), ("right", 0.85)] {
         movements.push((format!("wheel, {side}"), least(|| bench.turn(at))));
+        movements.push((format!("drag, {side}"), least(|| bench.sway(at))));
     }
     movements
+}
+
+/// A measurement is opened, and its diagnosis comes in.
+fn opened() -> Vec<(String, Vec<Duration>)> {
+    let mut bench = Bench::new("v1;compare", &[]);
+    bench.frames.clear();
+    bench.press("builtin:drive-02");
+    while bench.app.hook_state()["busy"] == true {
+        bench.settle();
+    }
+    vec![("opening".to_owned(), std::mem::take(&mut bench.frames))]
 }
 
 fn main() {
     // A word chooses the places whose names have it.
     let chosen = std::env::args().skip(1).find(|a| !a.starts_with('-'));
-    let wanted = |name: &str| chosen.as_ref().is_none_or(|word| name.contains(word));
+    let wanted = |place: &Place| chosen.as_ref().is_none_or(|word| place.0.contains(word));
     println!(
         "{:<24}{:>9}{:>9}{:>10}{:>10}{:>10}{:>9}{:>9}",
         "page", "drags", "frames", "median", "95 %", "worst", "> 16 ms", "worst/16"
     );
-    for (name, link) in PLACES.into_iter().filter(|p| wanted(p.0)) {
+    for (name, link, buttons) in PLACES.into_iter().filter(wanted) {
         // Each drag is on a page of its own: it would leave another behind.
-        let controls = Bench::new(link).controls();
+        let controls = Bench::new(link, buttons).controls();
         let drag = |(label, place): (String, Rect)| {
-            let frames = least(|| Bench::new(link).drag(place));
+            let frames = least(|| Bench::new(link, buttons).drag(place));
             (label, frames)
         };
         report(name, &controls.into_iter().map(drag).collect::<Vec<_>>());
     }
-    for (name, button) in LOOKS.into_iter().filter(|p| wanted(p.0)) {
-        report(name, &looked_at(button));
+    for place in LOOKS.into_iter().filter(wanted) {
+        report(place.0, &looked_at(place));
+    }
+    if chosen.as_ref().is_none_or(|word| OPENING.contains(word)) {
+        report(OPENING, &opened());
     }
 }
