@@ -1,20 +1,28 @@
 // What the page does with its time, noted from inside: frames, tasks, answers to inputs, workers.
 (() => {
-  const fresh = () => ({ frames: 0, frame: 0, task: 0, answers: 0, answer: 0, workers: 0 });
+  const fresh = () => ({
+    frames: 0, frame: 0, frame_at: 0, task: 0, task_at: 0, answers: 0, answer: 0, answer_at: 0, workers: 0,
+    since: performance.now(),
+  });
   let watch = fresh();
   let reacted = null;
   let wanted = null;
+  let first = null;
   window.hysteron_watch = {
     begin() { watch = fresh(); },
     read: () => watch,
     // From now on: when is a frame of another page drawn?
     expect(page) { wanted = `"page":"${page}"`; reacted = null; },
-    reacted: () => reacted,
+    // When the first frame was there, and when the one that was expected; null for not yet.
+    reacted: () => [first, reacted],
   };
   // The app says its state in every frame that it makes: most of them when the browser asks for a frame, those of a
   // click at once. The browser paints both when it has asked.
   let state = null, made = false, asked = null, begin = 0;
-  const work = () => { watch.frame = Math.max(watch.frame, performance.now() - begin); };
+  const work = () => {
+    const time = performance.now() - begin;
+    if (time > watch.frame) [watch.frame, watch.frame_at] = [time, begin - watch.since];
+  };
   Object.defineProperty(window, "hysteron_state", {
     get: () => state,
     set: (text) => { state = text; made = true; work(); },
@@ -33,10 +41,11 @@
     made = false;
     const end = performance.now();
     watch.frames += 1;
+    first ??= end;
     work();
     if (asked !== null) {
       watch.answers += 1;
-      watch.answer = Math.max(watch.answer, end - asked);
+      if (end - asked > watch.answer) [watch.answer, watch.answer_at] = [end - asked, asked - watch.since];
       asked = null;
     }
     if (wanted !== null && state.includes(wanted)) {
@@ -46,7 +55,9 @@
   });
   // The browser tells of tasks above 50 ms only: that is what is asked.
   new PerformanceObserver((list) => {
-    for (const entry of list.getEntries()) watch.task = Math.max(watch.task, entry.duration);
+    for (const { duration, startTime } of list.getEntries()) {
+      if (duration > watch.task) [watch.task, watch.task_at] = [duration, startTime - watch.since];
+    }
   }).observe({ type: "longtask" });
   const Started = window.Worker;
   window.Worker = class extends Started {

@@ -38,21 +38,41 @@ pub fn interactive(session: &Session, page: &str) -> Result<String, String> {
     let coordinate = |i: usize| asked[i].as_f64().unwrap_or(0.0);
     session.tap(coordinate(0), coordinate(1))?;
     // It is painted a little after the page has taken the click.
-    let mut reacted = Value::Null;
-    while reacted.is_null() {
+    let mut seen = Value::Null;
+    while seen[1].is_null() {
         if started.elapsed() > PATIENCE {
             return Err("no frame answered the click".to_owned());
         }
         std::thread::sleep(Duration::from_millis(50));
-        reacted = session.script("return window.hysteron_watch.reacted()")?;
+        seen = session.script("return window.hysteron_watch.reacted()")?;
     }
-    let reacted = reacted.as_f64().unwrap_or(f64::NAN);
+    let [first, reacted] = [0, 1].map(|i| seen[i].as_f64().unwrap_or(f64::NAN));
     Ok(format!(
-        "interactive in {:.2} s: {:.2} of the {} s asked",
+        "interactive in {:.2} s, the first frame in {:.2} s: {:.2} of the {} s asked",
         reacted / 1e3,
+        first / 1e3,
         reacted / INTERACTIVE,
         INTERACTIVE / 1e3
     ))
+}
+
+/// What took longest, and how long after the click that began the diagnosis, ms.
+#[derive(Clone, Copy, Default)]
+struct Longest {
+    time: f64,
+    at: f64,
+}
+
+impl Longest {
+    fn or(self, other: Self) -> Self {
+        if other.time > self.time { other } else { self }
+    }
+
+    fn share(self) -> String {
+        let Self { time, at } = self;
+        let share = time / ANSWER;
+        format!("{time:.0} ms, {share:.2} of the {ANSWER} ms asked, {at:.0} ms after the click")
+    }
 }
 
 /// What the page did while a diagnosis ran.
@@ -60,11 +80,12 @@ pub fn interactive(session: &Session, page: &str) -> Result<String, String> {
 pub struct Busy {
     frames: u64,
     answers: u64,
-    /// The longest: the app's own work on a frame, a task above [`ANSWER`], and from an input to the end of the
-    /// frame that answers it, ms.
-    frame: f64,
-    task: f64,
-    answer: f64,
+    /// The app's own work on a frame.
+    frame: Longest,
+    /// A task above [`ANSWER`].
+    task: Longest,
+    /// From an input to the end of the frame that answers it.
+    answer: Longest,
 }
 
 impl Busy {
@@ -82,7 +103,10 @@ impl Busy {
         std::thread::sleep(Duration::from_millis(200));
         let seen = session.script("return window.hysteron_watch.read()")?;
         let count = |key: &str| seen[key].as_u64().unwrap_or(0);
-        let longest = |key: &str| seen[key].as_f64().unwrap_or(0.0);
+        let longest = |key: &str| Longest {
+            time: seen[key].as_f64().unwrap_or(0.0),
+            at: seen[format!("{key}_at")].as_f64().unwrap_or(0.0),
+        };
         if count("workers") == 0 {
             return Err("the diagnosis did not run in a worker".to_owned());
         }
@@ -91,19 +115,18 @@ impl Busy {
         }
         self.frames += count("frames");
         self.answers += count("answers");
-        self.frame = self.frame.max(longest("frame"));
-        self.task = self.task.max(longest("task"));
-        self.answer = self.answer.max(longest("answer"));
+        self.frame = self.frame.or(longest("frame"));
+        self.task = self.task.or(longest("task"));
+        self.answer = self.answer.or(longest("answer"));
         Ok(())
     }
 
     /// All of it, as shares of what is asked.
     pub fn report(&self) -> String {
-        let share = |ms: f64| format!("{ms:.0} ms, {:.2} of the {ANSWER} ms asked", ms / ANSWER);
-        let task = if self.task == 0.0 {
+        let task = if self.task.time == 0.0 {
             format!("none above the {ANSWER} ms asked")
         } else {
-            share(self.task)
+            self.task.share()
         };
         format!(
             "while a diagnosis ran: {} frames, {} of them answers to the pointer\n  \
@@ -112,8 +135,8 @@ impl Busy {
              longest from the pointer to its frame, with the wait for the software renderer: {}",
             self.frames,
             self.answers,
-            share(self.frame),
-            share(self.answer)
+            self.frame.share(),
+            self.answer.share()
         )
     }
 }
