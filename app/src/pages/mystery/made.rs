@@ -38,7 +38,10 @@ impl Product {
         let step = f64::from(mystery.step) * 1e-6;
         let samples = mystery.len();
         let time: Vec<f64> = (0..samples).map(|i| i as f64 * step).collect();
-        let last = columns(mystery.kind).iter().zip(&mystery.columns).last();
+        let last = columns(mystery.kind)
+            .iter()
+            .zip(&mystery.columns)
+            .next_back();
         let values: Vec<f64> = last.map_or_else(Vec::new, |(column, counts)| {
             let value = |count: &i32| f64::from(*count) * column.step;
             counts.iter().map(value).collect()
