@@ -164,6 +164,11 @@ pub struct Pen<'p, 'd> {
 }
 
 impl<'d> Pen<'_, 'd> {
+    /// Whether the numbers of whole curves are asked for, not only what is in view.
+    pub fn notes(&self) -> bool {
+        self.table.is_some()
+    }
+
     pub fn line(&mut self, line: Line<'d>) {
         self.note(&line);
         self.plot.line(line);

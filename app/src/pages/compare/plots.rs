@@ -1,12 +1,16 @@
 //! Measured and modelled curves over each other, the residual beneath.
 
-use egui_plot::{HLine, Legend, Line, LineStyle, PlotPoint, PlotPoints, Span, Text};
+use std::ops::Range;
+
+use egui_plot::{
+    HLine, Legend, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Span, Text,
+};
 use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
 use crate::language::tr;
-use crate::pages::chart::{Chart, envelope};
+use crate::pages::chart::{Chart, Pen, envelope};
 use crate::theme;
 
 /// Most points of a curve that are drawn; above, each stretch shows its extremes.
@@ -40,7 +44,14 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     }
 }
 
-fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32) -> Chart<'a> {
+/// A plot that has room for everything between two values, also for what is not in view.
+fn plot<'a>(
+    measurement: &Measurement,
+    id: String,
+    y_label: String,
+    height: f32,
+    (low, high): (f64, f64),
+) -> Chart<'a> {
     let (start, end) = (measurement.time[0], measurement.time[measurement.len() - 1]);
     let group = egui::Id::unique(("compare", &measurement.name));
     let first = start + FIRST_VIEW * (end - start).max(f64::MIN_POSITIVE);
@@ -48,6 +59,8 @@ fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32)
     Chart::new(id, axes, height, AXIS_WIDTH).with(|plot| {
         plot.default_x_bounds(start, first)
             .auto_bounds([false, true])
+            .include_y(low)
+            .include_y(high)
             .link_axis(group, [true, false])
             .link_cursor(group, [true, false])
             .legend(Legend::default())
@@ -71,31 +84,36 @@ fn signal_plot(
     height: f32,
 ) {
     let label = unit_label(&output.name, &output.unit);
-    plot(
+    let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
+    let shown = plot(
         measurement,
         format!("signal {}", output.name),
         label,
         height,
+        extremes(output.values.iter().chain(model).copied()),
     )
     .show(ui, |plot| {
         shade(plot, finding);
         let alone = measurement.outputs.len() == 1;
         mark(plot, finding.filter(|f| alone || is_about(f, output)));
-        let measured = points(&measurement.time, &output.values);
+        let drawn = drawn(plot, &measurement.time);
+        let measured = points(&measurement.time, &output.values, &drawn);
         plot.line(
             Line::new(tr("measured"), measured)
                 .color(theme::MEASURED)
                 .width(2.5),
         );
-        if let Some(modelled) = modelled {
-            let line = Line::new(tr("model"), points(&measurement.time, &modelled.modelled));
+        if modelled.is_some() {
+            let line = Line::new(tr("model"), points(&measurement.time, model, &drawn));
             plot.line(
                 line.color(theme::MODEL)
                     .width(1.5)
                     .style(LineStyle::dashed_loose()),
             );
         }
+        drawn
     });
+    draw_more(ui, &measurement.time, &shown);
 }
 
 fn residual_plot(
@@ -112,23 +130,26 @@ fn residual_plot(
         pairs.map(|(y, m)| y - m).collect()
     };
     let residual = less(modelled);
-    plot(
+    let earlier = before.map_or_else(Vec::new, less);
+    let shown = plot(
         measurement,
         format!("residual {}", output.name),
         label,
         height,
+        extremes(residual.iter().chain(&earlier).copied()),
     )
     .show(ui, |plot| {
         shade(plot, finding);
-        if let Some(before) = before {
+        let drawn = drawn(plot, &measurement.time);
+        if before.is_some() {
             let line = Line::new(
                 tr("the step before"),
-                points(&measurement.time, &less(before)),
+                points(&measurement.time, &earlier, &drawn),
             );
             plot.line(line.color(theme::MODEL).width(1.2));
         }
         plot.line(
-            Line::new(tr("residual"), points(&measurement.time, &residual))
+            Line::new(tr("residual"), points(&measurement.time, &residual, &drawn))
                 .color(theme::RESIDUAL)
                 .width(1.2),
         );
@@ -136,7 +157,9 @@ fn residual_plot(
             let line = HLine::new(tr("noise, 2 sigma"), side * modelled.noise);
             plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
         }
+        drawn
     });
+    draw_more(ui, &measurement.time, &shown);
 }
 
 /// Where the selected finding says that the error lies.
@@ -182,7 +205,41 @@ fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
     }
 }
 
-/// Points of a curve.
-fn points(time: &[f64], values: &[f64]) -> PlotPoints<'static> {
+/// Points of the drawn stretch of a curve.
+fn points(time: &[f64], values: &[f64], drawn: &Range<usize>) -> PlotPoints<'static> {
+    let [time, values] = [time, values].map(|all| all.get(drawn.clone()).unwrap_or_default());
     envelope(time, values, MAX_POINTS).into()
+}
+
+/// The least and the largest of some values.
+fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let first = (f64::INFINITY, f64::NEG_INFINITY);
+    values.fold(first, |(low, high), v| (low.min(v), high.max(v)))
+}
+
+/// The samples in view.
+fn in_view(bounds: &PlotBounds, time: &[f64]) -> Range<usize> {
+    let at = |t: f64| time.partition_point(|s| *s < t);
+    at(bounds.min()[0])..at(bounds.max()[0])
+}
+
+/// The samples to draw: those in view, and as many on both sides for what moves before the next frame. A whole record
+/// takes a browser longer than a frame. Its beginning moves in steps, so that the dashes of a curve stand still.
+fn drawn(plot: &Pen<'_, '_>, time: &[f64]) -> Range<usize> {
+    let bounds = plot.plot_bounds();
+    if plot.notes() || !bounds.is_valid_x() {
+        return 0..time.len();
+    }
+    let view = in_view(&bounds, time);
+    let width = view.len().max(1);
+    let begin = view.start.saturating_sub(width) / width * width;
+    begin..(view.end + 2 * width).min(time.len())
+}
+
+/// Asks for another frame where a plot now shows more than was drawn.
+fn draw_more(ui: &egui::Ui, time: &[f64], shown: &PlotResponse<Range<usize>>) {
+    let view = in_view(shown.transform.bounds(), time);
+    if view.start < shown.inner.start || view.end > shown.inner.end {
+        ui.ctx().request_repaint();
+    }
 }
