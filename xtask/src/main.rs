@@ -1,5 +1,6 @@
 //! Set-up, web build, serve and tests: `cargo xtask help`.
 
+mod archives;
 mod browser;
 mod offline;
 mod release;
@@ -19,6 +20,7 @@ const HELP: &str = "cargo xtask COMMAND
   web             build the page into dist/
   serve [--port N]  serve dist/ on http://127.0.0.1:N (8080)
   browser-test    drive dist/ in headless Chromium
+  archives-test   pack what the tests have built, unpack it, and use it
   release         pack the program and the page into target/archives/
 ";
 
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
             .map_err(|_| format!("'{port}' is not a port; expected a number such as 8080"))
             .and_then(serve::forever),
         ["browser-test"] => browser::test(),
+        ["archives-test"] => archives::test(),
         ["release"] => release::build(),
         [] | ["help" | "--help" | "-h"] => {
             print!("{HELP}");

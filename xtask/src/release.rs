@@ -1,21 +1,26 @@
 //! What is given out: the native program and the page, one archive each.
 
-use std::env::consts::{ARCH, EXE_SUFFIX, OS};
+use std::env::consts::{ARCH, OS};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::run::{root, run};
+use crate::run::{PROGRAM, root, run};
 use crate::web;
 
 /// What stands beside the program: what its manual speaks of.
-const BESIDE: [&str; 6] = [
+const BESIDE: [&str; 8] = [
     "README.md",
+    "ARCHITECTURE.md",
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "docs",
     "assets/measurements",
     "assets/scenarios",
+    "assets/screenshots",
 ];
+
+/// What stands beside the page.
+const BESIDE_PAGE: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
 
 /// Builds both and packs them into `target/archives`.
 pub fn build() -> Result<(), String> {
@@ -29,31 +34,34 @@ pub fn build() -> Result<(), String> {
     ];
     run("cargo", &package)?;
     web::build()?;
-    let folder = root().join("target/archives");
-    let _ = fs::remove_dir_all(&folder);
+    let profile = root().join("target/release");
+    for archive in archives(&profile, &root().join("target/archives"))? {
+        let size = fs::metadata(&archive).map_err(|e| format!("{}: {e}", archive.display()))?;
+        println!("{}: {} bytes", archive.display(), size.len());
+    }
+    Ok(())
+}
+
+/// Packs the program that stands in `profile`, and the page, into `folder`, which is emptied; the native archive
+/// comes first.
+pub fn archives(profile: &Path, folder: &Path) -> Result<[PathBuf; 2], String> {
+    let _ = fs::remove_dir_all(folder);
     let version = env!("CARGO_PKG_VERSION");
     let native = folder.join(format!("hysteron-{version}-{OS}-{ARCH}"));
-    let program = format!("hysteron{EXE_SUFFIX}");
-    copy(
-        &root().join("target/release").join(&program),
-        &native.join(&program),
-    )?;
+    copy(&profile.join(PROGRAM), &native.join(PROGRAM))?;
     for name in BESIDE {
         copy(&root().join(name), &native.join(name))?;
     }
     let page = folder.join(format!("hysteron-{version}-web"));
     copy(&root().join("dist"), &page)?;
-    for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
+    for name in BESIDE_PAGE {
         copy(&root().join(name), &page.join(name))?;
     }
-    for content in [native, page] {
-        println!("{}", pack(&content)?);
-    }
-    Ok(())
+    Ok([pack(&native)?, pack(&page)?])
 }
 
-/// Packs a folder and takes it away; what came of it.
-fn pack(content: &Path) -> Result<String, String> {
+/// Packs a folder and takes it away; the archive that came of it.
+fn pack(content: &Path) -> Result<PathBuf, String> {
     let (Some(folder), Some(name)) = (content.parent(), content.file_name()) else {
         return Err(format!("{} is no folder", content.display()));
     };
@@ -63,8 +71,7 @@ fn pack(content: &Path) -> Result<String, String> {
     run("tar", &["-czf", &path, "-C", &place, &name])?;
     let fail = |e: std::io::Error| format!("{path}: {e}");
     fs::remove_dir_all(content).map_err(fail)?;
-    let size = fs::metadata(&archive).map_err(fail)?.len();
-    Ok(format!("{path}: {size} bytes"))
+    Ok(archive)
 }
 
 /// Copies a file, or a folder with all that is in it.

@@ -3,6 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+/// File name of the native program.
+#[cfg(windows)]
+pub const PROGRAM: &str = "hysteron.exe";
+#[cfg(not(windows))]
+pub const PROGRAM: &str = "hysteron";
+
 /// Top folder of the project.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))

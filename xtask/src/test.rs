@@ -4,14 +4,14 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::run::{check, root, run};
-use crate::{browser, setup, web};
+use crate::{archives, browser, setup, web};
 
 type Stage = (&'static str, fn() -> Result<(), String>);
 
 /// Where proptest reads its seed.
 const SEED: &str = "PROPTEST_RNG_SEED";
 
-const STAGES: [Stage; 7] = [
+const STAGES: [Stage; 8] = [
     ("set-up", setup::setup),
     ("formatting", || run("cargo", &["fmt", "--all", "--check"])),
     ("lints", || {
@@ -38,6 +38,7 @@ const STAGES: [Stage; 7] = [
         cargo(&["test", "--workspace", "--no-fail-fast"], seed)
     }),
     ("web build", web::build),
+    ("archives", archives::test),
     ("page in headless Chromium", browser::test),
 ];
 

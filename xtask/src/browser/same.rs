@@ -1,10 +1,8 @@
 //! The page comes to the numbers of the native program.
 
-use std::env::consts::EXE_SUFFIX;
-
 use serde_json::Value;
 
-use crate::run::{output, root, run};
+use crate::run::{PROGRAM, output, root, run};
 
 /// Largest relative difference of an error.
 const EQUAL: f64 = 1e-9;
@@ -14,9 +12,7 @@ const EQUAL: f64 = 1e-9;
 pub fn check(shown: &Value, file: &str) -> Result<(), String> {
     let path = format!("assets/measurements/{file}.csv");
     // The tests before this one have built it.
-    let program = root()
-        .join("target/debug")
-        .join(format!("hysteron{EXE_SUFFIX}"));
+    let program = root().join("target/debug").join(PROGRAM);
     if !program.exists() {
         run("cargo", &["build", "-p", "hysteron"])?;
     }
