@@ -95,41 +95,21 @@ fn the_same_request_gives_the_same_record_and_another_salt_another() {
 
 #[test]
 fn a_diagnosis_finds_what_is_hidden_and_the_truth_gives_it_the_points() {
-    for (experiment, ids, least) in [
-        (Experiment::Relay, &["input_delay"][..], 97.0),
-        (Experiment::Sines, &["dead_zone"], 97.0),
-        (
-            Experiment::Stairs,
-            &["coulomb_friction", "constant_load"],
-            97.0,
-        ),
-        (Experiment::Sines, &[], 97.0),
+    for (experiment, ids) in [
+        (Experiment::Relay, &["input_delay"][..]),
+        (Experiment::Sines, &["dead_zone"]),
+        (Experiment::Stairs, &["coulomb_friction", "constant_load"]),
+        (Experiment::Sines, &[]),
         // A relay cannot tell an offset from an asymmetry: the class is right, and no number is asked.
-        (Experiment::Relay, &["gain_asymmetry"], 97.0),
-        (
-            Experiment::ProcessBinary,
-            &["input_delay", "second_lag"],
-            97.0,
-        ),
+        (Experiment::Relay, &["gain_asymmetry"]),
+        (Experiment::ProcessBinary, &["input_delay", "second_lag"]),
         // Two lags in a row are the same in either order.
-        (Experiment::ProcessBinary, &["sensor_lag"], 97.0),
-        (
-            Experiment::ProcessRelay,
-            &["input_delay", "load_ramp"],
-            97.0,
-        ),
-        (
-            Experiment::ProcessStairs,
-            &["input_delay", "saturation"],
-            97.0,
-        ),
-        (Experiment::ProcessStairs, &["static_curvature"], 97.0),
-        (
-            Experiment::ProcessStairs,
-            &["second_lag", "constant_load"],
-            97.0,
-        ),
-        (Experiment::ProcessRelay, &[], 97.0),
+        (Experiment::ProcessBinary, &["sensor_lag"]),
+        (Experiment::ProcessRelay, &["input_delay", "load_ramp"]),
+        (Experiment::ProcessStairs, &["input_delay", "saturation"]),
+        (Experiment::ProcessStairs, &["static_curvature"]),
+        (Experiment::ProcessStairs, &["second_lag", "constant_load"]),
+        (Experiment::ProcessRelay, &[]),
     ] {
         let made = mystery(experiment, ids);
         let diagnosis = diagnosed(&made);
@@ -143,8 +123,22 @@ fn a_diagnosis_finds_what_is_hidden_and_the_truth_gives_it_the_points() {
             found && reveal.rows.len() == ids.len(),
             "{ids:?}: {reveal:?}"
         );
-        assert!(reveal.points() >= least, "{ids:?}: {reveal:?}");
+        assert!(reveal.points() >= 97.0, "{ids:?}: {reveal:?}");
         assert!(diagnosis.verdict.complete, "{ids:?}");
+    }
+}
+
+#[test]
+fn a_drive_that_sticks_is_followed_down_to_the_noise() {
+    // In these records a window begins where the body just sticks, or just breaks loose.
+    for number in [4, 12] {
+        let choice = Choice::Chosen(vec![pick(Kind::Drive, "coulomb_friction")]);
+        let mut asked = request(Experiment::Sines, choice, 0);
+        asked.salt[0] = number;
+        let diagnosis = diagnosed(&make(&asked).expect("a mystery"));
+        let last = diagnosis.steps.last().expect("a step");
+        assert_eq!(diagnosis.verdict.missing, [[id("coulomb_friction")]]);
+        assert!(last.error < 1.1, "{number}: {}", last.error);
     }
 }
 
