@@ -38,6 +38,7 @@ pub mod maps;
 pub mod measurement;
 pub mod model;
 pub mod mystery;
+mod order;
 mod packed;
 pub mod plant;
 pub mod relay;

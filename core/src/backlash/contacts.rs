@@ -1,10 +1,11 @@
 //! When, where and how hard does the motor meet the load?
 
-use super::cycles::{Cycles, median};
+use super::cycles::Cycles;
 use super::drift::Drift;
 use super::estimate::Side;
 use super::free_motor::FreeMotor;
 use super::record::{DIFFERENCE, Record};
+use crate::order::median;
 
 /// Cycles about an engaged one in which contacts are looked for.
 const MARGIN: usize = 2;

@@ -1,6 +1,7 @@
 //! Is it a relay's limit cycle, where does each cycle begin, and when does the asymmetry flip?
 
 use super::record::Record;
+use crate::order::{median, range};
 
 /// Fewest cycles of a drifting test.
 const FEWEST: usize = 30;
@@ -118,21 +119,4 @@ fn flips(asymmetries: &[f64]) -> Vec<bool> {
             flips
         })
         .collect()
-}
-
-pub(super) fn range(values: &[f64]) -> (f64, f64) {
-    values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(*v), h.max(*v))
-        })
-}
-
-/// Median; the order of the values is lost. 0 without values.
-pub(super) fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

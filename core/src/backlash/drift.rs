@@ -1,7 +1,8 @@
 //! Cycle by cycle: where does the pattern of drift change?
 
 use super::change_points::{Segment, pelt};
-use super::cycles::{Cycles, median};
+use super::cycles::Cycles;
+use crate::order::median;
 
 /// Penalty of a change of drift, in units of the logarithm of the number of cycles.
 const PENALTY: f64 = 3.0;

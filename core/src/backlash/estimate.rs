@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
 use crate::model::{SeenContact, SeenLoad, Sharpness};
+use crate::order::{median, range};
 
 use super::contacts::{Touch, touches};
-use super::cycles::{Cycles, median, range};
+use super::cycles::Cycles;
 use super::drift::Drift;
 use super::free_motor::FreeMotor;
 use super::likelihood::{Fit, Scales, fit};

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::cycles::{Cycles, median};
+use super::cycles::Cycles;
 use super::drift::Drift;
 use super::record::{DIFFERENCE, Record};
+use crate::order::median;
 
 /// How late the input may act, s; delay and lag of the drive lie within.
 const LATE: f64 = 2e-3;

@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::{Measurement, Quantity};
-
-use super::cycles::{median, range};
+use crate::order::{median, range};
 
 /// Fewest samples of a branch.
 const FEWEST: usize = 50;

@@ -2,6 +2,7 @@
 
 use super::data::Data;
 use super::fit::Motion;
+use crate::order::median;
 
 /// Whether a window has a block that is used for fitting.
 pub(super) fn informed_windows(data: &Data) -> Vec<bool> {
@@ -59,9 +60,7 @@ pub(super) fn oddness(data: &Data, motion: &Motion) -> f64 {
         .filter(|(_, n)| *n > 0.0)
         .map(|(cost, n)| cost / n)
         .collect();
-    squares.sort_by(f64::total_cmp);
-    let median = squares.get(squares.len() / 2).copied().unwrap_or(0.0);
-    ODD_MEAN_SQUARE.max(ODD_TIMES * median)
+    ODD_MEAN_SQUARE.max(ODD_TIMES * median(&mut squares))
 }
 
 /// Squared residuals as if every window were as far off as usual: the mean over windows of

@@ -8,6 +8,7 @@ use super::cost::window_costs;
 use super::data::Data;
 use super::fit::Fit;
 use crate::effect::Scales;
+use crate::order::median;
 
 /// Mean square from which a window is odd, in times of the median one, or of the noise where that is more.
 const ODD_TIMES: f64 = 3.0;
@@ -67,10 +68,7 @@ fn odd(data: &Data, costs: &[f64]) -> Vec<bool> {
         .zip(&spans)
         .map(|(cost, (from, to))| cost / ((to - from) * data.outputs.len()).max(1) as f64)
         .collect();
-    let mut sorted = squares.clone();
-    sorted.sort_by(f64::total_cmp);
-    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
-    let limit = ODD_TIMES * usual.max(1.0);
+    let limit = ODD_TIMES * median(&mut squares.clone()).max(1.0);
     let odd: Vec<bool> = squares.iter().map(|square| *square > limit).collect();
     let count = odd.iter().filter(|odd| **odd).count() as f64;
     if count > MOST * odd.len() as f64 {

@@ -15,6 +15,7 @@ use super::Scales;
 use super::spec::WHOLE_TURN;
 use crate::measurement::Kind;
 use crate::model::{Instant, Load, free_body, load_torque};
+use crate::order::range;
 pub use steps::{Place, StepPart, Steps};
 
 /// Samples at most that are looked at.
@@ -328,12 +329,12 @@ impl Probe {
 
     /// Lowest and highest measured position.
     pub fn position_range(&self) -> (f64, f64) {
-        extent(&self.position)
+        range(&self.position)
     }
 
     /// Lowest and highest measured velocity, or output of a process.
     pub fn velocity_range(&self) -> (f64, f64) {
-        extent(&self.velocity)
+        range(&self.velocity)
     }
 
     /// The same for forces as functions of the interval, on one window in `stride`.
@@ -534,11 +535,6 @@ impl Probe {
 fn spans_stride(spans: &[(usize, usize)], samples: usize) -> usize {
     let total: usize = spans.iter().map(|(from, to)| to - from).sum();
     total.div_ceil(samples).clamp(1, spans.len().max(1))
-}
-
-fn extent(values: &[f64]) -> (f64, f64) {
-    let both = |(low, high): (f64, f64), v: &f64| (low.min(*v), high.max(*v));
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), both)
 }
 
 /// Sums of a product of vectors that go on side by side.

@@ -7,6 +7,7 @@
 
 use super::Model;
 use super::flight::Slowing;
+use crate::order::median;
 
 /// A contact of the motor with the load, as the motor felt it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,8 +208,7 @@ impl SeenLoad {
     /// Usual time from the begin of a contact to the centre of its push, s.
     pub fn usual_push(&self) -> f64 {
         let mut centres: Vec<f64> = self.contacts.iter().map(|c| c.centre).collect();
-        centres.sort_by(f64::total_cmp);
-        centres.get(centres.len() / 2).copied().unwrap_or(0.0)
+        median(&mut centres)
     }
 
     /// Variances and covariance of the load's position and velocity at a time in s, from the contacts that began

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::{Kind, Measurement, Quantity};
+use crate::order::range;
 
 /// How many times as fast (as far, for a process) as measured an experiment may go where nothing is said.
 const FASTER: f64 = 2.0;
@@ -118,11 +119,7 @@ impl Limits {
 
 /// Largest less smallest value.
 pub(super) fn extent(values: &[f64]) -> f64 {
-    let (low, high) = values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(*v), h.max(*v))
-        });
+    let (low, high) = range(values);
     high - low
 }
 

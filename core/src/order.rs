@@ -1,0 +1,18 @@
+//! The least, the largest and the middle of some values.
+
+/// Least and largest value; without values infinity and minus infinity.
+pub fn range(values: &[f64]) -> (f64, f64) {
+    let wider = |(low, high): (f64, f64), v: &f64| (low.min(*v), high.max(*v));
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), wider)
+}
+
+/// Median; the order of the values is lost. 0 without values.
+pub fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
