@@ -207,13 +207,13 @@ impl Fit {
         for (j, _, tolerance) in &priors {
             self.information[(*j, *j)] += (1.0 - 1.0 / share) / (tolerance * tolerance);
         }
-        let sticks = self.structure.model(&self.values).friction.breakaway() > 0.0;
-        if !lowered && sticks && self.mend_odd_windows(data, scales) {
+        if !lowered {
             self.damping = RESTART_DAMPING;
-        } else if !lowered {
-            // Once more with long difference steps, which see past the kinks around a stall.
-            self.stalls += 1;
-            self.damping = RESTART_DAMPING;
+            let sticks = self.structure.model(&self.values).friction.breakaway() > 0.0;
+            if !(sticks && self.mend_odd_windows(data, scales)) {
+                // Once more with long difference steps, which see past the kinks around a stall.
+                self.stalls += 1;
+            }
         }
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
     }

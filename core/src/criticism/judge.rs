@@ -48,10 +48,8 @@ pub(super) fn same_body(a: &Scored, b: &Scored) -> bool {
         Kind::Drive => 1,
         Kind::Process => 2,
     };
-    let pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
-    pairs
-        .into_iter()
-        .all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
+    let mut pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
+    pairs.all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
 }
 
 /// Fall of the error below which the leading parameter of an effect must stand out by itself, and by how
