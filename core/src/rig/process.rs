@@ -13,6 +13,9 @@ const SUBSTEPS: usize = 40;
 /// Standard deviation of the noise of y.
 const NOISE: f64 = 0.01;
 
+/// Levels of the staircase, as shares of the largest.
+pub const STAIRS: [f64; 8] = [0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0];
+
 /// What drives the process.
 #[derive(Clone, Copy, Debug)]
 pub enum Excitation {
@@ -279,9 +282,8 @@ impl Controller {
             }
             Excitation::Proposed(proposed) => proposed.input(t, y, &mut self.high),
             Excitation::Staircase { top } => {
-                const SHARES: [f64; 8] = [0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0];
-                top * SHARES
-                    .get((t / 24.0) as usize % SHARES.len())
+                top * STAIRS
+                    .get((t / 24.0) as usize % STAIRS.len())
                     .unwrap_or(&0.0)
             }
             Excitation::Binary { level } => {

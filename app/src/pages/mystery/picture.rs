@@ -6,6 +6,7 @@ use std::f32::consts::TAU;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::Experiment;
+use hysteron_core::rig::process::STAIRS;
 
 use crate::language::tr;
 use crate::theme;
@@ -158,7 +159,7 @@ fn push(experiment: Experiment, t: f32) -> f32 {
         }
         Experiment::Drifting => square(8.0) + if t < 0.5 { 0.15 } else { -0.15 },
         Experiment::ProcessRelay => square(6.0),
-        Experiment::ProcessStairs => level(&[0.5, -0.25, 1.0, 0.25, -0.75, 0.75, -1.0, 0.0]),
+        Experiment::ProcessStairs => level(&STAIRS.map(|share| share as f32)),
         Experiment::ProcessBinary => level(&[
             1.0, 1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0,
         ]),
