@@ -24,6 +24,12 @@ pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
 }
 
+/// The least and the largest of some values.
+pub fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let first = (f64::INFINITY, f64::NEG_INFINITY);
+    values.fold(first, |(low, high), v| (low.min(v), high.max(v)))
+}
+
 /// A curve of at most `most` points: a longer one keeps the least and the largest value of each stretch.
 pub fn envelope(time: &[f64], values: &[f64], most: usize) -> Vec<[f64; 2]> {
     if time.len() <= most {

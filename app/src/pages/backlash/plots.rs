@@ -5,7 +5,7 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, Points, Polygon, Text, 
 
 use super::scene::Scene;
 use crate::language::tr;
-use crate::pages::chart::{caption_ui, curve, dot, still};
+use crate::pages::chart::{caption_ui, curve, dot, extremes, still};
 use crate::theme;
 
 /// Periods of the relay that the phase portrait shows before the present one.
@@ -129,10 +129,7 @@ const LABEL_DISTANCE: f64 = 0.14;
 fn labels(corners: &[[f64; 2]]) -> Vec<(PlotPoint, String)> {
     let count = corners.len().max(1) as f64;
     let range = |k: usize| {
-        let values = corners.iter().map(|c| c[k]);
-        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
-            [low.min(v), high.max(v)]
-        });
+        let (low, high) = extremes(corners.iter().map(|c| c[k]));
         high - low
     };
     let size = [range(0), range(1)];

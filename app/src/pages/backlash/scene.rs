@@ -8,7 +8,7 @@ use hysteron_core::figures::Check;
 use hysteron_core::measurement::{Measurement, Quantity};
 
 use super::words::lesson;
-use crate::pages::chart::envelope;
+use crate::pages::chart::{envelope, extremes};
 
 /// Most points of a curve over the whole run.
 const CURVE_POINTS: usize = 1800;
@@ -118,16 +118,17 @@ impl Scene {
         };
         let skip = run.time.len().div_ceil(MAP_POINTS).max(1);
         let map = run.x1.iter().zip(&run.x2).step_by(skip);
+        let range = |values: &[f64]| extremes(values.iter().map(|x| MILLI * x));
         let (motor_range, load_range) = (range(&run.x1), range(&run.x2));
         Self {
             motor: thin(&run.x1),
             load: thin(&run.x2),
             map: map.map(|(a, b)| [MILLI * a, MILLI * b]).collect(),
             range: [
-                motor_range[0].min(load_range[0]),
-                motor_range[1].max(load_range[1]),
+                motor_range.0.min(load_range.0),
+                motor_range.1.max(load_range.1),
             ],
-            load_range,
+            load_range: load_range.into(),
             strongest: run.input.iter().fold(0.0, |m, u| u.abs().max(m)),
             estimate: None,
             lesson,
@@ -336,13 +337,4 @@ fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
             }
         })
         .collect()
-}
-
-/// Least and largest value, in mrad.
-fn range(values: &[f64]) -> [f64; 2] {
-    values
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(MILLI * x), high.max(MILLI * x)]
-        })
 }

@@ -10,7 +10,7 @@ use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
 use crate::language::tr;
-use crate::pages::chart::{Chart, Pen, envelope};
+use crate::pages::chart::{Chart, Pen, envelope, extremes};
 use crate::theme;
 
 /// Most points of a curve that are drawn; above, each stretch shows its extremes.
@@ -209,12 +209,6 @@ fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
 fn points(time: &[f64], values: &[f64], drawn: &Range<usize>) -> PlotPoints<'static> {
     let [time, values] = [time, values].map(|all| all.get(drawn.clone()).unwrap_or_default());
     envelope(time, values, MAX_POINTS).into()
-}
-
-/// The least and the largest of some values.
-fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let first = (f64::INFINITY, f64::NEG_INFINITY);
-    values.fold(first, |(low, high), v| (low.min(v), high.max(v)))
 }
 
 /// The samples in view.
