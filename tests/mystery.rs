@@ -116,7 +116,9 @@ fn a_diagnosis_finds_what_is_hidden_and_the_truth_gives_it_the_points() {
         let reveal = Reveal::open(&made.seal, WORD, &answer(&diagnosis)).expect("the word");
         let found = reveal.rows.iter().all(|r| match r.mark {
             Mark::Right => true,
-            Mark::Alike(_) => ["gain_asymmetry", "sensor_lag", "second_lag"].contains(&ids[0]),
+            Mark::Alike(_) => {
+                ["gain_asymmetry", "sensor_lag", "second_lag"].contains(&r.effect.as_str())
+            }
             _ => false,
         });
         assert!(
