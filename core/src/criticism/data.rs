@@ -28,6 +28,12 @@ const SCOUT_SAMPLES: usize = 2500;
 /// Samples before a contact at which a window begins.
 const BEFORE_CONTACT: usize = 2;
 
+/// Contacts with a load that a window should hold where one follows the other, least samples of such a window, and from
+/// how many on it is worth it.
+const FEW_CONTACTS: f64 = 2.0;
+const SHORTEST_CUT: f64 = 25.0;
+const MANY_CONTACTS: usize = 20;
+
 /// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -115,16 +121,7 @@ impl Data {
             ),
         };
         let windows = split(n, window);
-        let blocks = split(n, block)
-            .iter()
-            .enumerate()
-            .map(|(k, from)| Block {
-                from: *from,
-                to: split_end(n, block, k),
-                window: windows.partition_point(|w| w <= from) - 1,
-                held_back: k % 2 == 1,
-            })
-            .collect();
+        let blocks = blocks(n, block, &windows);
         let before = if starts_at_rest(&outputs) {
             0.0
         } else {
@@ -184,6 +181,27 @@ impl Data {
             }
         }
         data
+    }
+
+    /// The same in windows so short that each holds few contacts with a load, if it is met at these times in s: every
+    /// contact multiplies what is wrong before it, until a simulation tells nothing.
+    pub fn cut_between_contacts(self, times: &[f64]) -> Self {
+        let step = self.excitation.mean_step();
+        let usual = self.len() / self.windows.len().max(1);
+        let pauses = times.windows(2).map(|pair| (pair[1] - pair[0]) / step);
+        let short: Vec<f64> = pauses.filter(|pause| *pause < usual as f64).collect();
+        let mean = short.iter().sum::<f64>() / short.len() as f64;
+        let length = (FEW_CONTACTS * mean).round().max(SHORTEST_CUT) as usize;
+        if short.len() < MANY_CONTACTS || length >= usual {
+            return self;
+        }
+        let windows = split(self.len(), length);
+        let blocks = blocks(self.len(), length, &windows);
+        Self {
+            windows,
+            blocks,
+            ..self
+        }
     }
 
     /// Samples that are used.
@@ -392,6 +410,20 @@ fn position_estimate(time: &[f64], outputs: &[Output]) -> Vec<f64> {
 /// First samples of runs of `length` samples; a short rest joins the last run.
 fn split(n: usize, length: usize) -> Vec<usize> {
     (0..(n / length).max(1)).map(|k| k * length).collect()
+}
+
+/// Blocks of this length in these windows, every other one held back.
+fn blocks(n: usize, length: usize, windows: &[usize]) -> Vec<Block> {
+    split(n, length)
+        .iter()
+        .enumerate()
+        .map(|(k, from)| Block {
+            from: *from,
+            to: split_end(n, length, k),
+            window: windows.partition_point(|w| w <= from) - 1,
+            held_back: k % 2 == 1,
+        })
+        .collect()
 }
 
 fn split_end(n: usize, length: usize, k: usize) -> usize {

@@ -10,7 +10,7 @@ use super::score::{Score, score};
 use super::select::is_noise;
 use super::split::hold_back;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
-use crate::backlash::sighted;
+use crate::backlash::{Quality, sighted};
 use crate::effect::{
     self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Scales,
     SeenGap,
@@ -70,8 +70,16 @@ pub(super) struct Session {
 impl Session {
     pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
         knowledge::check(model, measurement)?;
-        let (gap, seen) = seen_gap(measurement).unzip();
-        let mut data = Data::new(measurement)?.with_seen_load(seen.flatten());
+        let Sighted {
+            gap,
+            seen,
+            contacts,
+        } = sight(measurement);
+        let mut data = Data::new(measurement)?;
+        data = match seen {
+            Some(seen) => data.with_seen_load(Some(seen)),
+            None => data.cut_between_contacts(&contacts),
+        };
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
         let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| vec![1.0, 1.0]);
@@ -369,25 +377,41 @@ fn felt_gap(gap: SeenGap) -> (f64, f64) {
     (gap.half_gap, GAP_TOLERANCE * error)
 }
 
-/// The gap, and the load behind it, that the motor's columns give away if they are those of a drifting test.
-fn seen_gap(measurement: &Measurement) -> Option<(SeenGap, Option<SeenLoad>)> {
+/// What the motor's columns give away of a load behind a gap, if they are those of a drifting test.
+#[derive(Default)]
+struct Sighted {
+    gap: Option<SeenGap>,
+    /// The load, where both ends of the gap were met.
+    seen: Option<SeenLoad>,
+    /// When the motor met the load where it met one end only, s, in order.
+    contacts: Vec<f64>,
+}
+
+fn sight(measurement: &Measurement) -> Sighted {
     if measurement.kind != Kind::Drive {
-        return None;
+        return Sighted::default();
     }
-    let (estimate, seen) = sighted(measurement).ok()?;
+    let Ok((estimate, seen)) = sighted(measurement) else {
+        return Sighted::default();
+    };
     let load = seen.as_ref().map(|seen| GapLoad {
         inertia_ratio: 1.0 / seen.play().ratio,
         viscous: seen.play().slowing.viscous,
         dry: seen.play().slowing.dry,
         push: seen.usual_push(),
     });
-    let half_gap = 0.5 * estimate.gap?;
-    let gap = SeenGap {
-        half_gap,
+    let gap = estimate.gap.map(|gap| SeenGap {
+        half_gap: 0.5 * gap,
         error: 0.5 * estimate.std_error.unwrap_or(0.0),
         load,
-    };
-    Some((gap, seen))
+    });
+    let one_sided = matches!(estimate.quality, Quality::OneSide | Quality::AssumedCentre);
+    let contacts = estimate.contacts.iter().filter(|_| one_sided);
+    Sighted {
+        gap,
+        seen: seen.filter(|_| gap.is_some()),
+        contacts: contacts.map(|c| c.time).collect(),
+    }
 }
 
 /// A product of powers of units, such as `N m s^2/rad`.
