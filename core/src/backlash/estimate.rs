@@ -195,7 +195,7 @@ pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> 
     sighted(measurement).map(|(estimate, _)| estimate)
 }
 
-/// The same with the load as its contacts show it, where both ends of the gap were met.
+/// The same with the load as its contacts show it, where a gap is stated.
 pub(crate) fn sighted(
     measurement: &Measurement,
 ) -> Result<(GapEstimate, Option<SeenLoad>), GapError> {
@@ -251,6 +251,9 @@ pub(crate) fn sighted(
         load = two_sided(&mut estimate, events, &scales, period, place_error);
     } else if touches.len() >= FEWEST_CONTACTS {
         one_sided(&mut estimate, &record, &cycles, place_error);
+        let known = estimate.gap.map(|gap| (0.5 * gap, place_error));
+        let fit = known.and_then(|known| fit(&events, &scales, Some(known)));
+        load = fit.and_then(|fit| seen_load(events, &fit, place_error));
     } else {
         estimate.contacts.clear();
         if disturbed {
@@ -288,7 +291,7 @@ fn two_sided(
     place_error: f64,
 ) -> Option<SeenLoad> {
     estimate.quality = Quality::Undecided;
-    let fit = fit(&events, scales)?;
+    let fit = fit(&events, scales, None)?;
     estimate.traverses = traverses(&estimate.contacts, &fit);
     let gap = 2.0 * fit.play.half_gap;
     let rattles = rattles(&estimate.traverses, period);
@@ -311,6 +314,10 @@ fn two_sided(
         Quality::Poor
     };
     state(estimate, gap, error);
+    seen_load(events, &fit, place_error)
+}
+
+fn seen_load(events: Vec<SeenContact>, fit: &Fit, place_error: f64) -> Option<SeenLoad> {
     let sharpness = Sharpness {
         place: libm::hypot(fit.sharpness.place, place_error),
         ..fit.sharpness

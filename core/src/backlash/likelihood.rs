@@ -85,18 +85,23 @@ pub(super) struct Fit {
     pub innovations: Vec<Innovation>,
 }
 
-/// Most likely half gap; `None` where the contacts do not tell.
-pub(super) fn fit(events: &[SeenContact], scales: &Scales) -> Option<Fit> {
+/// Most likely half gap and load; `None` where the contacts do not tell. A half gap that is known, with its standard
+/// error, is kept: contacts at one end show the load only.
+pub(super) fn fit(
+    events: &[SeenContact],
+    scales: &Scales,
+    half_gap: Option<(f64, f64)>,
+) -> Option<Fit> {
     let prior = Prior {
         mean: [
-            0.0,
+            half_gap.map_or(0.0, |(value, _)| libm::log(value)),
             0.0,
             libm::log(2.0_f64),
             libm::log(0.01 * scales.acceleration),
             libm::log(0.25 * scales.step * scales.speed),
             libm::log(0.01_f64),
         ],
-        deviation: [f64::INFINITY, 1.2, 1.5, 2.0, 0.7, 1.0],
+        deviation: [half_gap.map_or(f64::INFINITY, |(value, error)| error / value), 1.2, 1.5, 2.0, 0.7, 1.0],
     };
     let errors = (SLOW * scales.speed, LATE * scales.step);
     let cost = |point: &Point| {
@@ -108,9 +113,14 @@ pub(super) fn fit(events: &[SeenContact], scales: &Scales) -> Option<Fit> {
         if value.is_finite() { value } else { f64::MAX }
     };
     let (least, most) = (scales.travel / 400.0, scales.travel);
+    let gaps: Vec<f64> = match half_gap {
+        Some((value, _)) => vec![value],
+        None => (0..GAPS)
+            .map(|k| least * libm::pow(most / least, k as f64 / (GAPS - 1) as f64))
+            .collect(),
+    };
     let mut starts = Vec::new();
-    for k in 0..GAPS {
-        let half_gap = least * libm::pow(most / least, k as f64 / (GAPS - 1) as f64);
+    for half_gap in gaps {
         let mut best: Option<(Point, f64)> = None;
         for ratio in INERTIA_RATIOS {
             for viscous in VISCOUS {

@@ -163,9 +163,8 @@ fn drive_axes(data: &Data, motion: &Motion, velocity_unit: &str, axes: &mut Vec<
             format!("where the position is {}", within(a, b, unit))
         }));
     }
-    let felt = data.excitation.felt();
-    if !felt.is_empty() {
-        let touched = |i: usize| felt.binary_search(&i).is_ok();
+    if !data.felt.is_empty() {
+        let touched = |i: usize| data.felt.binary_search(&i).is_ok();
         axes.push(continuous(
             "time_since_impact",
             "s",

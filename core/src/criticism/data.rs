@@ -30,7 +30,7 @@ const BEFORE_CONTACT: usize = 2;
 
 /// Contacts with a load that a window should hold where one follows the other, least samples of such a window, and from
 /// how many on it is worth it.
-const FEW_CONTACTS: f64 = 2.0;
+const FEW_CONTACTS: f64 = 3.0;
 const SHORTEST_CUT: f64 = 25.0;
 const MANY_CONTACTS: usize = 20;
 
@@ -69,6 +69,8 @@ pub(super) struct Data {
     pub input: Vec<f64>,
     pub time: Vec<f64>,
     pub outputs: Vec<Output>,
+    /// Sample before each contact with a load that the motor felt.
+    pub felt: Vec<usize>,
     /// First sample of each window.
     pub windows: Vec<usize>,
     pub blocks: Vec<Block>,
@@ -151,19 +153,26 @@ impl Data {
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),
             outputs,
+            felt: Vec::new(),
             windows,
             blocks,
         })
     }
 
-    /// The same with a load that the motor felt. Windows near a contact then begin just before it: from farther
+    /// The same with a load that the motor felt at these times, s, in order.
+    pub fn with_contacts(self, times: &[f64]) -> Self {
+        let before = |t: &f64| self.time.partition_point(|at| at <= t).saturating_sub(1);
+        let felt = times.iter().map(before).collect();
+        Self { felt, ..self }
+    }
+
+    /// The same with a load that its contacts tell. Windows near a contact then begin just before it: from farther
     /// away it may be met one swing of the motor too early or too late.
-    pub fn with_seen_load(self, seen: Option<SeenLoad>) -> Self {
-        let mut data = Self {
-            excitation: self.excitation.with_seen_load(seen),
-            ..self
-        };
-        let felt = data.excitation.felt();
+    pub fn with_seen_load(self, seen: SeenLoad) -> Self {
+        let times: Vec<f64> = seen.times().collect();
+        let mut data = self.with_contacts(&times);
+        data.excitation = data.excitation.with_seen_load(seen);
+        let felt = &data.felt;
         let length = data.len() / data.windows.len().max(1);
         for k in 1..data.windows.len() {
             let regular = data.windows[k];
@@ -183,14 +192,13 @@ impl Data {
         data
     }
 
-    /// The same in windows so short that each holds few contacts with a load, if it is met at these times in s: every
+    /// The same in windows so short that each holds few of the contacts that were felt, if those lie close: every
     /// contact multiplies what is wrong before it, until a simulation tells nothing.
-    pub fn cut_between_contacts(self, times: &[f64]) -> Self {
-        let step = self.excitation.mean_step();
+    pub fn cut_between_contacts(self) -> Self {
         let usual = self.len() / self.windows.len().max(1);
-        let pauses = times.windows(2).map(|pair| (pair[1] - pair[0]) / step);
-        let short: Vec<f64> = pauses.filter(|pause| *pause < usual as f64).collect();
-        let mean = short.iter().sum::<f64>() / short.len() as f64;
+        let pauses = self.felt.windows(2).map(|pair| pair[1] - pair[0]);
+        let short: Vec<usize> = pauses.filter(|pause| *pause < usual).collect();
+        let mean = short.iter().sum::<usize>() as f64 / short.len() as f64;
         let length = (FEW_CONTACTS * mean).round().max(SHORTEST_CUT) as usize;
         if short.len() < MANY_CONTACTS || length >= usual {
             return self;
@@ -272,8 +280,7 @@ impl Data {
     /// is felt now and then only, the other windows tell nothing of it.
     fn felt_pairs(&self, samples: usize) -> Vec<usize> {
         let window = |sample: usize| self.windows.partition_point(|w| *w <= sample) - 1;
-        let felt = self.excitation.felt();
-        let mut pairs: Vec<usize> = felt.into_iter().map(|s| window(s) / 2).collect();
+        let mut pairs: Vec<usize> = self.felt.iter().map(|s| window(*s) / 2).collect();
         pairs.dedup();
         let length = 2 * self.used() / self.windows.len().max(1);
         let stride = (pairs.len() * length).div_ceil(samples.max(1)).max(1);
@@ -299,6 +306,7 @@ impl Data {
         part.time.truncate(end);
         part.input.truncate(end);
         part.excitation = self.excitation.head(end);
+        part.felt.retain(|s| *s < end);
         for output in &mut part.outputs {
             output.values.truncate(end);
         }

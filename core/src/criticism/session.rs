@@ -76,10 +76,10 @@ impl Session {
             contacts,
         } = sight(measurement);
         let mut data = Data::new(measurement)?;
-        data = match seen {
-            Some(seen) => data.with_seen_load(Some(seen)),
-            None => data.cut_between_contacts(&contacts),
-        };
+        data = data.with_contacts(&contacts).cut_between_contacts();
+        if let Some(seen) = seen {
+            data = data.with_seen_load(seen);
+        }
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
         let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| vec![1.0, 1.0]);
@@ -381,7 +381,7 @@ fn felt_gap(gap: SeenGap) -> (f64, f64) {
 #[derive(Default)]
 struct Sighted {
     gap: Option<SeenGap>,
-    /// The load, where both ends of the gap were met.
+    /// The load behind it.
     seen: Option<SeenLoad>,
     /// When the motor met the load where it met one end only, s, in order.
     contacts: Vec<f64>,

@@ -30,7 +30,7 @@ pub(super) fn hold_back(
     mut values: Vec<f64>,
     scales: &Scales,
 ) {
-    if data.kind == Kind::Process || !data.excitation.felt().is_empty() {
+    if data.kind == Kind::Process || data.excitation.sees_load() {
         return;
     }
     for block in &mut data.blocks {

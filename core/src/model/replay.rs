@@ -83,8 +83,14 @@ impl Excitation {
 
     /// The same with a load that the motor felt.
     #[must_use]
-    pub(crate) fn with_seen_load(self, seen: Option<SeenLoad>) -> Self {
+    pub(crate) fn with_seen_load(self, seen: SeenLoad) -> Self {
+        let seen = Some(seen);
         Self { seen, ..self }
+    }
+
+    /// Whether a load is told by contacts that the motor felt.
+    pub(crate) fn sees_load(&self) -> bool {
+        self.seen.is_some()
     }
 
     /// Whether the load of `model` is told by contacts that the motor felt.
@@ -105,14 +111,6 @@ impl Excitation {
                 starts[k].load = guess;
             }
         }
-    }
-
-    /// Sample before each contact that the motor felt.
-    pub(crate) fn felt(&self) -> Vec<usize> {
-        let times = self.seen.iter().flat_map(SeenLoad::times);
-        times
-            .map(|t| self.time.partition_point(|at| *at <= t).saturating_sub(1))
-            .collect()
     }
 
     fn tracker(&self, model: &Model) -> Option<Tracker<'_>> {
