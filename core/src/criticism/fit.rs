@@ -209,8 +209,7 @@ impl Fit {
         }
         if !lowered {
             self.damping = RESTART_DAMPING;
-            let sticks = self.structure.model(&self.values).friction.breakaway() > 0.0;
-            if !(sticks && self.mend_odd_windows(data, scales)) {
+            if !self.mend_odd_windows(data, scales) {
                 // Once more with long difference steps, which see past the kinks around a stall.
                 self.stalls += 1;
             }

@@ -1,13 +1,15 @@
 //! Windows that start from a wrong state while the others are right.
 //!
 //! Where a body sticks, the motion depends on the state at the start of a window by leaps: a little slower and it
-//! stays where it is, a little faster and it breaks loose. A fit that follows derivatives stops on the wrong side of
-//! such a leap, and one window may then cost more than all the others. Its state is looked for on either side.
+//! stays where it is, a little faster and it breaks loose. So it does where a load comes up behind a gap, and is met or
+//! missed. A fit that follows derivatives stops on the wrong side of such a leap, and one window may then cost more than
+//! all the others. Its state is looked for on either side.
 
 use super::cost::window_costs;
 use super::data::Data;
 use super::fit::Fit;
 use crate::effect::Scales;
+use crate::model::Start;
 use crate::order::median;
 
 /// Mean square from which a window is odd, in times of the median one, or of the noise where that is more.
@@ -19,9 +21,18 @@ const MOST: f64 = 0.25;
 /// Velocities that are tried on either side, as shares of the typical speed.
 const STEPS: [f64; 7] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
+/// Places and velocities of a load that are tried on either side, in standard deviations.
+const LOAD_STEPS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
+
 impl Fit {
-    /// Looks for better states of odd windows; true if it found one.
+    /// Looks for better states of odd windows, if the body sticks or has a load that was felt; true if that lowers the
+    /// cost.
     pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) -> bool {
+        let model = self.structure.model(&self.values);
+        let sees_load = data.excitation.sees_load_of(&model);
+        if !sees_load && model.friction.breakaway() == 0.0 {
+            return false;
+        }
         let costs = window_costs(data, &self.motion);
         let odd = odd(data, &costs);
         if !odd.contains(&true) {
@@ -32,9 +43,15 @@ impl Fit {
         let starts = chosen.map(|(start, _)| *start).collect();
         let structure = self.structure.clone();
         let mut own = Self::new(&part, structure, self.values.clone(), starts, scales);
-        for step in STEPS {
-            for side in [1.0, -1.0] {
-                own.try_faster(side * step * scales.speed, &part, scales);
+        for side in [1.0, -1.0] {
+            for step in STEPS.iter().filter(|_| !sees_load) {
+                own.try_moved(&part, scales, |start| {
+                    start.velocity += side * step * scales.speed;
+                });
+            }
+            for step in LOAD_STEPS.iter().filter(|_| sees_load) {
+                own.try_moved(&part, scales, |start| start.load[0] += side * step);
+                own.try_moved(&part, scales, |start| start.load[1] += side * step);
             }
         }
         own.polish_starts(&part, scales);
@@ -48,12 +65,10 @@ impl Fit {
         self.cost < before
     }
 
-    /// Starts every window faster by this, improves the states, and keeps those that fit better than before.
-    fn try_faster(&mut self, faster: f64, data: &Data, scales: &Scales) {
+    /// Starts every window from another state, improves the states, and keeps those that fit better than before.
+    fn try_moved(&mut self, data: &Data, scales: &Scales, other: impl Fn(&mut Start)) {
         let mut trial = self.clone();
-        for start in &mut trial.starts {
-            start.velocity += faster;
-        }
+        trial.starts.iter_mut().for_each(other);
         trial.follow_starts(data);
         trial.polish_once(data, scales);
         self.take_better(data, trial.starts);

@@ -240,6 +240,7 @@ impl Session {
             fit.iterate(full, &self.scales);
         }
         fit.polish_starts(full, &self.scales);
+        fit.mend_odd_windows(full, &self.scales);
         let score = score(full, &fit);
         Scored { fit, score }
     }
