@@ -35,6 +35,9 @@ const DETOUR_GAIN: f64 = 0.97;
 /// The same of a bold one that does not explain all.
 const LARGE_GAIN: f64 = 0.2;
 
+/// Share of the error that the same effects left before which is no better.
+const AS_BEFORE: f64 = 0.97;
+
 /// How far a job has come.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress<T> {
@@ -130,7 +133,7 @@ pub struct DiagnosisJob {
     /// Ways not taken yet.
     detours: Vec<Detour>,
     detours_taken: usize,
-    /// Effects that were taken out in the end because they may be imitations.
+    /// Effects that were taken out because they may be imitations.
     barred: Vec<EffectId>,
     /// Whether the present way began with an effect that was not seen clearly.
     bold: bool,
@@ -246,6 +249,8 @@ impl DiagnosisJob {
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended && !self.falls_short(&model) => {
+                let round = self.left_in_a_round(&session, &model);
+                self.barred.extend(round);
                 self.go_on(session, model);
             }
             (verdict, _) => {
@@ -271,6 +276,21 @@ impl DiagnosisJob {
             .and_then(|end| end.diagnosis.steps.last())
             .map(|s| s.error);
         error.is_some_and(|error| next.score.error > BOLD_GAIN * error)
+    }
+
+    /// The effect that is left out next, where that leads back to effects that the way had before and is no better now:
+    /// it seems to help, and then not to be needed, for ever.
+    fn left_in_a_round(&self, session: &Session, next: &Scored) -> Option<EffectId> {
+        let effects = session.effects(&next.fit);
+        let steps = &self.diagnosis.steps;
+        let again = steps.iter().any(|step| {
+            step.effects.len() == effects.len()
+                && effects.iter().all(|e| step.effects.contains(e))
+                && next.score.error > AS_BEFORE * step.error
+        });
+        let last = steps.last().filter(|_| again)?;
+        let left = last.effects.iter().find(|e| !effects.contains(e));
+        left.copied()
     }
 
     /// Takes the diagnosis that came to an end, or another way if there is one and this one explains too
