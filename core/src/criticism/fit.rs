@@ -84,6 +84,13 @@ impl Motion {
         motion
     }
 
+    /// Takes the motion of another one in a window.
+    fn take_window(&mut self, other: &Self, window: usize, (from, to): (usize, usize)) {
+        self.position[from..to].copy_from_slice(&other.position[from..to]);
+        self.velocity[from..to].copy_from_slice(&other.velocity[from..to]);
+        self.priors[window] = other.priors[window];
+    }
+
     /// The part that an output shows.
     pub fn of(&self, is_velocity: bool) -> &[f64] {
         if is_velocity {
@@ -248,9 +255,7 @@ impl Fit {
         scales: &Scales,
     ) -> (Vec<Start>, Motion) {
         let moved = simulate(data, &self.structure, values, &starts);
-        let model = self.structure.model(values);
-        let sees_load = data.excitation.sees_load_of(&model);
-        if !sees_load && self.objective(data, &moved, values, scale) <= present {
+        if self.objective(data, &moved, values, scale) <= present {
             return (starts, moved);
         }
         let mut trial = Self {
@@ -260,8 +265,9 @@ impl Fit {
             ..self.clone()
         };
         trial.take_better(data, self.starts.clone());
-        if sees_load {
-            trial.polish_starts(data, scales);
+        let model = self.structure.model(values);
+        if data.excitation.sees_load_of(&model) {
+            trial.polish_until(present, data, scales);
         } else if model.friction.breakaway() > 0.0 {
             trial.polish_once(data, scales);
         }
@@ -523,6 +529,11 @@ impl Fit {
 
     /// Improves the states of all windows with the values kept, window by window where it helps.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
+        self.polish_until(f64::NEG_INFINITY, data, scales);
+    }
+
+    /// The same until the cost is as low as that.
+    fn polish_until(&mut self, enough: f64, data: &Data, scales: &Scales) {
         let model = self.structure.model(&self.values);
         if data.excitation.sees_load_of(&model) {
             self.take_measured_starts(data);
@@ -531,7 +542,7 @@ impl Fit {
             let before = self.cost;
             let sees_load = self.polish_once(data, scales);
             let worthwhile = sees_load && self.cost < POLISHED_ENOUGH * before;
-            if round + 1 >= FEWEST_POLISHINGS && !worthwhile {
+            if self.cost <= enough || (round + 1 >= FEWEST_POLISHINGS && !worthwhile) {
                 return;
             }
         }
@@ -565,12 +576,21 @@ impl Fit {
         let motion = simulate(data, &self.structure, &self.values, &trial);
         let before = window_costs(data, &self.motion);
         let after = window_costs(data, &motion);
-        for (k, start) in trial.into_iter().enumerate() {
-            if after[k] < before[k] {
-                self.starts[k] = start;
+        // A slow sensor carries over from window to window; apart from that each has its own motion.
+        let apart = self.structure.model(&self.values).sensor_lag.is_none();
+        let spans = data.spans();
+        let better = (0..trial.len()).filter(|k| after[*k] < before[*k]);
+        for k in better {
+            self.starts[k] = trial[k];
+            if apart {
+                self.motion.take_window(&motion, k, spans[k]);
             }
         }
-        self.follow_starts(data);
+        if apart {
+            self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
+        } else {
+            self.follow_starts(data);
+        }
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance; 0 for fixed ones.

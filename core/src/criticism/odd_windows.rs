@@ -9,7 +9,6 @@ use super::cost::window_costs;
 use super::data::Data;
 use super::fit::Fit;
 use crate::effect::Scales;
-use crate::model::Start;
 use crate::order::median;
 
 /// Mean square from which a window is odd, in times of the median one, or of the noise where that is more.
@@ -21,8 +20,13 @@ const MOST: f64 = 0.25;
 /// Velocities that are tried on either side, as shares of the typical speed.
 const STEPS: [f64; 7] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
-/// Places and velocities of a load that are tried on either side, in standard deviations.
-const LOAD_STEPS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
+/// Deviations of a load's place and velocity that are tried, each with each, in standard deviations.
+const LOAD_STEPS: [f64; 13] = [
+    -3.2, -1.6, -0.8, -0.4, -0.2, -0.1, 0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2,
+];
+
+/// The same once more about the best of them, as shares of these: a wrong place grows from contact to contact.
+const FINER: [f64; 3] = [1.0, 0.1, 0.01];
 
 impl Fit {
     /// Looks for better states of odd windows, if the body sticks or has a load that was felt; true if that lowers the
@@ -43,15 +47,13 @@ impl Fit {
         let starts = chosen.map(|(start, _)| *start).collect();
         let structure = self.structure.clone();
         let mut own = Self::new(&part, structure, self.values.clone(), starts, scales);
-        for side in [1.0, -1.0] {
-            for step in STEPS.iter().filter(|_| !sees_load) {
-                own.try_moved(&part, scales, |start| {
-                    start.velocity += side * step * scales.speed;
-                });
-            }
-            for step in LOAD_STEPS.iter().filter(|_| sees_load) {
-                own.try_moved(&part, scales, |start| start.load[0] += side * step);
-                own.try_moved(&part, scales, |start| start.load[1] += side * step);
+        if sees_load {
+            own.try_loads(&part);
+        } else {
+            for step in STEPS {
+                for side in [1.0, -1.0] {
+                    own.try_faster(side * step * scales.speed, &part, scales);
+                }
             }
         }
         own.polish_starts(&part, scales);
@@ -65,10 +67,29 @@ impl Fit {
         self.cost < before
     }
 
-    /// Starts every window from another state, improves the states, and keeps those that fit better than before.
-    fn try_moved(&mut self, data: &Data, scales: &Scales, other: impl Fn(&mut Start)) {
+    /// Starts every window with the load elsewhere, and keeps what fits best.
+    fn try_loads(&mut self, data: &Data) {
+        for share in FINER {
+            let present = self.starts.clone();
+            for place in LOAD_STEPS {
+                for velocity in LOAD_STEPS {
+                    let mut trial = present.clone();
+                    for start in &mut trial {
+                        start.load[0] += share * place;
+                        start.load[1] += share * velocity;
+                    }
+                    self.take_better(data, trial);
+                }
+            }
+        }
+    }
+
+    /// Starts every window faster by this, improves the states, and keeps those that fit better than before.
+    fn try_faster(&mut self, faster: f64, data: &Data, scales: &Scales) {
         let mut trial = self.clone();
-        trial.starts.iter_mut().for_each(other);
+        for start in &mut trial.starts {
+            start.velocity += faster;
+        }
         trial.follow_starts(data);
         trial.polish_once(data, scales);
         self.take_better(data, trial.starts);

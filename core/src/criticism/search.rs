@@ -432,6 +432,7 @@ impl Search {
             if best.put_in_order(data, scales) {
                 best.polish_starts(data, scales);
             }
+            best.mend_odd_windows(data, scales);
         }
         Some(best)
     }
