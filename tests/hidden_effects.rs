@@ -53,7 +53,11 @@ fn check(
 }
 
 fn file(name: &str, missing: &[&[&str]], parameters: &[(&str, &str, f64)]) {
-    let path = format!("{}/../tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
+    file_in("tests/data", name, missing, parameters);
+}
+
+fn file_in(folder: &str, name: &str, missing: &[&[&str]], parameters: &[(&str, &str, f64)]) {
+    let path = format!("{}/../{folder}/{name}.csv", env!("CARGO_MANIFEST_DIR"));
     let measurement = import_csv(name, &std::fs::read(path).unwrap(), None).unwrap();
     check(name, &measurement, missing, parameters);
 }
@@ -114,6 +118,30 @@ fn two_effects_at_once() {
     file(
         "drive-12",
         &[&["coulomb_friction"], &["input_delay"]],
+        &truth,
+    );
+}
+
+#[test]
+fn a_gap_is_found_and_no_friction_where_there_is_none() {
+    file_in(
+        "assets/measurements",
+        "drive-10",
+        &[&["backlash"]],
+        &[("backlash", "beta", 0.006)],
+    );
+}
+
+#[test]
+fn a_gap_of_which_one_end_is_met_is_found_and_the_dry_friction_besides() {
+    let truth = [
+        ("backlash", "beta", 0.0095),
+        ("coulomb_friction", "c", 0.03),
+    ];
+    file_in(
+        "assets/measurements",
+        "drive-03",
+        &[&["backlash"], &["coulomb_friction"]],
         &truth,
     );
 }

@@ -101,7 +101,14 @@ pub(super) fn fit(
             libm::log(0.25 * scales.step * scales.speed),
             libm::log(0.01_f64),
         ],
-        deviation: [half_gap.map_or(f64::INFINITY, |(value, error)| error / value), 1.2, 1.5, 2.0, 0.7, 1.0],
+        deviation: [
+            half_gap.map_or(f64::INFINITY, |(value, error)| error / value),
+            1.2,
+            1.5,
+            2.0,
+            0.7,
+            1.0,
+        ],
     };
     let errors = (SLOW * scales.speed, LATE * scales.step);
     let cost = |point: &Point| {

@@ -361,7 +361,9 @@ mod tests {
         let bytes = include_bytes!("../../../assets/measurements/drive-10.csv");
         let measurement = import_csv("drive-10.csv", bytes, None).unwrap();
         let (_, seen) = sighted(&measurement).unwrap();
-        let data = Data::new(&measurement).unwrap().with_seen_load(seen.unwrap());
+        let data = Data::new(&measurement)
+            .unwrap()
+            .with_seen_load(seen.unwrap());
         let felt = &data.felt;
         assert!(felt.len() > 10, "{}", felt.len());
         let series = |velocity: bool| {
