@@ -304,7 +304,7 @@ fn rules_give_the_numbers_of_their_tables() {
         ("ziegler_nichols_pid", &lag, 2.4, 1.5, 0.375),
         ("tyreus_luyben_pi", &lag, 1.25, 6.6, 0.0),
         ("tyreus_luyben_pid", &lag, 4.0 / 2.2, 6.6, 3.0 / 6.3),
-        // By hand from Astrom and Hagglund (2004): L = 1, T = 3, Kp = 2.
+        // By hand from Åström and Hägglund (2004): L = 1, T = 3, Kp = 2.
         ("amigo_pi", &lag, 0.318_75, 0.35 + 117.0 / 52.0, 0.0),
         ("amigo_pid", &lag, 0.775, 2.8 / 1.3, 1.5 / 3.3),
         ("amigo_pi", &integrating, 0.35, 26.8, 0.0),

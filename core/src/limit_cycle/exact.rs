@@ -1,7 +1,7 @@
 //! Exact limit cycles, equation (3): no harmonic is neglected.
 //!
 //! Between switches the state moves by matrix exponentials, so that a cycle with one rise and one fall of
-//! the relay is a root of a few smooth equations (Tsypkin 1984; Astrom 1995). Every root is then
+//! the relay is a root of a few smooth equations (Tsypkin 1984; Åström 1995). Every root is then
 //! replayed for one period: only those whose first crossings are the assumed ones are cycles.
 
 use nalgebra::{DMatrix, DVector};

@@ -1,7 +1,7 @@
 //! Do small disturbances of a limit cycle die out?
 //!
 //! From switch to switch a disturbance obeys `dx' = (I - w C/(C w)) e^{Ah} dx`, `w` the velocity just before
-//! the switch (Astrom 1995). Where the delay is longer than the time between switches, the instants of
+//! the switch (Åström 1995). Where the delay is longer than the time between switches, the instants of
 //! the changes that are still on their way belong to the state of the loop and are carried along.
 
 use nalgebra::DMatrix;

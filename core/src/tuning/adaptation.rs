@@ -3,7 +3,7 @@
 //! The relay of equation (7) stands in series with the gain `K`, and `K` is changed after each run
 //! until the measured amplitude is the wanted one. Two iterations, both without any model:
 //!
-//! - *secant* (Astrom and Hagglund 1984): `K(n+1) = K(n) - (a(n) - a) (K(n) - K(n-1))/(a(n) - a(n-1))`,
+//! - *secant* (Åström and Hägglund 1984): `K(n+1) = K(n) - (a(n) - a) (K(n) - K(n-1))/(a(n) - a(n-1))`,
 //!   one run a step, order 1.618;
 //! - *Steffensen*: each step takes a second run at the proportional correction `K a/a(n)` (which would
 //!   be the answer if there were no hysteresis) and draws the secant through both. Since the two runs

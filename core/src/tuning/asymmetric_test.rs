@@ -3,7 +3,7 @@
 //! A relay that pushes harder one way makes half periods of different length, whose ratio tells the
 //! normalised dead time `L/(L + T)`, and an input with a mean, which tells the static gain:
 //!
-//! - Berner, Hagglund and Astrom (2016): first-order lag with dead time (FOTD) from the ratio of the half
+//! - Berner, Hägglund and Åström (2016): first-order lag with dead time (FOTD) from the ratio of the half
 //!   periods, the integrals, and the half-period equations;
 //! - Shen, Wu and Yu (1996): two points of the Nyquist curve, at 0 and at the oscillation's frequency,
 //!   from the same test, and the first-order lag with dead time through both. They took the second point
@@ -72,7 +72,7 @@ pub struct AsymmetricTest {
     pub static_gain: Option<f64>,
     /// Point of the Nyquist curve at the oscillation's frequency.
     pub point: NyquistPoint,
-    /// Model by Berner, Hagglund and Astrom (2016).
+    /// Model by Berner, Hägglund and Åström (2016).
     pub berner: Result<Model, TuningError>,
     /// Model by Shen, Wu and Yu (1996).
     pub shen: Result<Model, TuningError>,
@@ -86,7 +86,7 @@ const LEAST_ASYMMETRY: f64 = 1e-6;
 const NORMALISED_RANGE: [f64; 2] = [0.005, 0.98];
 
 /// `tau = (gamma - rho)/((gamma - 1)(0.35 rho + 0.65))`: the normalised dead time from the ratio `gamma`
-/// of the relay's outputs and `rho` of the half periods (Berner, Hagglund and Astrom 2016).
+/// of the relay's outputs and `rho` of the half periods (Berner, Hägglund and Åström 2016).
 pub fn normalised_dead_time(asymmetry_ratio: f64, half_period_ratio: f64) -> f64 {
     let (gamma, rho) = (asymmetry_ratio, half_period_ratio);
     (gamma - rho) / ((gamma - 1.0) * (0.35 * rho + 0.65))

@@ -1,6 +1,6 @@
 //! Equation (9): the controller that moves an identified point `M` of the Nyquist curve to `S`.
 //!
-//! Derived after Astrom and Hagglund (1984): `C(jw) P(jw)` shall be `S` where `P(jw)` is `M`, so
+//! Derived after Åström and Hägglund (1984): `C(jw) P(jw)` shall be `S` where `P(jw)` is `M`, so
 //! `C(jw) = S/M = rho e^(j theta)`. With `Ti = alpha Td` and without a derivative filter that is
 //! `K = rho cos(theta)`, `w Td - 1/(w alpha Td) = tan(theta)`, hence
 //! `Td = (tan(theta) + sqrt(tan^2(theta) + 4/alpha))/(2 w)`. Here the filter `Tf = Td/N` is taken into

@@ -1,6 +1,6 @@
 //! Equation (7): the relay whose oscillation shows the gain for a required phase margin.
 //!
-//! Derived after Astrom and Hagglund (1984). With `eps = a sin(phi)` the describing function gives
+//! Derived after Åström and Hägglund (1984). With `eps = a sin(phi)` the describing function gives
 //! `-1/N(a) = -pi a/(4k) (cos(phi) + j sin(phi))`, the ray at `-pi + phi`; with `k = pi a/4` besides it
 //! is the point `e^(j(-pi + phi))` of the unit circle. So a loop with the gain `K` in series that
 //! oscillates with just this amplitude `a` has `K P(jw) = e^(j(-pi + phi))`: without the relay, the

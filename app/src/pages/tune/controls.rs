@@ -72,7 +72,7 @@ impl Tune {
             "phase margin [°]",
         )
         .on_hover_text(tr(
-            "What the relay of step 3 and the rule of Astrom and Hagglund aim at",
+            "What the relay of step 3 and the rule of Åström and Hägglund aim at",
         ));
         let mut gain = self.input.present.gain;
         slider(

@@ -81,7 +81,7 @@ fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {
             ui.small(tr(error.to_string()));
         }
     }
-    ui.small(tr("Berner, Hagglund and Astrom: from the half periods. Shen, Wu and Yu: through the points of the Nyquist curve at 0 and at ω."));
+    ui.small(tr("Berner, Hägglund and Åström: from the half periods. Shen, Wu and Yu: through the points of the Nyquist curve at 0 and at ω."));
     let point = &found.point;
     ui.label(tr(format!(
         "Point of the Nyquist curve at ω = {} rad/s: {} {} j.",
