@@ -322,7 +322,7 @@ fn seen_load(events: Vec<SeenContact>, fit: &Fit, place_error: f64) -> Option<Se
         place: libm::hypot(fit.sharpness.place, place_error),
         ..fit.sharpness
     };
-    SeenLoad::new(events, fit.play, sharpness)
+    SeenLoad::new(events, fit.play, sharpness, fit.load_errors)
 }
 
 /// A touch in SI units.

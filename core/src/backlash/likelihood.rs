@@ -79,6 +79,8 @@ pub(super) struct Fit {
     pub play: Play,
     /// Standard error of the half gap.
     pub error: f64,
+    /// Standard errors of the load's inertia, viscous and dry friction, as shares of these.
+    pub load_errors: [f64; 3],
     /// How well the contacts tell.
     pub sharpness: Sharpness,
     /// One for each event but the first.
@@ -162,9 +164,20 @@ pub(super) fn fit(
     let mut innovations = Vec::new();
     filter(events, &point, errors, Some(&mut innovations));
     let (play, sharpness) = meaning(&point, errors.1);
-    let relative = posterior.covariance[(0, 0)].max(0.0).sqrt();
+    // The logarithm of each as a sum of the unknowns: that of the ratio is the first two together, and the frictions
+    // stand there divided by the load's inertia.
+    let relative = |weights: Point| {
+        let weights = nalgebra::SVector::from(weights);
+        let variance = (weights.transpose() * posterior.covariance * weights)[0];
+        variance.max(0.0).sqrt()
+    };
     Some(Fit {
-        error: play.half_gap * relative,
+        error: play.half_gap * relative([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        load_errors: [
+            relative([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
+            relative([-1.0, -1.0, 1.0, 0.0, 0.0, 0.0]),
+            relative([0.0, -1.0, 0.0, 1.0, 0.0, 0.0]),
+        ],
         play,
         sharpness,
         innovations,

@@ -295,13 +295,19 @@ impl Session {
             })
             .collect();
         for (index, effect) in fit.structure.effects.iter().enumerate() {
-            for (j, spec) in fit.structure.range(index).zip(effect.parameters()) {
+            let range = fit.structure.range(index);
+            let least = self.gap.map_or_else(Vec::new, |gap| {
+                effect.least_errors(&fit.values[range.clone()], &gap)
+            });
+            let mut least = least.into_iter();
+            for (j, spec) in range.zip(effect.parameters()) {
+                let least = least.next().filter(|_| status(j) == Status::Free);
                 parameters.push(Parameter {
                     effect: Some(effect.id()),
                     name: spec.symbol.to_owned(),
                     label: spec.label.to_owned(),
                     value: fit.values[j],
-                    std_error: errors[j],
+                    std_error: errors[j].max(least.unwrap_or(0.0)),
                     status: status(j),
                     unit: self.unit_of(Some(spec.dimension)),
                 });
@@ -400,6 +406,7 @@ fn sight(measurement: &Measurement) -> Sighted {
         viscous: seen.play().slowing.viscous,
         dry: seen.play().slowing.dry,
         push: seen.usual_push(),
+        errors: seen.errors(),
     });
     let gap = estimate.gap.map(|gap| SeenGap {
         half_gap: 0.5 * gap,

@@ -5,7 +5,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Dimension, Effect, EffectId, GapLoad, ParameterSpec, Probe, Range};
+use super::{Dimension, Effect, EffectId, GapLoad, ParameterSpec, Probe, Range, SeenGap};
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
 use crate::simplex::minimise;
@@ -305,6 +305,15 @@ impl Effect for Backlash {
             .map(|trial| trial.guess.half_gap)
             .collect();
         behind(probe, &gaps).iter().map(Trial::values).collect()
+    }
+
+    fn least_errors(&self, values: &[f64], gap: &SeenGap) -> Vec<f64> {
+        let Some(load) = gap.load else {
+            return Vec::new();
+        };
+        let shares = values.iter().skip(1).zip(load.errors);
+        let load = shares.map(|(value, share)| value * share);
+        std::iter::once(gap.error).chain(load).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -54,6 +54,11 @@ pub trait Effect: Sync {
     fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {
         Vec::new()
     }
+    /// Least standard errors of these values, where the record shows a gap: a fit that has many valleys side by side knows
+    /// its own only.
+    fn least_errors(&self, _values: &[f64], _gap: &SeenGap) -> Vec<f64> {
+        Vec::new()
+    }
     /// Effects that are this one with some values at 0: it replaces them.
     fn contains(&self) -> &'static [EffectId] {
         &[]

@@ -133,6 +133,8 @@ pub struct GapLoad {
     pub dry: f64,
     /// From the begin of a contact to the centre of its push, s.
     pub push: f64,
+    /// Standard errors of its inertia, viscous and dry friction, as shares of these.
+    pub errors: [f64; 3],
 }
 
 /// What a [`Probe`] is made from.

@@ -146,6 +146,7 @@ pub struct SeenLoad {
     /// What explains them best.
     play: Play,
     sharpness: Sharpness,
+    errors: [f64; 3],
     /// For each contact, the gains with which it is taken in, and the state after its push.
     gains: Vec<[f64; 2]>,
     after: Vec<LoadState>,
@@ -167,8 +168,14 @@ pub(super) enum Sight {
 }
 
 impl SeenLoad {
-    /// From contacts in order of time and what explains them best; `None` without any.
-    pub fn new(contacts: Vec<SeenContact>, play: Play, sharpness: Sharpness) -> Option<Self> {
+    /// From contacts in order of time and what explains them best, with the relative standard errors of the load's
+    /// inertia, viscous and dry friction; `None` without any.
+    pub fn new(
+        contacts: Vec<SeenContact>,
+        play: Play,
+        sharpness: Sharpness,
+        errors: [f64; 3],
+    ) -> Option<Self> {
         let x = contacts.first()?.load_at(play.half_gap);
         let mut state = LoadState::at_rest(x, &sharpness);
         let (mut gains, mut after) = (Vec::new(), Vec::new());
@@ -190,6 +197,7 @@ impl SeenLoad {
             contacts,
             play,
             sharpness,
+            errors,
             gains,
             after,
         })
@@ -203,6 +211,11 @@ impl SeenLoad {
     /// What explains the contacts best.
     pub fn play(&self) -> &Play {
         &self.play
+    }
+
+    /// Standard errors of the load's inertia, viscous and dry friction, as shares of these.
+    pub fn errors(&self) -> [f64; 3] {
+        self.errors
     }
 
     /// Usual time from the begin of a contact to the centre of its push, s.
@@ -394,7 +407,10 @@ mod tests {
             contact(0.0, 1.0, 0.01, 0.05),
             contact(0.2, -1.0, met, -0.02),
         ];
-        (SeenLoad::new(contacts, PLAY, SHARPNESS).unwrap(), speed)
+        (
+            SeenLoad::new(contacts, PLAY, SHARPNESS, [0.0; 3]).unwrap(),
+            speed,
+        )
     }
 
     #[test]
