@@ -159,7 +159,7 @@ impl Fit {
         }
         let mut trial = self.starts.clone();
         data.excitation.guess_loads(&model, &mut trial);
-        self.take_better(data, trial);
+        self.take_better(data, &trial);
         true
     }
 
@@ -264,7 +264,7 @@ impl Fit {
             motion: moved,
             ..self.clone()
         };
-        trial.take_better(data, self.starts.clone());
+        trial.take_better(data, &self.starts);
         let model = self.structure.model(values);
         if data.excitation.sees_load_of(&model) {
             trial.polish_until(present, data, scales);
@@ -519,11 +519,11 @@ impl Fit {
         for (guessed, present) in trial.iter_mut().zip(&self.starts) {
             guessed.load = present.load;
         }
-        self.take_better(data, trial.clone());
+        self.take_better(data, &trial);
         let model = self.structure.model(&self.values);
         if data.excitation.sees_load_of(&model) {
             data.excitation.guess_loads(&model, &mut trial);
-            self.take_better(data, trial);
+            self.take_better(data, &trial);
         }
     }
 
@@ -559,8 +559,8 @@ impl Fit {
                 .iter()
                 .map(|sums| inverse(&sums.state) * sums.gradient * *share);
             let trial = self.starts.iter().zip(changes);
-            let trial = trial.map(|(s, change)| changed(s, &change)).collect();
-            self.take_better(data, trial);
+            let trial: Vec<Start> = trial.map(|(s, change)| changed(s, &change)).collect();
+            self.take_better(data, &trial);
         }
         sees_load
     }
@@ -572,8 +572,8 @@ impl Fit {
     }
 
     /// Takes for each window its state of `trial` where that fits better.
-    pub(super) fn take_better(&mut self, data: &Data, trial: Vec<Start>) {
-        let motion = simulate(data, &self.structure, &self.values, &trial);
+    pub(super) fn take_better(&mut self, data: &Data, trial: &[Start]) {
+        let motion = simulate(data, &self.structure, &self.values, trial);
         let before = window_costs(data, &self.motion);
         let after = window_costs(data, &motion);
         // A slow sensor carries over from window to window; apart from that each has its own motion.

@@ -63,7 +63,7 @@ impl Fit {
             better[place] = *start;
         }
         let before = self.cost;
-        self.take_better(data, better);
+        self.take_better(data, &better);
         self.cost < before
     }
 
@@ -78,7 +78,7 @@ impl Fit {
                         start.load[0] += share * place;
                         start.load[1] += share * velocity;
                     }
-                    self.take_better(data, trial);
+                    self.take_better(data, &trial);
                 }
             }
         }
@@ -92,7 +92,7 @@ impl Fit {
         }
         trial.follow_starts(data);
         trial.polish_once(data, scales);
-        self.take_better(data, trial.starts);
+        self.take_better(data, &trial.starts);
     }
 }
 
