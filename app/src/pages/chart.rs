@@ -20,6 +20,9 @@ const LABELS: egui::Rangef = egui::Rangef {
     max: 40.0,
 };
 
+/// Decimals of a label; smaller numbers have an exponent, so that they need no more room.
+const MOST_DECIMALS: usize = 4;
+
 pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
 }
@@ -241,6 +244,15 @@ fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
     } else {
         mark.value
     };
+    if decimals > MOST_DECIMALS {
+        if value == 0.0 {
+            return "0".to_owned();
+        }
+        let exponent = 3.0 * (first / 3.0).floor();
+        let decimals = (more - first + exponent).max(0.0) as usize;
+        let value = value / 10_f64.powf(exponent);
+        return tr_number(format!("{value:.decimals$}e{exponent}"));
+    }
     tr_number(format!("{value:.decimals$}"))
 }
 
