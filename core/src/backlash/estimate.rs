@@ -192,13 +192,48 @@ pub enum GapError {
 /// not read. The module says how. Errors say what is wrong with the measurement; a sound one in which no
 /// gap is seen gives an estimate without a gap and the reason.
 pub fn estimate_gap(measurement: &Measurement) -> Result<GapEstimate, GapError> {
-    sighted(measurement).map(|(estimate, _)| estimate)
+    look(measurement).map(|(estimate, _)| estimate)
 }
 
 /// The same with the load as its contacts show it, where a gap is stated.
 pub(crate) fn sighted(
     measurement: &Measurement,
 ) -> Result<(GapEstimate, Option<SeenLoad>), GapError> {
+    let (estimate, felt) = look(measurement)?;
+    Ok((estimate, felt.and_then(Felt::load)))
+}
+
+/// The load behind a gap that is stated.
+enum Felt {
+    /// The gap was estimated together with it.
+    AtBothEnds(SeenLoad),
+    /// The gap is known without it; what it takes to estimate it.
+    AtOneEnd {
+        events: Vec<SeenContact>,
+        scales: Scales,
+        half_gap: f64,
+        place_error: f64,
+    },
+}
+
+impl Felt {
+    fn load(self) -> Option<SeenLoad> {
+        match self {
+            Self::AtBothEnds(load) => Some(load),
+            Self::AtOneEnd {
+                events,
+                scales,
+                half_gap,
+                place_error,
+            } => {
+                let fit = fit(&events, &scales, Some((half_gap, place_error)))?;
+                seen_load(events, &fit, place_error)
+            }
+        }
+    }
+}
+
+fn look(measurement: &Measurement) -> Result<(GapEstimate, Option<Felt>), GapError> {
     let record = Record::new(measurement)?;
     let none = |record: &Record| Ok((nothing(record, Quality::NoDriftingTest), None));
     let Some(cycles) = Cycles::new(&record) else {
@@ -237,7 +272,7 @@ pub(crate) fn sighted(
     let both = [Side::Positive, Side::Negative]
         .iter()
         .all(|side| touches.iter().any(|t| t.side == *side));
-    let mut load = None;
+    let mut felt = None;
     let events: Vec<SeenContact> = touches.iter().map(|t| seen(t, &record)).collect();
     let (low, high) = range(&record.position);
     let scales = Scales {
@@ -248,12 +283,16 @@ pub(crate) fn sighted(
     };
     if both {
         let period = cycles.length * record.step;
-        load = two_sided(&mut estimate, events, &scales, period, place_error);
+        let load = two_sided(&mut estimate, events, &scales, period, place_error);
+        felt = load.map(Felt::AtBothEnds);
     } else if touches.len() >= FEWEST_CONTACTS {
         one_sided(&mut estimate, &record, &cycles, place_error);
-        let known = estimate.gap.map(|gap| (0.5 * gap, place_error));
-        let fit = known.and_then(|known| fit(&events, &scales, Some(known)));
-        load = fit.and_then(|fit| seen_load(events, &fit, place_error));
+        felt = estimate.gap.map(|gap| Felt::AtOneEnd {
+            events,
+            scales,
+            half_gap: 0.5 * gap,
+            place_error,
+        });
     } else {
         estimate.contacts.clear();
         if disturbed {
@@ -261,7 +300,7 @@ pub(crate) fn sighted(
         }
     }
     estimate.text = verdict::text(&estimate, cycles.flips.iter().any(|f| *f));
-    Ok((estimate, load))
+    Ok((estimate, felt))
 }
 
 fn nothing(record: &Record, quality: Quality) -> GapEstimate {
