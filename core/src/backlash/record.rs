@@ -1,6 +1,7 @@
 //! The motor-side columns on an even grid.
 
 use crate::measurement::{Kind, Measurement, Quantity};
+use crate::order::median;
 
 use super::GapError;
 
@@ -49,8 +50,7 @@ impl Record {
         if steps.iter().any(|s| *s <= 0.0) {
             return Err(GapError::Damaged);
         }
-        let middle = steps.len() / 2;
-        let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let usual = median(&mut steps);
         let start = time[0];
         let duration = time[n - 1] - start;
         let even = steps.iter().all(|s| (s / usual - 1.0).abs() <= EVEN);
