@@ -9,6 +9,7 @@ use super::cost::window_costs;
 use super::data::Data;
 use super::fit::Fit;
 use crate::effect::Scales;
+use crate::model::Start;
 use crate::order::median;
 
 /// Mean square from which a window is odd, in times of the median one, or of the noise where that is more.
@@ -50,9 +51,15 @@ impl Fit {
         if sees_load {
             own.try_loads(&part);
         } else {
+            // A state that suited other values may have led far from the measured one.
+            let measured = part.guessed_starts();
+            own.try_from(&measured, &part, scales);
             for step in STEPS {
                 for side in [1.0, -1.0] {
-                    own.try_faster(side * step * scales.speed, &part, scales);
+                    let faster = side * step * scales.speed;
+                    for base in [own.starts.clone(), measured.clone()] {
+                        own.try_from(&quicker(base, faster), &part, scales);
+                    }
                 }
             }
         }
@@ -84,16 +91,22 @@ impl Fit {
         }
     }
 
-    /// Starts every window faster by this, improves the states, and keeps those that fit better than before.
-    fn try_faster(&mut self, faster: f64, data: &Data, scales: &Scales) {
+    /// Starts every window from here, improves the states, and keeps those that fit better than before.
+    fn try_from(&mut self, starts: &[Start], data: &Data, scales: &Scales) {
         let mut trial = self.clone();
-        for start in &mut trial.starts {
-            start.velocity += faster;
-        }
+        trial.starts = starts.to_vec();
         trial.follow_starts(data);
         trial.polish_once(data, scales);
         self.take_better(data, &trial.starts);
     }
+}
+
+/// The same states with the body faster by this.
+fn quicker(mut starts: Vec<Start>, faster: f64) -> Vec<Start> {
+    for start in &mut starts {
+        start.velocity += faster;
+    }
+    starts
 }
 
 /// Which windows are far worse than usual; none where many are.
