@@ -107,7 +107,8 @@ pub enum Range {
     Sizeable,
     /// `RIGID_CROSSINGS` to `SHORT_CROSSINGS` times [`Scales::crossed`], or as far as the position is blurred.
     Short,
-    /// At least `RIGID_CROSSINGS` times [`Scales::crossed`].
+    /// At least `RIGID_CROSSINGS` times [`Scales::crossed`], at most the travel: friction that built up over more
+    /// would be a spring.
     Long,
     /// At least `WHOLE_TURN` times its [`Scales::of`]: what repeats over the position does so within
     /// the travel.
@@ -194,7 +195,10 @@ impl ParameterSpec {
                 let longest = (SHORT_CROSSINGS * crossed).max(BLURRED * scales.resolution);
                 value.clamp(RIGID_CROSSINGS * crossed, longest)
             }
-            Range::Long => value.max(RIGID_CROSSINGS * scales.crossed()),
+            Range::Long => {
+                let least = RIGID_CROSSINGS * scales.crossed();
+                value.max(least).min(scales.travel.max(least))
+            }
             Range::Repeating => value.max(WHOLE_TURN * scale),
         }
     }
