@@ -244,7 +244,7 @@ fn filter(
             }
         }
         state.fly(&play.slowing, event.centre);
-        state.push(event, play.ratio, &sharpness);
+        state.push(event, &play, &sharpness);
     }
     total
 }

@@ -25,14 +25,8 @@ const SCOUT_PART: usize = 5;
 /// ... and on at least this many samples.
 const SCOUT_SAMPLES: usize = 2500;
 
-/// Samples before a contact at which a window begins.
-const BEFORE_CONTACT: usize = 2;
-
-/// Contacts with a load that a window should hold where one follows the other, least samples of such a window, and from
-/// how many on it is worth it.
-const FEW_CONTACTS: f64 = 3.0;
-const SHORTEST_CUT: f64 = 25.0;
-const MANY_CONTACTS: usize = 20;
+/// Swings of the motor before a contact in its window.
+const SWINGS_BEFORE: usize = 4;
 
 /// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -166,48 +160,57 @@ impl Data {
         Self { felt, ..self }
     }
 
-    /// The same with a load that its contacts tell. Windows near a contact then begin just before it: from farther
-    /// away it may be met one swing of the motor too early or too late.
+    /// The same with a load that its contacts tell.
     pub fn with_seen_load(self, seen: SeenLoad) -> Self {
-        let times: Vec<f64> = seen.times().collect();
-        let mut data = self.with_contacts(&times);
-        data.excitation = data.excitation.with_seen_load(seen);
-        let felt = &data.felt;
-        let length = data.len() / data.windows.len().max(1);
-        for k in 1..data.windows.len() {
-            let regular = data.windows[k];
-            let before = felt.partition_point(|s| *s < regular);
-            let near = felt[before.saturating_sub(1)..felt.len().min(before + 1)].iter();
-            let moved = near
-                .map(|s| s.saturating_sub(BEFORE_CONTACT))
-                .filter(|s| s.abs_diff(regular) <= length / 2)
-                .min_by_key(|s| s.abs_diff(regular));
-            let room = data.windows[k - 1] + MIN_WINDOW..data.len() - MIN_WINDOW;
-            if let Some(sample) = moved.filter(|s| room.contains(s)) {
-                data.windows[k] = sample;
-                data.blocks[k - 1].to = sample;
-                data.blocks[k].from = sample;
-            }
+        Self {
+            excitation: self.excitation.with_seen_load(seen),
+            ..self
         }
-        data
     }
 
-    /// The same in windows so short that each holds few of the contacts that were felt, if those lie close: every
-    /// contact multiplies what is wrong before it, until a simulation tells nothing.
-    pub fn cut_between_contacts(self) -> Self {
-        let usual = self.len() / self.windows.len().max(1);
-        let pauses = self.felt.windows(2).map(|pair| pair[1] - pair[0]);
-        let short: Vec<usize> = pauses.filter(|pause| *pause < usual).collect();
-        let mean = short.iter().sum::<usize>() as f64 / short.len() as f64;
-        let length = (FEW_CONTACTS * mean).round().max(SHORTEST_CUT) as usize;
-        if short.len() < MANY_CONTACTS || length >= usual {
+    /// The same in windows each with one of the contacts that were felt: every contact multiplies what was wrong before it,
+    /// and from far away a load may be met one swing of the motor too early or too late. They begin some swings before the
+    /// contact, which tell the motion without it, at most half way from the contact before.
+    pub fn cut_at_contacts(self) -> Self {
+        if self.felt.is_empty() {
             return self;
         }
-        let windows = split(self.len(), length);
-        let blocks = blocks(self.len(), length, &windows);
+        let usual = self.len() / self.windows.len().max(1);
+        let velocity = self.velocity_estimate();
+        let turns = |k: &usize| velocity[*k] * velocity[k + 1] <= 0.0;
+        let begin = |place: usize| {
+            let felt = self.felt[place];
+            let early = (0..felt)
+                .rev()
+                .filter(turns)
+                .nth(SWINGS_BEFORE)
+                .unwrap_or(0);
+            let before = place.checked_sub(1).map_or(0, |k| self.felt[k]);
+            early.max(usize::midpoint(before, felt))
+        };
+        let mut begins = (0..self.felt.len()).map(begin).peekable();
+        let mut windows = vec![0];
+        let mut from = 0;
+        loop {
+            while begins.next_if(|b| *b < from + MIN_WINDOW).is_some() {}
+            let next = begins.peek().filter(|b| **b < from + usual + usual / 2);
+            from = next.copied().unwrap_or(from + usual);
+            if from + MIN_WINDOW >= self.len() {
+                break;
+            }
+            windows.push(from);
+        }
+        let ends = windows.iter().skip(1).copied().chain([self.len()]);
+        let blocks = windows.iter().zip(ends).enumerate();
+        let blocks = blocks.map(|(window, (from, to))| Block {
+            from: *from,
+            to,
+            window,
+            held_back: window % 2 == 1,
+        });
         Self {
+            blocks: blocks.collect(),
             windows,
-            blocks,
             ..self
         }
     }

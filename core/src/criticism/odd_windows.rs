@@ -21,13 +21,11 @@ const MOST: f64 = 0.25;
 /// Velocities that are tried on either side, as shares of the typical speed.
 const STEPS: [f64; 7] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
-/// Deviations of a load's place and velocity that are tried, each with each, in standard deviations.
-const LOAD_STEPS: [f64; 13] = [
-    -3.2, -1.6, -0.8, -0.4, -0.2, -0.1, 0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2,
-];
-
-/// The same once more about the best of them, as shares of these: a wrong place grows from contact to contact.
-const FINER: [f64; 3] = [1.0, 0.1, 0.01];
+/// Deviations of a load's place and of its velocity that are tried, each with each, in standard deviations, and the
+/// times that the states are improved from each.
+const PLACES: [f64; 11] = [0.0, 0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0];
+const VELOCITIES: [f64; 3] = [0.0, 1.5, -1.5];
+const IMPROVEMENTS: usize = 8;
 
 impl Fit {
     /// Looks for better states of odd windows, if the body sticks or has a load that was felt; true if that lowers the
@@ -49,7 +47,7 @@ impl Fit {
         let structure = self.structure.clone();
         let mut own = Self::new(&part, structure, self.values.clone(), starts, scales);
         if sees_load {
-            own.try_loads(&part);
+            own.try_loads(&part, scales);
         } else {
             // A state that suited other values may have led far from the measured one.
             let measured = part.guessed_starts();
@@ -74,19 +72,21 @@ impl Fit {
         self.cost < before
     }
 
-    /// Starts every window with the load elsewhere, and keeps what fits best.
-    fn try_loads(&mut self, data: &Data) {
-        for share in FINER {
-            let present = self.starts.clone();
-            for place in LOAD_STEPS {
-                for velocity in LOAD_STEPS {
-                    let mut trial = present.clone();
-                    for start in &mut trial {
-                        start.load[0] += share * place;
-                        start.load[1] += share * velocity;
-                    }
-                    self.take_better(data, &trial);
+    /// Starts every window as measured with the load in several places, improves the states, and keeps what fits best.
+    fn try_loads(&mut self, data: &Data, scales: &Scales) {
+        let measured = data.guessed_starts();
+        for place in PLACES {
+            for velocity in VELOCITIES {
+                let mut trial = self.clone();
+                trial.starts.clone_from(&measured);
+                for start in &mut trial.starts {
+                    start.load = [place, velocity];
                 }
+                trial.follow_starts(data);
+                for _ in 0..IMPROVEMENTS {
+                    trial.polish_once(data, scales);
+                }
+                self.take_better(data, &trial.starts);
             }
         }
     }

@@ -76,7 +76,7 @@ impl Session {
             contacts,
         } = sight(measurement);
         let mut data = Data::new(measurement)?;
-        data = data.with_contacts(&contacts).cut_between_contacts();
+        data = data.with_contacts(&contacts).cut_at_contacts();
         if let Some(seen) = seen {
             data = data.with_seen_load(seen);
         }
@@ -413,8 +413,12 @@ fn sight(measurement: &Measurement) -> Sighted {
         error: 0.5 * estimate.std_error.unwrap_or(0.0),
         load,
     });
-    let one_sided = matches!(estimate.quality, Quality::OneSide | Quality::AssumedCentre);
-    let contacts = estimate.contacts.iter().filter(|_| one_sided);
+    // Where something else disturbs the cycle, what was felt need not be a load.
+    let load = !matches!(
+        estimate.quality,
+        Quality::Disturbed | Quality::NoEngagement | Quality::NoDriftingTest
+    );
+    let contacts = estimate.contacts.iter().filter(|_| load);
     Sighted {
         gap,
         seen: seen.filter(|_| gap.is_some()),

@@ -47,6 +47,20 @@ pub struct Play {
     pub slowing: Slowing,
 }
 
+impl Play {
+    /// Velocity of a load with velocity `v` after the push of a contact. Its dry friction takes a part from the push of a
+    /// load at rest; one that moves was slowed by it on its way to the centre of the push.
+    fn pushed(&self, v: f64, contact: &SeenContact) -> f64 {
+        let gained = self.ratio * contact.jump;
+        if v == 0.0 {
+            let lost = self.slowing.dry * contact.centre;
+            gained.signum() * (gained.abs() - lost).max(0.0)
+        } else {
+            v + gained
+        }
+    }
+}
+
 /// How well a contact tells the load's place and momentum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sharpness {
@@ -132,8 +146,9 @@ impl LoadState {
     }
 
     /// Takes up the momentum of a contact.
-    pub fn push(&mut self, contact: &SeenContact, ratio: f64, sharpness: &Sharpness) {
-        self.v += ratio * contact.jump;
+    pub fn push(&mut self, contact: &SeenContact, play: &Play, sharpness: &Sharpness) {
+        let ratio = play.ratio;
+        self.v = play.pushed(self.v, contact);
         self.covariance[2] += (ratio * sharpness.momentum * contact.jump).powi(2)
             + (ratio * contact.jump_noise).powi(2);
     }
@@ -189,7 +204,7 @@ impl SeenLoad {
                 [0.0; 2]
             });
             state.fly(&play.slowing, contact.centre);
-            state.push(contact, play.ratio, &sharpness);
+            state.push(contact, &play, &sharpness);
             after.push(state);
             now = contact.begin + contact.centre;
         }
@@ -201,11 +216,6 @@ impl SeenLoad {
             gains,
             after,
         })
-    }
-
-    /// When the motor felt the load, s, in order.
-    pub fn times(&self) -> impl Iterator<Item = f64> {
-        self.contacts.iter().map(|c| c.begin)
     }
 
     /// What explains the contacts best.
@@ -308,7 +318,7 @@ impl<'s> Tracker<'s> {
             }
             self.met = (self.x, self.v);
             self.fly(contact.centre);
-            self.v += self.play.ratio * contact.jump;
+            self.v = self.play.pushed(self.v, contact);
             self.now = contact.begin + contact.centre;
             self.next += 1;
         }
