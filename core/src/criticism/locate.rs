@@ -360,10 +360,9 @@ mod tests {
     fn an_error_after_the_motor_felt_the_load_is_found_there() {
         let bytes = include_bytes!("../../../assets/measurements/drive-10.csv");
         let measurement = import_csv("drive-10.csv", bytes, None).unwrap();
-        let (_, seen) = sighted(&measurement).unwrap();
-        let data = Data::new(&measurement)
-            .unwrap()
-            .with_seen_load(seen.unwrap());
+        let (estimate, _) = sighted(&measurement).unwrap();
+        let times: Vec<f64> = estimate.contacts.iter().map(|c| c.time).collect();
+        let data = Data::new(&measurement).unwrap().with_contacts(&times);
         let felt = &data.felt;
         assert!(felt.len() > 10, "{}", felt.len());
         let series = |velocity: bool| {
