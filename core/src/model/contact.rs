@@ -168,7 +168,7 @@ impl Contact {
         // The spring that joins the ends of the piece instead of the one at its start.
         let share = if moved.abs() > f64::MIN_POSITIVE {
             let joined = (bent(moved) - z) / moved;
-            let size = joined.abs().max(SLIP_SHARE * 0.5).min(2.0);
+            let size = joined.abs().clamp(SLIP_SHARE * 0.5, 2.0);
             size.copysign(share)
         } else {
             share
