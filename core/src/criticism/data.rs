@@ -180,13 +180,10 @@ impl Data {
         let turns = |k: &usize| velocity[*k] * velocity[k + 1] <= 0.0;
         let begin = |place: usize| {
             let felt = self.felt[place];
-            let early = (0..felt)
-                .rev()
-                .filter(turns)
-                .nth(SWINGS_BEFORE)
-                .unwrap_or(0);
             let before = place.checked_sub(1).map_or(0, |k| self.felt[k]);
-            early.max(usize::midpoint(before, felt))
+            let half_way = usize::midpoint(before, felt);
+            let mut turns = (half_way..felt).rev().filter(turns);
+            turns.nth(SWINGS_BEFORE).unwrap_or(half_way)
         };
         let mut begins = (0..self.felt.len()).map(begin).peekable();
         let mut windows = vec![0];
