@@ -51,12 +51,12 @@ impl Fit {
         } else {
             // A state that suited other values may have led far from the measured one.
             let measured = part.guessed_starts();
-            own.try_from(&measured, &part, scales);
+            own.try_from(measured.clone(), 1, &part, scales);
             for step in STEPS {
                 for side in [1.0, -1.0] {
                     let faster = side * step * scales.speed;
                     for base in [own.starts.clone(), measured.clone()] {
-                        own.try_from(&quicker(base, faster), &part, scales);
+                        own.try_from(quicker(base, faster), 1, &part, scales);
                     }
                 }
             }
@@ -77,26 +77,23 @@ impl Fit {
         let measured = data.guessed_starts();
         for place in PLACES {
             for velocity in VELOCITIES {
-                let mut trial = self.clone();
-                trial.starts.clone_from(&measured);
-                for start in &mut trial.starts {
+                let mut starts = measured.clone();
+                for start in &mut starts {
                     start.load = [place, velocity];
                 }
-                trial.follow_starts(data);
-                for _ in 0..IMPROVEMENTS {
-                    trial.polish_once(data, scales);
-                }
-                self.take_better(data, &trial.starts);
+                self.try_from(starts, IMPROVEMENTS, data, scales);
             }
         }
     }
 
-    /// Starts every window from here, improves the states, and keeps those that fit better than before.
-    fn try_from(&mut self, starts: &[Start], data: &Data, scales: &Scales) {
+    /// Starts every window from here, improves the states so many times, and keeps those that fit better than before.
+    fn try_from(&mut self, starts: Vec<Start>, times: usize, data: &Data, scales: &Scales) {
         let mut trial = self.clone();
-        trial.starts = starts.to_vec();
+        trial.starts = starts;
         trial.follow_starts(data);
-        trial.polish_once(data, scales);
+        for _ in 0..times {
+            trial.polish_once(data, scales);
+        }
         self.take_better(data, &trial.starts);
     }
 }
