@@ -190,6 +190,7 @@ impl Data {
         let mut from = 0;
         loop {
             while begins.next_if(|b| *b < from + MIN_WINDOW).is_some() {}
+            // A rest shorter than half a window joins the one before.
             let next = begins.peek().filter(|b| **b < from + usual + usual / 2);
             from = next.copied().unwrap_or(from + usual);
             if from + MIN_WINDOW >= self.len() {

@@ -3,7 +3,7 @@
 //! Where a body sticks, the motion depends on the state at the start of a window by leaps: a little slower and it
 //! stays where it is, a little faster and it breaks loose. So it does where a load comes up behind a gap, and is met or
 //! missed. A fit that follows derivatives stops on the wrong side of such a leap, and one window may then cost more than
-//! all the others. Its state is looked for on either side.
+//! all the others. Its state is looked for about the present and the measured one.
 
 use super::cost::window_costs;
 use super::data::Data;

@@ -414,11 +414,11 @@ fn sight(measurement: &Measurement) -> Sighted {
         load,
     });
     // Where something else disturbs the cycle, what was felt need not be a load.
-    let load = !matches!(
+    let is_load = !matches!(
         estimate.quality,
         Quality::Disturbed | Quality::NoEngagement | Quality::NoDriftingTest
     );
-    let contacts = estimate.contacts.iter().filter(|_| load);
+    let contacts = estimate.contacts.iter().filter(|_| is_load);
     Sighted {
         gap,
         seen: seen.filter(|_| gap.is_some()),
