@@ -15,8 +15,14 @@ const LEAST_STATISTIC: f64 = 30.0;
 /// not what the model is missing.
 const LEAST_FALL: f64 = 0.03;
 
-/// Least share of the held-back blocks in which the error falls.
+/// Of the held-back blocks in which a step changes the error, the least share in which it falls, and the least number
+/// of these (fewer do if they are that share of all).
 const LEAST_BLOCKS: f64 = 0.6;
+const FEWEST_BETTER: usize = 3;
+
+/// Relative change of the squared error of a block below which the step does nothing there: a limit of the input acts
+/// only where the input is as large.
+const UNCHANGED: f64 = 0.02;
 
 /// Statistic below which two models count as the same within noise: near what it takes to add one.
 const SAME_STATISTIC: f64 = 25.0;
@@ -68,15 +74,20 @@ pub(super) fn usual_fall(before: &Score, after: &Score) -> f64 {
 
 /// Whether held-back data want the step from `before` to `after`.
 pub(super) fn helps(before: &Score, after: &Score) -> bool {
-    let better = before
-        .held_blocks
-        .iter()
-        .zip(&after.held_blocks)
-        .filter(|(b, a)| a < b)
-        .count();
     statistic(before, after) > LEAST_STATISTIC
         && fall(before, after) > LEAST_FALL
-        && better as f64 > LEAST_BLOCKS * before.held_blocks.len() as f64
+        && helps_widely(&before.held_blocks, &after.held_blocks)
+}
+
+/// Whether the error falls in most of the blocks in which it changes, and in more than one or two.
+fn helps_widely(before: &[f64], after: &[f64]) -> bool {
+    let least = |count: usize| LEAST_BLOCKS * count as f64;
+    let blocks = || before.iter().zip(after);
+    let better = blocks().filter(|(b, a)| **a < (1.0 - UNCHANGED) * **b);
+    let worse = blocks().filter(|(b, a)| **b < (1.0 - UNCHANGED) * **a);
+    let (better, worse) = (better.count(), worse.count());
+    let share = better as f64;
+    share > least(better + worse) && (better >= FEWEST_BETTER || share > least(before.len()))
 }
 
 /// Whether two models with `a_len` and `b_len` parameters leave the same error within noise, on all held-back blocks
@@ -171,4 +182,34 @@ fn is_noise_but_for_stretches(score: &Score, first: &Score) -> bool {
 pub(super) fn delta_bic(before: &Score, before_len: usize, after: &Score, after_len: usize) -> f64 {
     before.fit_count * libm::log(after.fit_cost / before.fit_cost)
         + (after_len as f64 - before_len as f64) * libm::log(before.fit_count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten blocks, the first of them with these mean squares.
+    fn blocks(first: &[f64], rest: f64) -> Vec<f64> {
+        let mut all = first.to_vec();
+        all.resize(10, rest);
+        all
+    }
+
+    #[test]
+    fn an_effect_may_act_in_a_few_blocks_but_not_in_one_or_two() {
+        let helps = |acting: &[f64], rest: f64| {
+            let before = blocks(&vec![400.0; acting.len()], 1.0);
+            helps_widely(&before, &blocks(acting, rest))
+        };
+        assert!(helps(&[1.0, 1.0, 1.1], 1.01));
+        assert!(!helps(&[1.0, 1.0], 1.01));
+        assert!(!helps(&[1.0, 1.0, 1.0], 1.05));
+        assert!(helps(&[1.0; 7], 1.05));
+    }
+
+    #[test]
+    fn of_few_blocks_most_must_become_better() {
+        assert!(helps_widely(&[9.0, 4.0], &[1.0, 1.0]));
+        assert!(!helps_widely(&[9.0, 1.0], &[1.0, 1.0]));
+    }
 }
