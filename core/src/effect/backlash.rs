@@ -294,17 +294,25 @@ impl Effect for Backlash {
         if seen.first().is_some_and(|trial| trial.left < WELL_SEEN) {
             return seen.iter().map(Trial::values).collect();
         }
+        let stretch = &probe.stretch();
         let scanned = gap_shares()
             .filter_map(|share| {
                 let half_gap = share * probe.scales.travel;
-                Trial::new(probe, Guess::new(half_gap, LOAD_FRICTION[0], STIFFNESS[0]))
+                Trial::new(
+                    stretch,
+                    Guess::new(half_gap, LOAD_FRICTION[0], STIFFNESS[0]),
+                )
             })
             .collect();
         let gaps: Vec<f64> = best(scanned, REFINED)
             .iter()
             .map(|trial| trial.guess.half_gap)
             .collect();
-        behind(probe, &gaps).iter().map(Trial::values).collect()
+        let found = behind(stretch, &gaps).into_iter();
+        found
+            .filter(|trial| Probe::may_be(trial.left))
+            .map(|trial| trial.values())
+            .collect()
     }
 
     fn least_errors(&self, values: &[f64], gap: &SeenGap) -> Vec<f64> {

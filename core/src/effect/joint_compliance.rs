@@ -102,10 +102,11 @@ impl Effect for JointCompliance {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        let coarse = probe
+        let stretch = &probe.stretch();
+        let coarse = stretch
             .load_frequencies()
             .into_iter()
-            .filter_map(|omega| trial(probe, omega, DAMPING_RATIO))
+            .filter_map(|omega| trial(stretch, omega, DAMPING_RATIO))
             .collect();
         let finer = best(coarse)
             .iter()
@@ -113,9 +114,10 @@ impl Effect for JointCompliance {
                 (-FINER_STEPS..=FINER_STEPS).map(move |k| omega * FINER.powi(k))
             })
             .flat_map(|omega| FINER_DAMPING.map(|damping| (omega, damping)))
-            .filter_map(|(omega, damping)| trial(probe, omega, damping))
+            .filter_map(|(omega, damping)| trial(stretch, omega, damping))
             .collect();
-        best(finer).into_iter().map(|t| t.2).collect()
+        let found = best(finer).into_iter().filter(|t| Probe::may_be(t.0));
+        found.map(|t| t.2).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

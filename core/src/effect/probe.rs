@@ -21,9 +21,14 @@ pub use steps::{Place, StepPart, Steps};
 /// Samples at most that are looked at.
 const MAX_SAMPLES: usize = 200_000;
 
-/// Samples at most that enter a regression, and one of a scan over very many of them.
+/// Samples at most that enter a regression, one of a scan over very many of them, and one for a force that repeats all
+/// along the way.
 const REGRESSED: usize = 60_000;
 const SCANNED: usize = 6_000;
+const REPEATING: usize = 3_000;
+
+/// Samples of the stretch on which what takes a simulation is scanned.
+const STRETCH: usize = 4_000;
 
 /// Forces of every regression: input, velocity, constant.
 const BASE: usize = 3;
@@ -44,6 +49,10 @@ const STILL: f64 = 0.01;
 
 /// Smallest friction level to start from, as a share of the typical force.
 const LEAST_FRICTION: f64 = 0.01;
+
+/// A search for starting values whose best one leaves more than this share of the unexplained force has found nothing: a
+/// fit from there would not lower the error by the three per cent that count.
+const FOUND: f64 = 0.99;
 
 /// A measured motion and what a present model leaves of it.
 #[derive(Clone, Debug)]
@@ -456,9 +465,41 @@ impl Probe {
         self.input.iter().fold(0.0, |m: f64, u| m.max(u.abs()))
     }
 
+    /// Whether a force that leaves this share of the unexplained one may be there at all.
+    pub fn may_be(left: f64) -> bool {
+        left < FOUND
+    }
+
     /// The gap that shows in the record before any fit, if there is one.
     pub fn gap(&self) -> Option<SeenGap> {
         self.gap
+    }
+
+    /// The same of a stretch of the record, the one with the most that is unexplained: enough for a scan of many
+    /// forces that each take a simulation.
+    #[must_use]
+    pub fn stretch(&self) -> Self {
+        let total: usize = self.spans.iter().map(|(from, to)| to - from).sum();
+        let count = (self.spans.len() * STRETCH).div_ceil(total.max(1)).max(1);
+        if count >= self.spans.len() {
+            return self.clone();
+        }
+        let power = |first: &usize| -> f64 {
+            let windows = self.known.iter().skip(*first).take(count);
+            windows.map(|known| known.power).sum()
+        };
+        let firsts = 0..=self.spans.len() - count;
+        let first = firsts.max_by(|a, b| power(a).total_cmp(&power(b)));
+        let part = first.unwrap_or(0)..first.unwrap_or(0) + count;
+        let mut stretch = Self {
+            spans: self.spans[part.clone()].to_vec(),
+            target: self.target[part.clone()].to_vec(),
+            base: self.base[part.clone()].to_vec(),
+            known: self.known[part].to_vec(),
+            ..self.clone()
+        };
+        stretch.base_left = stretch.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
+        stretch
     }
 
     /// Torque that `load` would put on the motor, moved as measured, where the windows are.
@@ -501,24 +542,24 @@ impl Probe {
             .map(|i| scan[i])
             .collect();
         peaks.sort_by(|a, b| a.3.total_cmp(&b.3));
-        peaks
-            .into_iter()
-            .take(count)
-            .map(|peak| {
-                // The peak lies between the scanned frequencies.
-                let finer = (-4..=4)
-                    .filter_map(|k| self.spatial(peak.0 + 0.2 * f64::from(k) * spacing))
-                    .min_by(|a, b| a.3.total_cmp(&b.3))
-                    .unwrap_or(peak);
-                (finer.0, finer.1, finer.2)
-            })
+        peaks.truncate(count);
+        // The peak lies between the scanned frequencies.
+        let finer = peaks.into_iter().map(|peak| {
+            let near = (-4..=4).map(|k| peak.0 + 0.2 * f64::from(k) * spacing);
+            near.filter_map(|n| self.spatial(n))
+                .min_by(|a, b| a.3.total_cmp(&b.3))
+                .unwrap_or(peak)
+        });
+        finer
+            .filter(|peak| Self::may_be(peak.3))
+            .map(|peak| (peak.0, peak.1, peak.2))
             .collect()
     }
 
     /// Frequency, coefficients of sine and cosine, share left.
     fn spatial(&self, n: f64) -> Option<(f64, f64, f64, f64)> {
         let middle = |k: usize| n * 0.5 * (self.position[k] + self.position[k + 1]);
-        let stride = spans_stride(&self.spans, SCANNED);
+        let stride = spans_stride(&self.spans, REPEATING);
         let mut waves = vec![(0.0, 0.0); self.position.len()];
         for (from, to) in self.spans.iter().step_by(stride) {
             for (k, wave) in waves.iter_mut().enumerate().take(to - 1).skip(*from) {
