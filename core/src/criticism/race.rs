@@ -17,6 +17,10 @@ const CLOSE: f64 = 1.03;
 /// worse, and whether it does is seen at the end of its fit only.
 const PART_CLOSE: f64 = 1.4;
 
+/// An effect that costs this many times the best does not speak for what contains it: if it is needed, it is found by
+/// itself later, and widened then.
+const FAR: f64 = 10.0;
+
 /// Share of the present cost below which an effect must hope to come, or it is not fitted to the end:
 /// a fall of the error by less than 3 % does not count.
 const WORTHWHILE: f64 = 0.94;
@@ -47,11 +51,21 @@ struct Contender {
     heats: usize,
     /// It has had its heats.
     over: bool,
+    /// Nothing more is done.
+    closed: bool,
+    /// What it came to.
+    result: Option<Fit>,
+    /// That leaves nothing but noise.
+    explains: bool,
 }
 
 impl Contender {
-    /// Begins, tries a starting point or does an iteration.
+    /// Begins, tries a starting point, does an iteration, or after all that takes the result.
     fn advance(&mut self, track: &Track, session: &Session) {
+        if self.over {
+            self.take_result(session);
+            return;
+        }
         let Session {
             data,
             scout,
@@ -65,13 +79,36 @@ impl Contender {
         });
         if !search.scan(data, scout, scales) {
             self.heats += 1;
-            self.over = !search.iterate(data, scales) || self.heats >= HEAT;
+            let goes_on = search.iterate(data, scales);
+            self.over = !goes_on || self.heats >= HEAT;
+            if !goes_on {
+                self.take_result(session);
+            }
         }
     }
 
     /// Least cost so far.
     fn cost(&self) -> f64 {
         self.search.as_ref().map_or(f64::INFINITY, Search::cost)
+    }
+
+    /// Another iteration, of those that may win.
+    fn go_on(&mut self, session: &Session) {
+        let (data, scales) = (&session.data, &session.scales);
+        if let Some(search) = &mut self.search
+            && !search.iterate(data, scales)
+        {
+            self.take_result(session);
+        }
+    }
+
+    /// Takes what it has come to, and sees whether that leaves nothing but noise.
+    fn take_result(&mut self, session: &Session) {
+        let search = self.search.as_ref();
+        self.result = search.and_then(|s| s.finish(&session.data, &session.scales));
+        let plain = |fit: &Fit| is_plain_noise(&score(&session.data, fit));
+        self.explains = self.result.as_ref().is_some_and(plain);
+        self.closed = true;
     }
 }
 
@@ -100,7 +137,11 @@ pub(super) fn one_by_one(pieces: &mut [Piece<'_>]) {
 /// Whether the effect at this place of a fit contains `part`.
 fn contains(whole: &Fit, place: usize, part: &dyn Effect) -> bool {
     let effect = whole.structure.effects.get(place);
-    effect.is_some_and(|e| e.contains().contains(&part.id()))
+    effect.is_some_and(|e| contains_effect(*e, part))
+}
+
+fn contains_effect(whole: &dyn Effect, part: &dyn Effect) -> bool {
+    whole.contains().contains(&part.id())
 }
 
 /// A race that goes on piece by piece.
@@ -111,6 +152,10 @@ pub(super) struct Race {
     target: f64,
     /// Cost above which it is not worth going on.
     ceiling: f64,
+    /// Effects that need their parts may begin: these are fitted as far as they may win.
+    parts_known: bool,
+    /// The race is run, and results are taken.
+    run: bool,
 }
 
 impl Race {
@@ -151,6 +196,9 @@ impl Race {
                     },
                     heats: 0,
                     over: false,
+                    closed: false,
+                    result: None,
+                    explains: false,
                 })
                 .collect(),
             target: instead.map_or(f64::INFINITY, |(whole, _)| whole.cost),
@@ -158,6 +206,8 @@ impl Race {
                 Some(_) => f64::INFINITY,
                 None => WORTHWHILE * fit.cost,
             },
+            parts_known: false,
+            run: false,
         }
     }
 
@@ -170,9 +220,58 @@ impl Race {
             .iter()
             .map(|c| if c.over { 1.0 } else { scanned(c) })
             .sum();
-        match self.contenders.iter().find(|c| !c.over) {
+        match self.contenders.iter().find(|c| !c.over && !self.waits(c)) {
             Some(c) => (0.7 * done / count, c.effect.name()),
             None => (0.8, "the best of them"),
+        }
+    }
+
+    /// The effect that has come lowest.
+    fn leader(&self) -> Option<&Contender> {
+        let contenders = self.contenders.iter();
+        contenders.min_by(|a, b| a.cost().total_cmp(&b.cost()))
+    }
+
+    /// Least cost, also of what they stand in for.
+    fn best(&self) -> f64 {
+        self.leader()
+            .map_or(self.target, |c| c.cost().min(self.target))
+    }
+
+    /// Parts of an effect in the race that it needs to come to something.
+    fn parts_of<'a>(&'a self, whole: &'a Contender) -> impl Iterator<Item = &'a Contender> {
+        let needs = whole.effect.needs_its_parts();
+        let is_part = move |c: &&Contender| needs && contains_effect(whole.effect, c.effect);
+        self.contenders.iter().filter(is_part)
+    }
+
+    /// Whether an effect waits for its parts.
+    fn waits(&self, contender: &Contender) -> bool {
+        !self.parts_known && self.parts_of(contender).next().is_some()
+    }
+
+    /// Whether an effect with fewer parameters leaves nothing but noise, so that this one is not asked for.
+    fn is_needless(&self, whole: &Contender) -> bool {
+        let fewer = |c: &Contender| c.effect.parameters().len() < whole.effect.parameters().len();
+        self.contenders.iter().any(|c| c.explains && fewer(c))
+    }
+
+    /// Effects whose parts all came to nothing, or that are not asked for, are over before they begin.
+    fn judge_waiting(&mut self) {
+        let best = self.best();
+        let idle =
+            |c: &Contender| c.cost() > FAR * best || c.search.as_ref().is_none_or(Search::given_up);
+        let vain: Vec<bool> = self
+            .contenders
+            .iter()
+            .map(|c| {
+                let mut parts = self.parts_of(c).peekable();
+                let vain = parts.peek().is_some() && parts.all(idle);
+                !c.over && c.search.is_none() && (vain || self.is_needless(c))
+            })
+            .collect();
+        for (contender, vain) in self.contenders.iter_mut().zip(vain) {
+            contender.over |= vain;
         }
     }
 
@@ -183,10 +282,15 @@ impl Race {
         width: usize,
         run: &mut dyn FnMut(&mut [Piece<'_>]),
     ) -> bool {
+        let open = |c: &Contender| if self.run { !c.closed } else { !c.over };
+        let ready = |c: &Contender| open(c) && !self.waits(c);
+        let ready: Vec<bool> = self.contenders.iter().map(ready).collect();
         let mut pieces: Vec<Piece<'_>> = self
             .contenders
             .iter_mut()
-            .filter(|c| !c.over)
+            .zip(ready)
+            .filter(|(_, ready)| *ready)
+            .map(|(c, _)| c)
             .take(width.max(1))
             .map(|contender| Piece {
                 contender,
@@ -198,12 +302,11 @@ impl Race {
             run(&mut pieces);
             return true;
         }
-        let leader = self
-            .contenders
-            .iter()
-            .min_by(|a, b| a.cost().total_cmp(&b.cost()));
-        let best = leader.map_or(self.target, |c| c.cost().min(self.target));
-        let parts = leader.map_or(&[][..], |c| c.effect.contains());
+        if self.run {
+            return false;
+        }
+        let best = self.best();
+        let parts = self.leader().map_or(&[][..], |c| c.effect.contains());
         let ceiling = self.ceiling;
         let next = self
             .contenders
@@ -211,27 +314,26 @@ impl Race {
             .filter_map(|c| {
                 let part = parts.contains(&c.effect.id());
                 let close = if part { PART_CLOSE } else { c.close };
-                Some((close, c.search.as_mut()?))
+                let optimism = c.search.as_ref().filter(|s| s.goes_on())?.optimism();
+                (optimism <= ceiling.min(close * best)).then_some((optimism, c))
             })
-            .filter(|(close, s)| s.goes_on() && s.optimism() <= ceiling.min(close * best))
-            .min_by(|a, b| a.1.optimism().total_cmp(&b.1.optimism()));
+            .min_by(|a, b| a.0.total_cmp(&b.0));
         match next {
-            Some((_, search)) => {
-                search.iterate(&session.data, &session.scales);
-                true
+            Some((_, contender)) => contender.go_on(session),
+            None if !self.parts_known => {
+                self.parts_known = true;
+                self.judge_waiting();
             }
-            None => false,
+            None => self.run = true,
         }
+        true
     }
 
-    /// Every effect with its best fit.
-    pub fn finish(self, session: &Session) -> Vec<(&'static dyn Effect, Fit)> {
-        self.contenders
-            .into_iter()
-            .filter_map(|c| {
-                let fit = c.search?.finish(&session.data, &session.scales)?;
-                Some((c.effect, fit))
-            })
+    /// Every effect that was tried with its best fit.
+    pub fn finish(self) -> Vec<(&'static dyn Effect, Fit)> {
+        let results = self.contenders.into_iter();
+        results
+            .filter_map(|c| Some((c.effect, c.result?)))
             .collect()
     }
 }

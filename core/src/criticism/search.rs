@@ -388,6 +388,11 @@ impl Search {
         }
     }
 
+    /// Whether no starting point led to where it is worth going on.
+    pub fn given_up(&self) -> bool {
+        self.given_up
+    }
+
     /// One iteration of every fit that may still win; false when none goes on.
     pub fn iterate(&mut self, data: &Data, scales: &Scales) -> bool {
         self.optimism = f64::INFINITY;
@@ -423,10 +428,9 @@ impl Search {
     }
 
     /// The best fit, with the states of its windows improved if it was fitted to the end.
-    pub fn finish(self, data: &Data, scales: &Scales) -> Option<Fit> {
-        let mut finalists = self.finalists;
-        finalists.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        let mut best = finalists.into_iter().next()?;
+    pub fn finish(&self, data: &Data, scales: &Scales) -> Option<Fit> {
+        let fits = self.finalists.iter();
+        let mut best = fits.min_by(|a, b| a.cost.total_cmp(&b.cost))?.clone();
         if best.done && !self.given_up && best.cost.is_finite() {
             best.polish_starts(data, scales);
             if best.put_in_order(data, scales) {

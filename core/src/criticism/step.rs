@@ -9,6 +9,7 @@ use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::{Piece, Race, one_by_one};
 use super::residual_test::residual_tests;
+use super::score::Score;
 use super::search::Search;
 use super::select::{delta_bic, helps, is_noise, is_plain_noise, outweighs};
 use super::session::{Scored, Session};
@@ -237,7 +238,7 @@ impl StepJob {
         Progress::Running { fraction, text }
     }
 
-    fn finished(&self, search: Search) -> Option<Scored> {
+    fn finished(&self, search: &Search) -> Option<Scored> {
         let fit = search.finish(&self.session.data, &self.session.scales)?;
         Some(self.session.scored(fit))
     }
@@ -246,7 +247,7 @@ impl StepJob {
     fn after(&mut self, stage: Stage) -> Stage {
         match stage {
             Stage::Build { search, next } => {
-                let Some(scored) = self.finished(search) else {
+                let Some(scored) = self.finished(&search) else {
                     return Stage::Report;
                 };
                 let search = self.wanted.get(next).map(|effect| {
@@ -269,7 +270,7 @@ impl StepJob {
                 }
             }
             Stage::Try(race) => {
-                let fits = race.finish(&self.session);
+                let fits = race.finish();
                 self.tried = fits
                     .into_iter()
                     .map(|(effect, fit)| (effect, self.session.scored(fit)))
@@ -278,7 +279,7 @@ impl StepJob {
                 self.revisit_stage()
             }
             Stage::Revisit(search) => {
-                let again = self.finished(search);
+                let again = self.finished(&search);
                 match (again, &self.model) {
                     (Some(again), Some(model))
                         if again.fit.cost < BETTER_VALLEY * model.fit.cost =>
@@ -290,12 +291,12 @@ impl StepJob {
                 }
             }
             Stage::Remove { index, search } => {
-                let scored = self.finished(search);
+                let scored = self.finished(&search);
                 self.without.extend(scored);
                 self.remove_stage(index + 1)
             }
             Stage::Swap { place, race } => {
-                let fits = race.finish(&self.session);
+                let fits = race.finish();
                 self.judge_swaps(place, fits);
                 self.swap_stage(place + 1)
             }
@@ -313,9 +314,14 @@ impl StepJob {
         }
     }
 
+    /// A part of an effect that leaves nothing but noise is not widened to the whole.
     fn try_stage(&self) -> Stage {
         self.model.as_ref().map_or(Stage::Report, |model| {
-            Stage::Try(Race::new(&self.session, &model.fit, self.others(), None))
+            let mut others = self.others();
+            if is_plain_noise(&model.score) {
+                others.retain(|e| !self.widens(*e));
+            }
+            Stage::Try(Race::new(&self.session, &model.fit, others, None))
         })
     }
 
@@ -332,6 +338,12 @@ impl StepJob {
         });
         self.visits += usize::from(search.is_some());
         search.map_or_else(|| self.remove_stage(0), Stage::Revisit)
+    }
+
+    /// Whether an effect contains one that is in the model.
+    fn widens(&self, effect: &dyn Effect) -> bool {
+        let parts = effect.contains();
+        self.wanted.iter().any(|w| parts.contains(&w.id()))
     }
 
     fn remove_stage(&self, index: usize) -> Stage {
@@ -445,14 +457,11 @@ impl StepJob {
             return None;
         }
         let first = self.session.first(model);
-        // A part of an effect that leaves nothing but noise is not widened to the whole.
-        let settled = is_plain_noise(&model.score);
-        let widens = |e: &dyn Effect| self.wanted.iter().any(|w| e.contains().contains(&w.id()));
         let helping = || {
             self.tried
                 .iter()
                 .filter(|(e, _)| !self.barred.contains(&e.id()))
-                .filter(|(e, s)| !(settled && widens(*e)) && helps_clearly(model, s, first))
+                .filter(|(_, s)| helps_clearly(model, s, first))
         };
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
@@ -480,10 +489,17 @@ impl StepJob {
 
     /// Effects without which the held-back error does not rise: of the user's model, and others.
     fn idle(&self, model: &Scored) -> (Vec<EffectId>, Vec<EffectId>) {
+        // Where nothing but noise is left, and more without an effect, it is needed wherever it acts.
+        let explains = |without: &Score| {
+            is_plain_noise(&model.score)
+                && !is_plain_noise(without)
+                && outweighs(without.error, model.score.error)
+        };
+        let idle = |without: &Score| !helps(without, &model.score) && !explains(without);
         self.wanted
             .iter()
             .zip(&self.without)
-            .filter(|(_, without)| !helps(&without.score, &model.score))
+            .filter(|(_, without)| idle(&without.score))
             .map(|(e, _)| e.id())
             .partition(|id| self.session.knowledge.has(*id))
     }

@@ -63,6 +63,13 @@ pub trait Effect: Sync {
     fn contains(&self) -> &'static [EffectId] {
         &[]
     }
+
+    /// Whether it is worth a try only where one of the effects that it contains comes to something: what it adds to
+    /// them does not hide them.
+    fn needs_its_parts(&self) -> bool {
+        false
+    }
+
     /// Exchanges `values` with those of the `body` where they only have each other's roles; true if it did. Of
     /// two equal storages in series, say, the slower one is the process.
     fn order(&self, _kind: Kind, _body: &mut [f64], _values: &mut [f64]) -> bool {

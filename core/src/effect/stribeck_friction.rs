@@ -80,6 +80,10 @@ impl Effect for StribeckFriction {
         }
     }
 
+    fn needs_its_parts(&self) -> bool {
+        true
+    }
+
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         let crossed = probe.scales.crossed();
         let sign = probe.signature(|_, v| v.signum());
