@@ -644,6 +644,13 @@ impl StepJob {
                 }
             })
             .collect();
+        let untried: Vec<Candidate> = self
+            .others()
+            .into_iter()
+            .filter(|e| self.tried.iter().all(|(tried, _)| tried.id() != e.id()))
+            .map(|e| as_its_best_part(e, &candidates, model))
+            .collect();
+        candidates.extend(untried);
         candidates.sort_by(|a, b| {
             let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
             first(a).cmp(&first(b)).then(a.error.total_cmp(&b.error))
@@ -730,5 +737,30 @@ impl StepJob {
             .collect();
         others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
         others.into_iter().take(count).cloned().collect()
+    }
+}
+
+/// An effect that was not worth a fit, among the `candidates` that were: it does at least what the best of its parts
+/// does, and was not seen to do more.
+fn as_its_best_part(
+    effect: &'static dyn Effect,
+    candidates: &[Candidate],
+    model: &Scored,
+) -> Candidate {
+    let more = |from: usize| {
+        let values = effect.parameters().len().saturating_sub(from);
+        values as f64 * libm::log(model.score.fit_count)
+    };
+    let part = candidates
+        .iter()
+        .filter(|c| c.effects.iter().all(|id| effect.contains().contains(id)))
+        .min_by(|a, b| a.error.total_cmp(&b.error));
+    Candidate {
+        effects: vec![effect.id()],
+        error: part.map_or(model.score.error, |p| p.error),
+        delta_bic: part.map_or(more(0), |p| p.delta_bic + more(p.parameters.len())),
+        significant: part.is_some_and(|p| p.significant),
+        parameters: Vec::new(),
+        equivalent_to: Vec::new(),
     }
 }
