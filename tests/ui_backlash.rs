@@ -21,7 +21,7 @@ fn the_page_opens_on_a_drive_whose_gap_the_motor_finds() {
     let gap = found["gap_estimated"].as_f64().expect("a gap");
     assert!((gap / 0.019 - 1.0).abs() < 0.05, "{found}");
     assert!(
-        answer(&harness).contains("True: 19.00 mrad"),
+        answer(&harness).contains("(true: 19.00)"),
         "{}",
         answer(&harness)
     );

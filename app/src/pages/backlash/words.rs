@@ -7,23 +7,26 @@ use super::scene::{MILLI, Scene};
 impl Scene {
     /// The page's answer.
     pub fn answer(&self) -> String {
+        let known = self.input().map(|i| 2.0 * MILLI * i.drive.half_gap);
         let found = match &self.estimate {
             None => "Asking the motor how wide the gap is ...".to_owned(),
             Some(Err(error)) => format!("The motor cannot tell: {error}."),
             Some(Ok(e)) => match (e.gap, e.std_error) {
-                (Some(gap), Some(error)) => format!(
-                    "From the motor alone: 2β = {} ± {} mrad.",
-                    digits(MILLI * gap, MILLI * error),
-                    digits(MILLI * error, MILLI * error)
-                ),
+                (Some(gap), Some(error)) => {
+                    let value = digits(MILLI * gap, MILLI * error);
+                    let error = digits(MILLI * error, MILLI * error);
+                    return match known {
+                        Some(known) => format!(
+                            "From the motor alone: 2β = {value} ± {error} mrad (true: {known:.2})."
+                        ),
+                        None => format!("From the motor alone: 2β = {value} ± {error} mrad."),
+                    };
+                }
                 _ => "The motor alone cannot tell the gap.".to_owned(),
             },
         };
-        match self.input() {
-            Some(input) => format!(
-                "{found} True: {:.2} mrad.",
-                2.0 * MILLI * input.drive.half_gap
-            ),
+        match known {
+            Some(known) => format!("{found} True: {known:.2} mrad."),
             None => found,
         }
     }

@@ -71,7 +71,7 @@ fn handy(unit: &'static str) -> (f64, &'static str) {
 
 impl Bench {
     pub(super) fn choices_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
-        ui.heading(tr("1. What is measured, and how is it driven?"));
+        ui.heading(tr("1. What is measured, and how?"));
         ui.horizontal_wrapped(|ui| {
             for (kind, id, name) in MACHINES {
                 let radio = ui.radio(self.experiment.kind() == kind, tr(name));
