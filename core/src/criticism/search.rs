@@ -8,7 +8,7 @@ use super::fit::Fit;
 use super::knowledge::Knowledge;
 use super::structure::Structure;
 use crate::effect::{Effect, Probe, Scales};
-use crate::model::Start;
+use crate::model::{Start, load_torque};
 
 /// Iterations that every starting point gets before the best are chosen.
 const SCAN_ITERATIONS: usize = 2;
@@ -187,10 +187,17 @@ impl Search {
         structure: &Structure,
         mut values: Vec<f64>,
     ) -> Option<(Vec<f64>, Vec<Start>)> {
-        let guess = baseline::guess(
-            data,
-            &data.excitation.effective_input(&structure.model(&values)),
-        )?;
+        let model = structure.model(&values);
+        let mut acting = data.excitation.effective_input(&model);
+        if let Some(load) = &model.load {
+            // What a load takes does not move the body.
+            let (position, spans) = (data.position_estimate(), data.spans());
+            let torque = load_torque(load, &position, data.excitation.mean_step(), &spans);
+            for (input, torque) in acting.iter_mut().zip(torque) {
+                *input -= torque;
+            }
+        }
+        let guess = baseline::guess(data, &acting)?;
         let far = guess
             .iter()
             .zip(&fit.values)

@@ -101,7 +101,7 @@ pub enum Range {
     Fraction,
     /// 0 to 1.
     UnitInterval,
-    /// Above 0, up to `STIFFEST` times its [`Scales::of`].
+    /// Up to `STIFFEST` times its [`Scales::of`], and so stiff that the body swings within the record.
     Stiff,
     /// At least `LIGHTEST` times its [`Scales::of`].
     Sizeable,
@@ -188,7 +188,10 @@ impl ParameterSpec {
             Range::Positive => value.max(LEAST_SHARE * scale),
             Range::Fraction => value.clamp(-0.9, 0.9),
             Range::UnitInterval => value.clamp(0.0, 1.0),
-            Range::Stiff => value.clamp(LEAST_SHARE * scale, STIFFEST * scale),
+            Range::Stiff => {
+                let slowest = scales.inertia.abs() / (scales.duration * scales.duration);
+                value.max(slowest).min((STIFFEST * scale).max(slowest))
+            }
             Range::Sizeable => value.max(LIGHTEST * scale),
             Range::Short => {
                 let crossed = scales.crossed();
@@ -265,6 +268,40 @@ impl Scales {
             }
             Dimension::Rise => self.force / self.duration,
             Dimension::PerOutput => 1.0 / self.speed,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_may_swing_slowly_however_fast_the_samples_come() {
+        let stiffness = ParameterSpec {
+            symbol: "K",
+            label: "stiffness of the joint",
+            dimension: Dimension::Stiffness,
+            range: Range::Stiff,
+        };
+        for step in [2e-5, 2e-4, 2e-3] {
+            let scales = Scales {
+                step,
+                duration: 2.0,
+                inertia: 1e-3,
+                viscous: 1e-3,
+                force: 0.1,
+                speed: 1.0,
+                travel: 1.0,
+                resolution: 0.0,
+                time_constant: 1.0,
+            };
+            // 2 Hz
+            let soft = scales.inertia * (2.0 * WHOLE_TURN).powi(2);
+            assert_eq!(stiffness.clamp(soft, &scales), soft, "{step}");
+            let rigid = stiffness.clamp(1e9, &scales);
+            assert!(rigid * step * step < 0.5 * scales.inertia, "{step}");
+            assert!(stiffness.clamp(0.0, &scales) > 0.0);
         }
     }
 }
