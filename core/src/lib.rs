@@ -32,6 +32,7 @@ pub mod criticism;
 pub mod drive;
 pub mod effect;
 pub mod explore;
+mod exponential;
 pub mod figures;
 pub mod limit_cycle;
 pub mod maps;

@@ -5,7 +5,7 @@ use super::noise::{Noise, noise};
 use super::window::drive_window;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
-use crate::model::{Excitation, SeenLoad, Sensor, Start};
+use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start};
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
@@ -132,7 +132,14 @@ impl Data {
             Kind::Drive => position_estimate(&measurement.time, &outputs),
             Kind::Process => Vec::new(),
         };
-        let position_noise = outputs.iter().find(|o| !o.is_velocity).map(|o| o.noise);
+        let position_first = outputs.iter().min_by_key(|o| o.is_velocity);
+        let followed = position_first.map(|o| {
+            if o.is_velocity {
+                FollowedNoise::Velocity(o.noise)
+            } else {
+                FollowedNoise::Position(o.noise)
+            }
+        });
         Ok(Self {
             kind: measurement.kind,
             excitation: Excitation::new(
@@ -141,7 +148,7 @@ impl Data {
                 before,
                 sensor,
                 position,
-                position_noise,
+                followed,
             ),
             input: input.clone(),
             time: measurement.time.clone(),

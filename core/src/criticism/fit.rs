@@ -42,7 +42,7 @@ const DAMPING_GROWTH: f64 = 6.0;
 const MAX_STALLS: usize = 2;
 const RESTART_DAMPING: f64 = 1e-3;
 
-/// Step for differences with respect to where a seen load is, in its standard deviations.
+/// Step for differences with respect to where a load is, in its standard deviations.
 const LOAD_DIFFERENCE: f64 = 0.1;
 
 /// Times that the states of windows are improved: with a seen load as long as that lowers the cost below this share.
@@ -61,7 +61,7 @@ const LEAST_DIFFERENCE: f64 = 1e-4;
 pub(super) struct Motion {
     pub position: Vec<f64>,
     pub velocity: Vec<f64>,
-    /// For each window, what its state costs by itself: how far a seen load is off what was seen of it.
+    /// For each window, what its state costs by itself: how far a load is off where it is taken to be.
     pub priors: Vec<f64>,
 }
 
@@ -313,7 +313,7 @@ impl Fit {
     }
 
     /// Derivatives of the motion: one column per value, then position and velocity of the starts, then those of a
-    /// load that was seen.
+    /// load that may be off.
     fn columns(&self, data: &Data, steps: &[f64], scales: &Scales) -> Vec<Motion> {
         let spans = data.spans();
         let difference = |moved: Motion, step: f64| difference(moved, &self.motion, step, &spans);
@@ -349,7 +349,7 @@ impl Fit {
             difference(moved([dx, 0.0, 0.0, 0.0]), dx)
         });
         columns.push(difference(moved([0.0, dv, 0.0, 0.0]), dv));
-        if data.excitation.sees_load_of(&model) {
+        if data.excitation.doubts_load_of(&model) {
             let d = LOAD_DIFFERENCE;
             columns.push(difference(moved([0.0, 0.0, d, 0.0]), d));
             columns.push(difference(moved([0.0, 0.0, 0.0, d]), d));
@@ -365,7 +365,7 @@ impl Fit {
         scale: f64,
     ) -> (DMatrix<f64>, DVector<f64>, Vec<WindowSums>) {
         // The columns after those of the values are those of the starts.
-        let sees_load = columns.len() == p + STATES;
+        let has_load = columns.len() == p + STATES;
         let mut matrix = DMatrix::zeros(p, p);
         let mut gradient = DVector::zeros(p);
         let mut windows: Vec<WindowSums> =
@@ -389,7 +389,7 @@ impl Fit {
                         *value = part[i] * weight;
                     }
                     let state = |k: usize| parts[p + k][i] * weight;
-                    if sees_load {
+                    if has_load {
                         sums.add([state(0), state(1), state(2), state(3)], &row, r);
                     } else {
                         sums.add([state(0), state(1)], &row, r);
@@ -410,7 +410,7 @@ impl Fit {
                 matrix[(b, a)] = matrix[(a, b)];
             }
         }
-        if sees_load {
+        if has_load {
             for ((sums, start), weight) in windows.iter_mut().zip(&self.starts).zip(&robust) {
                 for (k, deviation) in start.load.iter().enumerate() {
                     let k = BODY_STATES + k;
@@ -552,7 +552,9 @@ impl Fit {
     pub(super) fn polish_once(&mut self, data: &Data, scales: &Scales) -> bool {
         let columns = self.columns(data, &[], scales);
         let (_, _, windows) = self.normal_equations(data, &columns, 0, f64::INFINITY);
-        let sees_load = columns.len() == STATES;
+        let sees_load = data
+            .excitation
+            .sees_load_of(&self.structure.model(&self.values));
         let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
         for share in shares {
             let changes = windows
@@ -635,9 +637,9 @@ pub(super) fn simulate(
     let model = structure.model(values);
     data.excitation
         .replay(&model, starts, &mut motion.position, &mut motion.velocity);
-    let sees_load = data.excitation.sees_load_of(&model);
+    let doubts_load = data.excitation.doubts_load_of(&model);
     let prior = |s: &Start| {
-        if sees_load {
+        if doubts_load {
             s.load[0].powi(2) + s.load[1].powi(2)
         } else {
             0.0

@@ -6,7 +6,7 @@ use super::cost::informed_windows;
 use super::data::Data;
 use crate::model::Start;
 
-/// What a window's state consists of: position and velocity of the body, and of a load that was seen.
+/// What a window's state consists of: position and velocity of the body, and of a load that may be off where it is taken to be.
 pub(super) const BODY_STATES: usize = 2;
 pub(super) const STATES: usize = 4;
 

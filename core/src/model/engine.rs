@@ -3,6 +3,7 @@
 use super::contact::Contact;
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
+use super::joint::{Joined, Joint};
 use super::load::Follower;
 use super::{Instant, Model};
 
@@ -130,6 +131,8 @@ pub struct Engine<'m> {
     body: Flow,
     load: Option<Flow>,
     contact: Option<Contact>,
+    /// Body and load as one, where nothing between or on them bends.
+    joint: Option<Joint>,
     /// Longest step while body and load touch, s.
     touching_step: f64,
     /// Nothing but the input, constant forces and dry friction of a fixed level acts.
@@ -139,20 +142,20 @@ pub struct Engine<'m> {
 impl<'m> Engine<'m> {
     /// Prepares the flows of `model`.
     pub fn new(model: &'m Model) -> Self {
+        let smooth = model.forces.is_empty()
+            && model.own_forces.is_empty()
+            && model.friction.static_excess == 0.0;
         Self {
             body: Flow::new(model.inertia, model.viscous, model.lag),
             load: model
                 .load
                 .map(|load| Flow::new(load.inertia, load.viscous, None)),
             contact: Contact::new(model),
+            joint: if smooth { Joint::new(model) } else { None },
             touching_step: model
                 .load
                 .map_or(f64::INFINITY, |load| load.longest_step(model.inertia)),
-            plain: model.load.is_none()
-                && model.forces.is_empty()
-                && model.own_forces.is_empty()
-                && model.late_load().1 == 0.0
-                && model.friction.static_excess == 0.0,
+            plain: smooth && model.load.is_none() && model.late_load().1 == 0.0,
             model,
         }
     }
@@ -167,6 +170,9 @@ impl<'m> Engine<'m> {
         self.body.prepare(h);
         if self.plain {
             return;
+        }
+        if let Some(joint) = &mut self.joint {
+            joint.prepare(h);
         }
         let halvings = self.touching_halvings(h);
         for part in 0..=halvings + 1 {
@@ -199,6 +205,9 @@ impl<'m> Engine<'m> {
             self.advance_body(state, held, w, h);
             return;
         }
+        if self.swing(state, w, h) {
+            return;
+        }
         let touching = self
             .model
             .load
@@ -213,6 +222,45 @@ impl<'m> Engine<'m> {
         for _ in 0..1_u32 << halvings {
             self.midpoint_step(state, w, step);
         }
+    }
+
+    /// Moves body and load on their joint in one exact step; false where that is not possible, or the body turns.
+    fn swing(&self, state: &mut State, w: f64, h: f64) -> bool {
+        let Some(joint) = &self.joint else {
+            return false;
+        };
+        let level = self.model.friction.level;
+        let sign = state.mode.sign();
+        let rubs = level > 0.0;
+        if rubs && (sign == 0.0 || self.contact.as_ref().is_some_and(|c| c.is_soft(h))) {
+            return false;
+        }
+        let (constant, rise) = self.model.late_load();
+        let friction = if rubs { sign * level } else { 0.0 };
+        let q = constant + rise * (state.time + 0.5 * h) - friction;
+        let joined = Joined {
+            body: state.motion,
+            twist: state.twist,
+            load: state.load.v,
+        };
+        let Some(next) = joint.after(&joined, w, q, h) else {
+            return false;
+        };
+        if rubs && next.body.v * sign <= 0.0 {
+            return false;
+        }
+        state.load.x += (next.body.x - state.motion.x) - (next.twist - state.twist);
+        state.motion = next.body;
+        state.twist = next.twist;
+        state.load.v = next.load;
+        state.mode = if rubs {
+            state.mode
+        } else {
+            Mode::of(next.body.v)
+        };
+        state.load_mode = Mode::of(next.load);
+        state.time += h;
+        true
     }
 
     /// One step of the exponential midpoint rule.

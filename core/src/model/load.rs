@@ -46,11 +46,42 @@ pub struct Load {
     pub coupling: Coupling,
 }
 
+/// Times the noise of a joint's load by which it may be off: encoders do not err at random, and between samples the body
+/// moves in a way of its own.
+const WIDELY: f64 = 10.0;
+
 /// Radians of the fastest oscillation in one step; its phase is then right to a few parts in ten
 /// thousand.
 const STEP_RADIANS: f64 = 0.2;
 
+/// Standard deviation of the noise of what a load follows: measured position, or the integral of measured velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FollowedNoise {
+    /// Of the position, rad or m.
+    Position(f64),
+    /// Of the velocity, rad/s or m/s.
+    Velocity(f64),
+}
+
 impl Load {
+    /// Standard deviations of position and velocity of a load that follows a body with this noise, sampled every `h`
+    /// seconds, behind a joint without play: a resonance that the noise excites (white noise of spectral density
+    /// S on a lightly damped oscillator: S w / (4 zeta), e.g. Crandall and Mark 1963).
+    pub(super) fn doubt(&self, noise: FollowedNoise, h: f64) -> [f64; 2] {
+        let frequency = (self.coupling.stiffness / self.inertia).sqrt();
+        let damping = (self.coupling.damping + self.viscous) / self.inertia;
+        // A load with less damping has not yet forgotten how it began to follow.
+        let damping = damping.max(1.0 / (WARM_UP as f64 * h));
+        let excited = frequency * frequency * h / (2.0 * damping);
+        let (level, variance) = match noise {
+            FollowedNoise::Position(level) => (level, excited),
+            FollowedNoise::Velocity(level) => (level / frequency, excited),
+        };
+        // The twist counts from the measured position with its own noise.
+        let x = WIDELY * level * (1.0 + variance).sqrt();
+        [x, x * frequency]
+    }
+
     /// Longest step for the exponential midpoint rule in contact with a body of `inertia`, s.
     pub(super) fn longest_step(&self, inertia: f64) -> f64 {
         let compliance = 1.0 / inertia.abs() + 1.0 / self.inertia;

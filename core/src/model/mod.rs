@@ -12,6 +12,7 @@ mod engine;
 mod flight;
 mod flow;
 mod friction;
+mod joint;
 mod load;
 mod replay;
 mod seen_load;
@@ -20,7 +21,7 @@ pub use closed_loop::{Run, run_controlled};
 pub use engine::{Engine, State};
 pub(crate) use flight::Slowing;
 pub(crate) use flow::free_body;
-pub use load::{Coupling, Load, load_torque};
+pub use load::{Coupling, FollowedNoise, Load, load_torque};
 pub use replay::{Excitation, Sensor, Start};
 pub(crate) use seen_load::{LoadState, Play, SeenContact, SeenLoad, Sharpness};
 

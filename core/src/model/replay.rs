@@ -1,7 +1,7 @@
 //! Replay: a model driven by a measured input, restarted at the windows' estimated states.
 
 use super::contact::Contact;
-use super::load::Follower;
+use super::load::{FollowedNoise, Follower};
 use super::seen_load::{SeenLoad, Sight, Tracker};
 use super::{DryFriction, Engine, Model, State};
 
@@ -17,8 +17,8 @@ pub struct Start {
     pub position: f64,
     /// Velocity there, rad/s or m/s; the output of a process.
     pub velocity: f64,
-    /// By how much the load is off what its contacts tell: its position, and what is then left of its velocity, in
-    /// standard deviations of what they tell.
+    /// By how much the load is off where it is taken to be: its position, and what is then left of its velocity, in
+    /// standard deviations of what its contacts tell, or of a load that follows the noisy motion of the body.
     pub load: [f64; 2],
 }
 
@@ -34,6 +34,8 @@ pub struct Excitation {
     slow_sensor: Sensor,
     /// Measured position, or an estimate, which hidden states follow; empty for a process.
     position: Vec<f64>,
+    /// The noise of what it stands for.
+    noise: Option<FollowedNoise>,
     /// The same without its trembling, where it is measured.
     steady: Option<Steady>,
     /// The load, where the motor felt its contacts.
@@ -53,14 +55,14 @@ pub enum Sensor {
 
 impl Excitation {
     /// `time` in s strictly increasing, `input` as long; `before` acted until the record starts;
-    /// `position` as measured or estimated, as long or empty, with its noise if it is measured.
+    /// `position` as measured or estimated, as long or empty, with the noise of what was measured.
     pub fn new(
         time: &[f64],
         input: &[f64],
         before: f64,
         slow_sensor: Sensor,
         position: Vec<f64>,
-        position_noise: Option<f64>,
+        noise: Option<FollowedNoise>,
     ) -> Self {
         let n = time.len();
         let mean = (time[n - 1] - time[0]) / (n - 1) as f64;
@@ -74,8 +76,12 @@ impl Excitation {
             before,
             step: uniform.then_some(mean),
             slow_sensor,
-            steady: position_noise.map(|noise| Steady::new(&position, noise)),
+            steady: match noise {
+                Some(FollowedNoise::Position(level)) => Some(Steady::new(&position, level)),
+                _ => None,
+            },
             position,
+            noise,
             seen: None,
             runs: vec![(0, time.len())],
         }
@@ -96,6 +102,17 @@ impl Excitation {
     /// Whether the load of `model` is told by contacts that the motor felt.
     pub(crate) fn sees_load_of(&self, model: &Model) -> bool {
         self.tracker(model).is_some()
+    }
+
+    /// Whether the load of `model` may be off where it is taken to be, by deviations that a [`Start`] tells.
+    pub(crate) fn doubts_load_of(&self, model: &Model) -> bool {
+        self.sees_load_of(model) || self.doubt(model).is_some()
+    }
+
+    /// Standard deviations of position and velocity of a load that is never free, from the noise of what it follows.
+    fn doubt(&self, model: &Model) -> Option<[f64; 2]> {
+        let load = model.load.as_ref()?;
+        (load.coupling.half_gap == 0.0).then_some(load.doubt(self.noise?, self.mean_step()))
     }
 
     /// Gives `starts` the states of a seen load with which it meets the contacts that were felt; the last window ends
@@ -178,6 +195,7 @@ impl Excitation {
             .filter(|_| self.position.len() == self.len())
             .map(|load| Follower::new(load, self.position[0], self.mean_step()));
         let mut tracker = self.tracker(model);
+        let doubt = self.doubt(model).unwrap_or_default();
         let mut bristle = engine
             .contact()
             .zip(self.steady.as_ref())
@@ -201,7 +219,7 @@ impl Excitation {
                                 self.take_sight(follower, &tracker.at(self.time[i]), i);
                                 tracker.shift(self.time[i], start.load)
                             }
-                            None => [0.0; 2],
+                            None => [doubt[0] * start.load[0], doubt[1] * start.load[1]],
                         };
                         follower.reach(&self.position, i, |k| self.step_after(k));
                         state = state.with_load(follower, self.position[i], shift);
