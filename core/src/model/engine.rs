@@ -3,7 +3,7 @@
 use super::contact::Contact;
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
-use super::joint::{Joined, Joint};
+use super::joint::{Forces, Joined, Joint};
 use super::load::Follower;
 use super::{Instant, Model};
 
@@ -13,6 +13,9 @@ const MAX_HALVINGS: u32 = 6;
 /// Change of a smooth force over half a step, as a share of what would change the velocity by its
 /// own size, above which the step is halved.
 const SMOOTH_SHARE: f64 = 0.05;
+
+/// Steps of a contact in an interval up to which its ends tell whether the contact lasts.
+const SEEN_STEPS: f64 = 5.0;
 
 /// State of the whole model. Position and velocity are what a window estimates; the rest is
 /// hidden and carried from window to window.
@@ -39,6 +42,23 @@ impl State {
                 z: input,
                 ..Motion::default()
             },
+            ..Self::default()
+        }
+    }
+
+    /// In contact with a load at this twist, both moving.
+    #[cfg(test)]
+    pub(super) fn touching(twist: f64, velocity: f64, load_velocity: f64) -> Self {
+        let moving = |v| Motion {
+            v,
+            ..Motion::default()
+        };
+        Self {
+            motion: moving(velocity),
+            mode: Mode::of(velocity),
+            twist,
+            load: moving(load_velocity),
+            load_mode: Mode::of(load_velocity),
             ..Self::default()
         }
     }
@@ -131,7 +151,7 @@ pub struct Engine<'m> {
     body: Flow,
     load: Option<Flow>,
     contact: Option<Contact>,
-    /// Body and load as one, where nothing between or on them bends.
+    /// Body and load as one, where no force depends on where and how fast they are.
     joint: Option<Joint>,
     /// Longest step while body and load touch, s.
     touching_step: f64,
@@ -212,6 +232,13 @@ impl<'m> Engine<'m> {
             .model
             .load
             .is_some_and(|load| load.may_touch(state.twist, state.motion.v - state.load.v, h));
+        if !touching && self.joint.is_some() {
+            // Nothing between them changes on the way.
+            let mut middle = *state;
+            middle.time += 0.5 * h;
+            let held = self.held(&middle);
+            return self.move_held(state, held, w, h);
+        }
         let mut halvings = if touching {
             self.touching_halvings(h)
         } else {
@@ -224,41 +251,67 @@ impl<'m> Engine<'m> {
         }
     }
 
-    /// Moves body and load on their joint in one exact step; false where that is not possible, or the body turns.
+    /// Moves body and load in one exact step; false where that is not possible: one of them turns or sticks, or they
+    /// come together or apart.
     fn swing(&self, state: &mut State, w: f64, h: f64) -> bool {
-        let Some(joint) = &self.joint else {
+        let (Some(joint), Some(load)) = (&self.joint, &self.model.load) else {
             return false;
         };
         let level = self.model.friction.level;
-        let sign = state.mode.sign();
-        let rubs = level > 0.0;
-        if rubs && (sign == 0.0 || self.contact.as_ref().is_some_and(|c| c.is_soft(h))) {
+        let soft = |contact: &Contact| contact.is_soft(h);
+        if level > 0.0 && self.contact.as_ref().is_some_and(soft) {
+            return false;
+        }
+        // Which way they rub, if they do.
+        let rubbing = |mode: Mode, level: f64| if level > 0.0 { mode.sign() } else { 0.0 };
+        let (way, load_way) = (
+            rubbing(state.mode, level),
+            rubbing(state.load_mode, load.dry_friction),
+        );
+        let stuck = |way: f64, level: f64| level > 0.0 && way == 0.0;
+        if stuck(way, level) || stuck(load_way, load.dry_friction) {
+            return false;
+        }
+        let half_gap = load.coupling.half_gap;
+        if half_gap > 0.0 && h > SEEN_STEPS * self.touching_step {
+            // They might come apart and together again unseen.
+            return false;
+        }
+        let side = state.twist.signum();
+        let pushes = |twist: f64, rate: f64| {
+            half_gap == 0.0 || (side * twist > half_gap && load.coupling.force(twist, rate) != 0.0)
+        };
+        if !pushes(state.twist, state.motion.v - state.load.v) {
             return false;
         }
         let (constant, rise) = self.model.late_load();
-        let friction = if rubs { sign * level } else { 0.0 };
-        let q = constant + rise * (state.time + 0.5 * h) - friction;
+        let forces = Forces {
+            input: w,
+            body: constant + rise * (state.time + 0.5 * h) - way * level,
+            load: -load_way * load.dry_friction,
+        };
+        let play = side * half_gap;
         let joined = Joined {
             body: state.motion,
-            twist: state.twist,
+            twist: state.twist - play,
             load: state.load.v,
         };
-        let Some(next) = joint.after(&joined, w, q, h) else {
+        let Some(next) = joint.after(&joined, &forces, h) else {
             return false;
         };
-        if rubs && next.body.v * sign <= 0.0 {
+        let twist = next.twist + play;
+        let turns = |way: f64, v: f64| way != 0.0 && way * v <= 0.0;
+        if turns(way, next.body.v)
+            || turns(load_way, next.load)
+            || !pushes(twist, next.body.v - next.load)
+        {
             return false;
         }
-        state.load.x += (next.body.x - state.motion.x) - (next.twist - state.twist);
+        state.load.x += (next.body.x - state.motion.x) - (twist - state.twist);
         state.motion = next.body;
-        state.twist = next.twist;
+        state.twist = twist;
         state.load.v = next.load;
-        state.mode = if rubs {
-            state.mode
-        } else {
-            Mode::of(next.body.v)
-        };
-        state.load_mode = Mode::of(next.load);
+        (state.mode, state.load_mode) = (Mode::of(next.body.v), Mode::of(next.load));
         state.time += h;
         true
     }

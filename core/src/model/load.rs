@@ -6,6 +6,7 @@
 
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
+use super::swing::{Parabola, Swing};
 
 /// How body and load are joined.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +107,8 @@ pub(super) struct Follower<'m> {
     pub motion: Motion,
     pub mode: Mode,
     steps: u32,
+    /// In one step where the load neither turns nor comes or goes.
+    swing: Option<Swing>,
     /// Sample up to which it has followed.
     sample: usize,
 }
@@ -135,6 +138,7 @@ impl<'m> Follower<'m> {
             },
             mode: Mode::Stick,
             steps: steps as u32,
+            swing: Swing::new(load, h),
             sample: 0,
         }
     }
@@ -168,6 +172,39 @@ impl<'m> Follower<'m> {
         torque
     }
 
+    /// Moves the load in one step while the body goes on by `way`, bent by `bend`; mean torque or force on it. `None`
+    /// where the load turns or sticks, or comes or goes.
+    fn swing_along(&mut self, from: f64, way: f64, bend: f64, h: f64) -> Option<f64> {
+        let swing = self.swing.as_ref().filter(|s| s.h == h)?;
+        let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
+        let side = (from - self.motion.x).signum();
+        let pushes = |twist: f64, rate: f64| {
+            coupling.half_gap == 0.0
+                || (side * twist > coupling.half_gap && coupling.force(twist, rate) != 0.0)
+        };
+        let begin = way - 0.5 * bend;
+        if !pushes(from - self.motion.x, begin / h - self.motion.v) {
+            return None;
+        }
+        let rubs = dry > 0.0;
+        let sign = if rubs { self.mode.sign() } else { 0.0 };
+        if rubs && sign == 0.0 {
+            return None;
+        }
+        let body = Parabola {
+            from: from - side * coupling.half_gap,
+            begin,
+            bend,
+        };
+        let (end, torque) = swing.advance(self.motion, &body, -sign * dry);
+        let turns = rubs && end.v * sign <= 0.0;
+        if turns || !pushes(from + way - end.x, (begin + bend) / h - end.v) {
+            return None;
+        }
+        (self.motion, self.mode) = (end, Mode::of(end.v));
+        Some(torque)
+    }
+
     /// Moves the body along `position` from sample `i` to the next one in `h` seconds, on a parabola
     /// bent like the samples around; mean torque or force on the load.
     fn advance(&mut self, position: &[f64], i: usize, h: f64) -> f64 {
@@ -180,6 +217,9 @@ impl<'m> Follower<'m> {
         } else {
             0.5 * (at(i + 2) - to - from + before)
         };
+        if let Some(torque) = self.swing_along(from, to - from, bend, h) {
+            return torque;
+        }
         let v1 = (to - from) / h;
         let touching = self
             .load

@@ -16,6 +16,7 @@ mod joint;
 mod load;
 mod replay;
 mod seen_load;
+mod swing;
 
 pub use closed_loop::{Run, run_controlled};
 pub use engine::{Engine, State};
