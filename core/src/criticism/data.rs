@@ -28,6 +28,9 @@ const SCOUT_SAMPLES: usize = 2500;
 /// Swings of the motor before a contact in its window.
 const SWINGS_BEFORE: usize = 4;
 
+/// Swings of the motor in a window without a contact that was felt.
+const MOST_SWINGS: usize = 6;
+
 /// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -177,14 +180,17 @@ impl Data {
 
     /// The same in windows each with one of the contacts that were felt: every contact multiplies what was wrong before it,
     /// and from far away a load may be met one swing of the motor too early or too late. They begin some swings before the
-    /// contact, which tell the motion without it, at most half way from the contact before.
+    /// contact, which tell the motion without it, at most half way from the contact before. Without one, they are so short
+    /// that a contact too weak to be felt does not go on to another.
     pub fn cut_at_contacts(self) -> Self {
         if self.felt.is_empty() {
             return self;
         }
-        let usual = self.len() / self.windows.len().max(1);
         let velocity = self.velocity_estimate();
         let turns = |k: &usize| velocity[*k] * velocity[k + 1] <= 0.0;
+        let count = (0..self.len() - 1).filter(turns).count();
+        let swings = MOST_SWINGS * self.len() / count.max(1);
+        let usual = (self.len() / self.windows.len().max(1)).min(swings.max(MIN_WINDOW));
         let begin = |place: usize| {
             let felt = self.felt[place];
             let before = place.checked_sub(1).map_or(0, |k| self.felt[k]);
