@@ -12,6 +12,9 @@ const PENALTY: f64 = 3.0;
 const DEVIATION: f64 = 4.0;
 const LEAST_SHARE: f64 = 5e-3;
 
+/// Deviation of a single engaged cycle, in standard deviations of the free ones.
+const SINGLE: f64 = 6.0;
+
 /// Fewest cycles of a run that can show how the free motor drifts; half a phase if that is shorter.
 const FREE: usize = 8;
 
@@ -58,6 +61,14 @@ impl Drift {
             for segment in segments.iter().filter(unlike) {
                 engaged[from + segment.from..from + segment.to].fill(true);
             }
+            // A load that is pushed along is met in some cycles and missed in others, which no run of them shows.
+            let limit = (SINGLE * free_spread(part, &segments, free, least)).max(least);
+            let run = &mut engaged[from..to];
+            if run.contains(&true) {
+                for (engaged, change) in run.iter_mut().zip(part) {
+                    *engaged |= (change - free).abs() > limit;
+                }
+            }
         }
         Self {
             change,
@@ -71,6 +82,20 @@ impl Drift {
 fn spread(values: &[f64]) -> f64 {
     let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
     1.4826 * median(&mut steps) / std::f64::consts::SQRT_2
+}
+
+/// Standard deviation of the changes in the runs of one phase that are free; infinite where none is.
+fn free_spread(changes: &[f64], segments: &[Segment], free: f64, tolerance: f64) -> f64 {
+    let is_free = |s: &&Segment| s.to - s.from >= FREE && (s.mean - free).abs() <= tolerance;
+    let free_runs = segments.iter().filter(is_free);
+    let mut off: Vec<f64> = free_runs
+        .flat_map(|s| &changes[s.from..s.to])
+        .map(|change| (change - free).abs())
+        .collect();
+    if off.is_empty() {
+        return f64::INFINITY;
+    }
+    1.4826 * median(&mut off)
 }
 
 /// Mean change of the free motor in one phase: that of the run with the most change along the drift and
