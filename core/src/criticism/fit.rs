@@ -13,7 +13,9 @@ use super::cost::{
 };
 use super::data::Data;
 use super::structure::Structure;
-use super::window_sums::{BODY_STATES, STATES, WindowSums, changed, inverse, reduced, state};
+use super::window_sums::{
+    BODY_STATES, STATES, WindowSums, changed, inverse, kept_within, reduced, state,
+};
 use crate::effect::Scales;
 use crate::model::Start;
 
@@ -44,6 +46,9 @@ const RESTART_DAMPING: f64 = 1e-3;
 
 /// Step for differences with respect to where a load is, in its standard deviations.
 const LOAD_DIFFERENCE: f64 = 0.1;
+
+/// Standard deviations by which a load on a joint may be off where it follows the body.
+const FARTHEST: f64 = 3.0;
 
 /// Times that the states of windows are improved: with a seen load as long as that lowers the cost below this share.
 const FEWEST_POLISHINGS: usize = 2;
@@ -439,6 +444,7 @@ impl Fit {
         }
         let moved = self.bounded_step(&schur, &reduced_gradient, scales)?;
         let values: Vec<f64> = self.values.iter().zip(&moved).map(|(v, d)| v + d).collect();
+        let farthest = self.farthest(data);
         let starts = self
             .starts
             .iter()
@@ -448,10 +454,21 @@ impl Fit {
                 for (mixed, d) in sums.mixed.iter().zip(&moved) {
                     g -= mixed * *d;
                 }
-                changed(start, &(inverse(&sums.state) * g))
+                kept_within(changed(start, &(inverse(&sums.state) * g)), farthest)
             })
             .collect();
         Some((values, starts))
+    }
+
+    /// Standard deviations by which a load may be off at most. One that was felt may have been met by chance, but if one
+    /// on a joint is far off where it follows the body, the model is wrong.
+    fn farthest(&self, data: &Data) -> f64 {
+        let model = self.structure.model(&self.values);
+        if data.excitation.sees_load_of(&model) {
+            f64::INFINITY
+        } else {
+            FARTHEST
+        }
     }
 
     /// Solves for the step; values that would leave their range stop at its end and the others are
@@ -555,13 +572,16 @@ impl Fit {
         let sees_load = data
             .excitation
             .sees_load_of(&self.structure.model(&self.values));
+        let farthest = self.farthest(data);
         let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
         for share in shares {
             let changes = windows
                 .iter()
                 .map(|sums| inverse(&sums.state) * sums.gradient * *share);
             let trial = self.starts.iter().zip(changes);
-            let trial: Vec<Start> = trial.map(|(s, change)| changed(s, &change)).collect();
+            let trial: Vec<Start> = trial
+                .map(|(s, change)| kept_within(changed(s, &change), farthest))
+                .collect();
             self.take_better(data, &trial);
         }
         sees_load

@@ -6,7 +6,8 @@ use super::cost::informed_windows;
 use super::data::Data;
 use crate::model::Start;
 
-/// What a window's state consists of: position and velocity of the body, and of a load that may be off where it is taken to be.
+/// What a window's state consists of: position and velocity of the body, and of a load that may be off where it is
+/// taken to be.
 pub(super) const BODY_STATES: usize = 2;
 pub(super) const STATES: usize = 4;
 
@@ -55,6 +56,14 @@ pub(super) fn changed(start: &Start, change: &Vector4<f64>) -> Start {
         position: start.position + change[0],
         velocity: start.velocity + change[1],
         load: [start.load[0] + change[2], start.load[1] + change[3]],
+    }
+}
+
+/// The same with a load that is at most `farthest` standard deviations off.
+pub(super) fn kept_within(start: Start, farthest: f64) -> Start {
+    Start {
+        load: start.load.map(|d| d.clamp(-farthest, farthest)),
+        ..start
     }
 }
 
