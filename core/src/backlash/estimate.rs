@@ -10,7 +10,7 @@ use super::contacts::{Touch, touches};
 use super::cycles::Cycles;
 use super::drift::Drift;
 use super::free_motor::FreeMotor;
-use super::likelihood::{Fit, Scales, fit};
+use super::likelihood::{self, Fit, Scales, fit};
 use super::record::Record;
 use super::verdict;
 
@@ -33,6 +33,9 @@ const AGREE: f64 = 0.1;
 
 /// Traverses of a good estimate.
 const GOOD_TRAVERSES: usize = 3;
+
+/// Share of the gap by which a traverse may be off before its ends are doubted.
+const STRAY: f64 = 0.5;
 
 /// Contacts with one side only from which engagement is believed.
 const FEWEST_CONTACTS: usize = 3;
@@ -330,8 +333,22 @@ fn two_sided(
     place_error: f64,
 ) -> Option<SeenLoad> {
     estimate.quality = Quality::Undecided;
-    let fit = fit(&events, scales, None)?;
+    let mut events = events;
+    let mut fit = likelihood::fit(&events, scales, None)?;
     estimate.traverses = traverses(&estimate.contacts, &fit);
+    let stray = strays(
+        &estimate.contacts,
+        &estimate.traverses,
+        2.0 * fit.play.half_gap,
+    );
+    if stray.contains(&true) {
+        let mut others = stray.iter().map(|s| !s);
+        events.retain(|_| others.next().unwrap_or(true));
+        let mut others = stray.iter().map(|s| !s);
+        estimate.contacts.retain(|_| others.next().unwrap_or(true));
+        fit = likelihood::fit(&events, scales, None)?;
+        estimate.traverses = traverses(&estimate.contacts, &fit);
+    }
     let gap = 2.0 * fit.play.half_gap;
     let rattles = rattles(&estimate.traverses, period);
     let systematic = if rattles { RATTLE_ERROR * gap } else { 0.0 };
@@ -354,6 +371,20 @@ fn two_sided(
     };
     state(estimate, gap, error);
     seen_load(events, &fit, place_error)
+}
+
+/// Contacts at one end of the gap between two at the other from which the motor did not go anything like the gap: what
+/// else disturbed the motor there was no load.
+fn strays(contacts: &[Contact], traverses: &[Traverse], gap: f64) -> Vec<bool> {
+    let off = |t: &Traverse| (t.gap - gap).abs() > STRAY * gap + t.std_error;
+    let touched = |end: fn(&Traverse) -> f64, at: f64| {
+        let mut own = traverses.iter().filter(move |t| end(t) == at);
+        own.any(off)
+    };
+    contacts
+        .iter()
+        .map(|c| touched(|t| t.to.time, c.time) && touched(|t| t.from.time, c.time))
+        .collect()
 }
 
 fn seen_load(events: Vec<SeenContact>, fit: &Fit, place_error: f64) -> Option<SeenLoad> {
