@@ -16,6 +16,7 @@ pub mod lessons;
 pub mod link;
 mod motion;
 mod notice;
+mod packed;
 mod pages;
 #[cfg(not(target_arch = "wasm32"))]
 mod pieces;

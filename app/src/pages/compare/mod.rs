@@ -315,7 +315,7 @@ impl Compare {
         match command {
             Command::OpenBuiltIn(index) => {
                 if let Some(built_in) = BUILT_IN.get(index) {
-                    self.open(ctx, built_in.id, built_in.csv);
+                    self.open(ctx, built_in.id, &built_in.csv());
                 }
             }
             Command::Reopen(recent) => self.files.reopen(ctx, &recent),

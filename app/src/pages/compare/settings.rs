@@ -82,7 +82,7 @@ impl Compare {
         }
         if let Some(built_in) = built_in {
             self.carry_out(ctx, Command::Close);
-            self.open(ctx, built_in.id, built_in.csv);
+            self.open(ctx, built_in.id, &built_in.csv());
         }
         if let Some((mystery, text)) = &mystery {
             self.carry_out(ctx, Command::Close);

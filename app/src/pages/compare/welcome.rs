@@ -11,7 +11,7 @@ pub(super) struct BuiltIn {
     pub id: &'static str,
     title: &'static str,
     story: &'static str,
-    pub csv: &'static [u8],
+    packed: &'static [u8],
 }
 
 pub(super) const BUILT_IN: [BuiltIn; 3] = [
@@ -19,21 +19,28 @@ pub(super) const BUILT_IN: [BuiltIn; 3] = [
         id: "drive-02",
         title: "A drive that loses its swing",
         story: "A motor under a velocity relay. It never moves quite as far as its inertia says it should.",
-        csv: include_bytes!("../../../../assets/measurements/drive-02.csv"),
+        packed: include_bytes!(concat!(env!("OUT_DIR"), "/drive-02.packed")),
     },
     BuiltIn {
         id: "drive-12",
         title: "A drive that answers late",
         story: "The same rig with another amplifier and older bearings. One effect is not enough.",
-        csv: include_bytes!("../../../../assets/measurements/drive-12.csv"),
+        packed: include_bytes!(concat!(env!("OUT_DIR"), "/drive-12.packed")),
     },
     BuiltIn {
         id: "process-02",
         title: "A slow heating process",
         story: "A heater switched by a relay. The temperature overshoots both limits, every time.",
-        csv: include_bytes!("../../../../assets/measurements/process-02.csv"),
+        packed: include_bytes!(concat!(env!("OUT_DIR"), "/process-02.packed")),
     },
 ];
+
+impl BuiltIn {
+    /// Its text.
+    pub(super) fn csv(&self) -> Vec<u8> {
+        crate::packed::unpack(self.packed).unwrap_or_default()
+    }
+}
 
 impl Compare {
     pub(super) fn welcome_ui(
@@ -71,5 +78,19 @@ impl Compare {
             }
             ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process."));
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_packed_is_the_very_file() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/measurements");
+        for built_in in &BUILT_IN {
+            let file = std::fs::read(format!("{folder}/{}.csv", built_in.id)).expect("the file");
+            assert!(built_in.csv() == file, "{}", built_in.id);
+        }
     }
 }
