@@ -10,7 +10,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
 pub use catalogue::{Catalogue, is_plain};
-pub use number::typed;
+pub use number::typed_in;
 
 /// A language that the app speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -57,7 +57,7 @@ fn separated(mut chars: Vec<char>) -> String {
 }
 
 /// A number as someone types it: with a point or a comma, and perhaps with spaces.
-pub fn typed(text: &str) -> Option<f64> {
+fn typed(text: &str) -> Option<f64> {
     let plain: String = text
         .chars()
         .filter(|c| !c.is_whitespace())
@@ -68,6 +68,99 @@ pub fn typed(text: &str) -> Option<f64> {
         })
         .collect();
     plain.parse().ok()
+}
+
+/// A number as someone types it into a field of this unit: alone, or with a unit that measures the same, as `5 ms` where
+/// seconds are meant.
+pub fn typed_in(unit: &str) -> impl Fn(&str) -> Option<f64> {
+    let shown = unit.trim().to_owned();
+    move |text| {
+        let (number, unit) = text.split_at(end_of_number(text));
+        let number = typed(number)?;
+        let unit = spelling(unit);
+        if unit.is_empty() || unit == spelling(&shown) {
+            return Some(number);
+        }
+        let (quantity, factor) = measure(&unit)?;
+        let (wanted, shown) = measure(&spelling(&shown))?;
+        (quantity == wanted).then_some(number * factor / shown)
+    }
+}
+
+/// Where the number at the beginning of a text ends.
+fn end_of_number(text: &str) -> usize {
+    let letter = |c: char| c.is_alphabetic() || matches!(c, '°' | '%');
+    let exponent = |at: usize| {
+        let rest = text[at..].strip_prefix(['e', 'E']);
+        let rest = rest.map(|r| r.strip_prefix(['+', '-', '−']).unwrap_or(r));
+        rest.is_some_and(|r| r.starts_with(|c: char| c.is_ascii_digit()))
+    };
+    let mut letters = text.char_indices().filter(|(_, c)| letter(*c));
+    letters
+        .find(|(at, _)| !exponent(*at))
+        .map_or(text.len(), |(at, _)| at)
+}
+
+/// A unit without what people write differently.
+fn spelling(unit: &str) -> String {
+    let kept = unit.chars().filter(|c| !" \u{a0}*·⋅^".contains(*c));
+    let plain = kept.map(|c| match c {
+        'µ' | 'μ' => 'u',
+        '²' => '2',
+        c => c,
+    });
+    plain.collect()
+}
+
+/// What a unit measures, by its SI unit, and its factor to that.
+fn measure(unit: &str) -> Option<(&'static str, f64)> {
+    const DEGREE: f64 = std::f64::consts::PI / 180.0;
+    const TURN: f64 = std::f64::consts::TAU;
+    Some(match unit {
+        "s" => ("s", 1.0),
+        "ms" => ("s", 1e-3),
+        "us" => ("s", 1e-6),
+        "min" => ("s", 60.0),
+        "h" => ("s", 3600.0),
+        "rad" => ("rad", 1.0),
+        "mrad" => ("rad", 1e-3),
+        "urad" => ("rad", 1e-6),
+        "deg" | "°" => ("rad", DEGREE),
+        "rev" => ("rad", TURN),
+        "rad/s" => ("rad/s", 1.0),
+        "mrad/s" => ("rad/s", 1e-3),
+        "deg/s" | "°/s" => ("rad/s", DEGREE),
+        "rpm" | "1/min" => ("rad/s", TURN / 60.0),
+        "m" => ("m", 1.0),
+        "cm" => ("m", 1e-2),
+        "mm" => ("m", 1e-3),
+        "um" => ("m", 1e-6),
+        "m/s" => ("m/s", 1.0),
+        "mm/s" => ("m/s", 1e-3),
+        "N" => ("N", 1.0),
+        "mN" => ("N", 1e-3),
+        "kN" => ("N", 1e3),
+        "Nm" => ("Nm", 1.0),
+        "mNm" => ("Nm", 1e-3),
+        "uNm" => ("Nm", 1e-6),
+        "kNm" => ("Nm", 1e3),
+        "Nms/rad" => ("Nms/rad", 1.0),
+        "mNms/rad" => ("Nms/rad", 1e-3),
+        "uNms/rad" => ("Nms/rad", 1e-6),
+        "Nm/rad" => ("Nm/rad", 1.0),
+        "mNm/rad" => ("Nm/rad", 1e-3),
+        "kNm/rad" => ("Nm/rad", 1e3),
+        "kgm2" => ("kgm2", 1.0),
+        "kgcm2" => ("kgm2", 1e-4),
+        "gcm2" => ("kgm2", 1e-7),
+        "kgmm2" => ("kgm2", 1e-6),
+        "gmm2" => ("kgm2", 1e-9),
+        "kg" => ("kg", 1.0),
+        "g" => ("kg", 1e-3),
+        "Hz" => ("Hz", 1.0),
+        "kHz" => ("Hz", 1e3),
+        _ => return None,
+    })
 }
 
 #[cfg(test)]
@@ -100,5 +193,28 @@ mod tests {
         }
         assert_eq!(typed("−0,5"), Some(-0.5));
         assert_eq!(typed("1.250,5"), None);
+    }
+
+    #[test]
+    fn a_number_is_typed_with_a_unit_of_what_is_meant() {
+        for (unit, text, value) in [
+            ("s", "5 ms", 5e-3),
+            ("ms", "0,02 s", 20.0),
+            ("s", "1.5e-3s", 1.5e-3),
+            ("s", "2e-3", 2e-3),
+            ("mrad", "1°", 17.453_292_519_943_297),
+            ("rad/s", "60 rpm", std::f64::consts::TAU),
+            ("kg mm²", "8.8e-4 kg m^2", 880.0),
+            ("mN m s/rad", "0.002 N m s/rad", 2.0),
+            ("N m", "−300 mNm", -0.3),
+            ("x", "3 x", 3.0),
+            ("", "7", 7.0),
+        ] {
+            let typed = typed_in(unit)(text).expect(text);
+            assert!((typed / value - 1.0).abs() < 1e-12, "{text}: {typed}");
+        }
+        for (unit, text) in [("s", "5 mm"), ("", "5 ms"), ("s", "ms"), ("s", "5 sheep")] {
+            assert_eq!(typed_in(unit)(text), None, "{text}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use hysteron_core::figures::Check;
 
-use crate::language::{tr, typed};
+use crate::language::{tr, typed_in};
 use crate::theme;
 
 /// A slider over `value * scale`, reset by a double click or by Delete. A value from elsewhere (a map, a dragged line, a
@@ -18,11 +18,13 @@ pub fn slider(
     label: &str,
 ) -> egui::Response {
     let mut shown = *value * scale;
+    let unit = label.strip_suffix(']').and_then(|l| l.rsplit_once('['));
+    let unit = unit.map_or("", |(_, unit)| unit);
     let response = ui.add(
         egui::Slider::new(&mut shown, range)
             .text(tr(label))
             .max_decimals(3)
-            .custom_parser(typed)
+            .custom_parser(typed_in(unit))
             .clamping(egui::SliderClamping::Edits),
     );
     if track_double_clicked(ui, &response) || reset_by_key(ui, &response) {

@@ -5,7 +5,7 @@ use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 use super::Backlash;
 use super::scene::MILLI;
 use crate::hook::Targets;
-use crate::language::{tr, tr_number, typed};
+use crate::language::{tr, tr_number, typed_in};
 use crate::pages::controls::slider;
 use crate::recent::Recents;
 
@@ -260,7 +260,7 @@ impl Backlash {
         ui.add(
             egui::Slider::new(&mut self.speed, 0.001..=2.0)
                 .logarithmic(true)
-                .custom_parser(typed)
+                .custom_parser(typed_in("x"))
                 .suffix(" x"),
         )
         .on_hover_text(tr("Speed of the playback, times real time"));

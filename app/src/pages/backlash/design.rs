@@ -3,7 +3,7 @@
 use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
 
 use super::scene::MILLI;
-use crate::language::{tr, typed};
+use crate::language::{tr, typed_in};
 
 /// What is asked for, and the last proposal.
 pub struct Design {
@@ -32,14 +32,14 @@ impl Design {
         let mut shown = MILLI * self.gap;
         let gap = egui::Slider::new(&mut shown, 0.5..=100.0)
             .logarithmic(true)
-            .custom_parser(typed)
+            .custom_parser(typed_in("mrad"))
             .text(tr("expected gap [mrad]"));
         if ui.add(gap).changed() {
             self.gap = shown / MILLI;
         }
         let torque = egui::Slider::new(&mut self.torque, 0.01..=5.0)
             .logarithmic(true)
-            .custom_parser(typed)
+            .custom_parser(typed_in("N m"))
             .text(tr("largest torque [N m]"));
         ui.add(torque);
         let mut changed = false;

@@ -6,7 +6,7 @@ use hysteron_core::measurement::Kind;
 
 use super::{Command, Compare};
 use crate::hook::Targets;
-use crate::language::{tr, typed};
+use crate::language::{tr, typed_in};
 use crate::pages;
 use crate::theme;
 
@@ -183,7 +183,7 @@ fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut
             .speed(speed)
             .range(1e-9..=1e9)
             .max_decimals(6)
-            .custom_parser(typed)
+            .custom_parser(typed_in(unit))
             .suffix(plain(unit));
         ui.add(drag).labelled_by(label.id);
         ui.end_row();

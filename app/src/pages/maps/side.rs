@@ -3,7 +3,7 @@
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
 use super::{Command, Maps, axis_title, with_unit};
-use crate::language::{tr, typed};
+use crate::language::{tr, typed_in};
 
 impl Maps {
     /// Axes and quantity.
@@ -130,7 +130,7 @@ fn axis_ui(
                     .speed(speed)
                     .range(0.0..=1e4)
                     .max_decimals(3)
-                    .custom_parser(typed)
+                    .custom_parser(typed_in(axis.parameter.unit()))
                     .suffix(suffix(axis.parameter.unit())),
             )
             .labelled_by(label.id);

@@ -5,7 +5,7 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
-use crate::language::{tr, typed};
+use crate::language::{tr, typed_in};
 use crate::pages::Desk;
 
 /// Name and story of an experiment.
@@ -219,7 +219,7 @@ fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
         .range(least * scale..=most * scale)
         .speed(0.002 * most * scale)
         .max_decimals(3)
-        .custom_parser(typed)
+        .custom_parser(typed_in(unit))
         .suffix(format!(" {unit}"));
     if ui.add(field).labelled_by(text.id).changed() {
         *value = shown / scale;
