@@ -63,13 +63,13 @@ pub(super) fn ui(
             }
             // What was taken back is still there, but fainter.
             let strength = if n > at { 0.4 } else { 1.0 };
-            ui.label(times_noise(report.step.error));
+            ui.label(tr(times_noise(report.step.error)));
             let color = theme::MODEL.gamma_multiply(strength);
             bar_ui(ui, report.step.error, floor, largest, color, width);
             ui.end_row();
         }
         ui.label(tr("   Noise floor"));
-        ui.label(times_noise(floor));
+        ui.label(tr(times_noise(floor)));
         bar_ui(ui, floor, floor, largest, theme::NOISE, width);
         ui.end_row();
     });

@@ -92,7 +92,7 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
             ui.label(tr(n.to_string()));
             ui.label(tr_number(format!("{:.6}", step.gain)));
             ui.label(tr_number(format!("{:+.1e}", step.error)));
-            ui.label(number(step.test.period));
+            ui.label(tr(number(step.test.period)));
             // The first order needs three errors.
             let order = n.checked_sub(2).and_then(|i| adaptation.orders.get(i));
             ui.label(tr(order.map_or_else(String::new, |o| format!("{o:.2}"))));

@@ -67,7 +67,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
 
 fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
     let pid = &found.pid;
-    ui.label(number(pid.gain));
+    ui.label(tr(number(pid.gain)));
     ui.label(maybe(pid.integral_time, "-"));
     let derivative = (pid.derivative_time > 0.0).then_some(pid.derivative_time);
     ui.label(maybe(derivative, "-"));
@@ -81,5 +81,5 @@ fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
         phase.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}"))
     ));
     ui.label(format!("{:.0}", 100.0 * found.set_point.overshoot));
-    ui.label(number(found.load.iae));
+    ui.label(tr(number(found.load.iae)));
 }
