@@ -19,6 +19,9 @@ use crate::shortcuts;
 use crate::theme::{self, Look};
 use crate::{lessons, link};
 
+/// Width of a window below which it is taken for a phone's, points.
+const PHONE: f32 = 500.0;
+
 /// The app: the pages and what they share.
 pub struct HysteronApp {
     pages: Vec<Box<dyn View>>,
@@ -33,6 +36,7 @@ pub struct HysteronApp {
     language: Language,
     /// Whether nothing moves by itself.
     calm: bool,
+    fingers: Fingers,
     /// Whether the sheet with the keys is open.
     sheet: bool,
     notice: Option<Notice>,
@@ -47,6 +51,13 @@ pub struct HysteronApp {
     frame: u64,
 }
 
+/// Whether a finger was ever seen, and whether what is pressed is large enough for one.
+#[derive(Default)]
+struct Fingers {
+    seen: bool,
+    fit: bool,
+}
+
 impl Default for HysteronApp {
     fn default() -> Self {
         let (pages, desk) = (registry(), Desk::default());
@@ -59,6 +70,7 @@ impl Default for HysteronApp {
             look: None,
             language: Language::English,
             calm: false,
+            fingers: Fingers::default(),
             sheet: false,
             notice: None,
             plots: Vec::new(),
@@ -140,6 +152,7 @@ impl HysteronApp {
             self.set_calm(ui.ctx(), self.calm);
         }
         self.frame += 1;
+        self.fit_to_fingers(ui.ctx());
         language::speak(self.language);
         self.desk.targets.clear();
         chart_menu::clear(ui.ctx());
@@ -175,6 +188,18 @@ impl HysteronApp {
         self.overlays_ui(ui.ctx());
         #[cfg(target_arch = "wasm32")]
         crate::hook::publish(&self.hook_state());
+    }
+
+    /// What is pressed is larger in a narrow window, and where fingers are.
+    fn fit_to_fingers(&mut self, ctx: &egui::Context) {
+        let (touched, held) = ctx.input(|i| (i.any_touches(), i.pointer.any_down()));
+        self.fingers.seen |= touched;
+        let fingers = ctx.content_rect().width() < PHONE || self.fingers.seen;
+        // Nothing moves from under a finger.
+        if fingers != self.fingers.fit && !held {
+            self.fingers.fit = fingers;
+            theme::fit_to_fingers(ctx, fingers);
+        }
     }
 
     fn carry_out(&mut self, ui: &egui::Ui, command: Command) {

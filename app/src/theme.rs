@@ -119,6 +119,26 @@ pub fn apply(ctx: &egui::Context) {
     });
 }
 
+/// Least height of what is pressed with a finger, points.
+const FINGER: f32 = 40.0;
+
+/// Makes what is pressed as large as a finger needs it, or as a mouse does.
+pub fn fit_to_fingers(ctx: &egui::Context, fingers: bool) {
+    let usual = egui::style::Spacing::default();
+    ctx.all_styles_mut(|style| {
+        let spacing = &mut style.spacing;
+        if fingers {
+            spacing.interact_size.y = FINGER;
+            spacing.icon_width = 22.0;
+            spacing.icon_width_inner = 13.0;
+        } else {
+            spacing.interact_size.y = usual.interact_size.y;
+            spacing.icon_width = usual.icon_width;
+            spacing.icon_width_inner = usual.icon_width_inner;
+        }
+    });
+}
+
 /// The large answer of a page.
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
     ui.add(egui::Label::new(egui::RichText::new(tr(text)).size(24.0).strong()).wrap());

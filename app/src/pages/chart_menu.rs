@@ -6,8 +6,8 @@ use egui::{Context, Id, Pos2, Rect, UiBuilder, vec2};
 use crate::export::Table;
 use crate::language::tr;
 
-/// Side of the button of a menu, points.
-const BUTTON: f32 = 18.0;
+/// Least side of the button of a menu, points.
+const BUTTON: f32 = 24.0;
 
 /// What may be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,12 +92,15 @@ pub fn ui(
             });
         }
     });
-    let corner = Rect::from_min_max(inner.max - vec2(BUTTON + 2.0, BUTTON + 2.0), inner.max);
+    let side = ui.spacing().interact_size.y.max(BUTTON);
+    let corner = Rect::from_min_max(inner.max - vec2(side, side), inner.max);
     let mut child = ui.new_child(UiBuilder::new().id_salt(plot).max_rect(corner));
     child.spacing_mut().button_padding = vec2(2.0, 0.0);
+    child.spacing_mut().item_spacing = vec2(0.0, 0.0);
     let name = tr(format!("Menu of the plot: {} over {}", axes[1], axes[0]));
-    let faint = child.visuals().weak_text_color();
-    let button = egui::Button::new(egui::RichText::new("…").color(faint).size(16.0)).frame(false);
+    let button = egui::Button::new(egui::RichText::new("…").size(18.0))
+        .frame(false)
+        .min_size(vec2(side, side));
     let (response, _) =
         egui::containers::menu::MenuButton::from_button(button).ui(&mut child, |ui| {
             for (form, label) in Form::ALL {
