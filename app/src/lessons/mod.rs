@@ -106,6 +106,13 @@ impl Lesson {
         lesson
     }
 
+    /// Draws its first paragraph.
+    pub fn beginning_ui(&self, ui: &mut egui::Ui) {
+        if let Some(first) = self.text.iter().find(|line| !line.trim().is_empty()) {
+            markdown::ui(ui, &[first]);
+        }
+    }
+
     /// Links of its live buttons.
     pub fn links(&self) -> impl Iterator<Item = &'static str> {
         self.text.iter().flat_map(|line| markdown::links(line))

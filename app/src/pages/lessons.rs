@@ -2,8 +2,11 @@
 
 use super::{Command, Desk, View};
 use crate::language::tr;
-use crate::lessons;
+use crate::lessons::{self, Lesson};
 use crate::theme;
+
+/// Width below which everything stands in one column, points.
+const NARROW: f32 = 700.0;
 
 /// The page.
 #[derive(Default)]
@@ -25,21 +28,18 @@ impl View for Lessons {
                 theme::answer_ui(ui, "What can a relay teach in ten minutes?");
                 ui.label(tr("Each lesson stands beside the app: its buttons set the pages, and its question is checked."));
                 ui.add_space(8.0);
-                for (index, lesson) in lessons::all().enumerate() {
-                    egui::Frame::group(ui.style()).show(ui, |ui| {
-                        ui.set_width(ui.available_width().min(720.0));
-                        ui.horizontal_wrapped(|ui| {
-                            let text = format!("{}  {}", index + 1, lesson.title);
-                            let button = ui.button(egui::RichText::new(text).size(17.0));
-                            desk.targets.note(format!("lesson:{}", lesson.id), ui, &button);
-                            if button.clicked() {
-                                desk.commands.push(Command::Lesson(Some(lesson.id.to_owned())));
-                            }
-                            ui.label(tr(format!("{} minutes", lesson.minutes)));
-                            if desk.study.solved.contains(lesson.id) {
-                                ui.colored_label(theme::readable(ui, theme::NOISE), tr("solved"));
-                            }
-                        });
+                let all: Vec<_> = lessons::all().enumerate().collect();
+                if ui.available_width() < NARROW {
+                    for (index, lesson) in &all {
+                        lesson_ui(ui, desk, *index, lesson);
+                    }
+                    return;
+                }
+                for row in all.chunks(2) {
+                    ui.columns(2, |columns| {
+                        for (ui, (index, lesson)) in columns.iter_mut().zip(row) {
+                            lesson_ui(ui, desk, *index, lesson);
+                        }
                     });
                 }
             });
@@ -62,4 +62,29 @@ impl View for Lessons {
     fn hook_state(&self) -> serde_json::Value {
         serde_json::json!({"busy": false})
     }
+}
+
+/// A lesson: its title, how long it takes, and how it begins.
+fn lesson_ui(ui: &mut egui::Ui, desk: &mut Desk, index: usize, lesson: &Lesson) {
+    egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        // A column would stretch the words from edge to edge.
+        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
+            let title = format!("{}  {}", index + 1, lesson.title);
+            let button = ui.button(egui::RichText::new(title).size(17.0));
+            desk.targets
+                .note(format!("lesson:{}", lesson.id), ui, &button);
+            if button.clicked() {
+                desk.commands
+                    .push(Command::Lesson(Some(lesson.id.to_owned())));
+            }
+            lesson.beginning_ui(ui);
+            ui.horizontal(|ui| {
+                ui.small(tr(format!("{} minutes", lesson.minutes)));
+                if desk.study.solved.contains(lesson.id) {
+                    ui.colored_label(theme::readable(ui, theme::NOISE), tr("solved"));
+                }
+            });
+        });
+    });
 }
