@@ -183,12 +183,14 @@ impl View for Maps {
         if narrow {
             egui::CentralPanel::default().show(ui, |ui| {
                 egui::ScrollArea::vertical().show(ui, |ui| {
-                    self.choices_ui(ui);
                     self.update(ui.ctx());
                     self.answer_ui(ui);
                     let height = ui.available_width() + 40.0;
                     self.picture_ui(ui, height, commands);
+                    self.choices_ui(ui);
+                    ui.separator();
                     self.point_ui(ui, commands);
+                    self.update(ui.ctx());
                 });
             });
             return;
