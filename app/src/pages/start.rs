@@ -19,6 +19,9 @@ const PERIODS_PER_SECOND: f64 = 0.6;
 /// Width below which everything stands in one column, points.
 const NARROW: f32 = 700.0;
 
+/// Height of all but the plots, points.
+const REST: f32 = 390.0;
+
 /// A door to another page.
 struct Door {
     page: &'static str,
@@ -170,7 +173,9 @@ impl Start {
                 if ui.available_width() < NARROW {
                     plots::time_ui(ui, relay, data, self.playback.clock, 200.0);
                 } else {
-                    let height = (0.42 * ui.ctx().content_rect().height()).max(160.0);
+                    // The doors beneath stay in view.
+                    let window = ui.ctx().content_rect().height();
+                    let height = (window - REST).min(0.42 * window).max(150.0);
                     ui.columns(2, |columns| {
                         plots::time_ui(&mut columns[0], relay, data, self.playback.clock, height);
                         plots::phase_ui(&mut columns[1], data, self.playback.clock, height);
@@ -237,14 +242,17 @@ fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
 fn door_ui(ui: &mut egui::Ui, desk: &mut Desk, door: &Door) {
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.strong(egui::RichText::new(tr(door.question)).size(17.0));
-        ui.label(tr(door.story));
-        let size = egui::vec2(ui.available_width().min(220.0), 36.0);
-        let button = ui.add_sized(size, egui::Button::new(tr(door.button)));
-        desk.targets
-            .note(format!("door:{}", door.page), ui, &button);
-        if button.clicked() {
-            desk.commands.push(Command::Go(door.page));
-        }
+        // A column would stretch the words from edge to edge.
+        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
+            ui.strong(egui::RichText::new(tr(door.question)).size(17.0));
+            ui.label(tr(door.story));
+            let size = egui::vec2(ui.available_width(), 36.0);
+            let button = ui.add_sized(size, egui::Button::new(tr(door.button)));
+            desk.targets
+                .note(format!("door:{}", door.page), ui, &button);
+            if button.clicked() {
+                desk.commands.push(Command::Go(door.page));
+            }
+        });
     });
 }
