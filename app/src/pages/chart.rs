@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut, RangeInclusive};
 use egui::{AsIdSalt, IdSalt};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotPoint,
-    PlotPoints, PlotResponse, PlotUi, Points, default_label_formatter, uniform_grid_spacer,
+    PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
 };
 
 use super::chart_menu;
@@ -14,11 +14,13 @@ use crate::export::Table;
 use crate::language::{tr, tr_number};
 use crate::theme;
 
-/// Points between labels of an axis, where they begin to show and where they are full.
-const LABELS: egui::Rangef = egui::Rangef {
-    min: 28.0,
-    max: 40.0,
-};
+/// Points between labels of x and of y, from which on they show: there is room for them, and a faint one could not
+/// be read.
+const LABELS: [f32; 2] = [40.0, 24.0];
+
+/// Significant digits of what is read at the pointer; a time needs more, since it grows.
+const READ_X: i32 = 6;
+const READ_Y: i32 = 5;
 
 /// Decimals of a label; smaller numbers have an exponent, so that they need no more room.
 const MOST_DECIMALS: usize = 4;
@@ -77,16 +79,21 @@ impl<'a> Chart<'a> {
     ) -> Self {
         let salt = IdSalt::new(salt);
         let axes = [x.into(), y.into()];
-        let axis = |hints: AxisHints<'static>| hints.label_spacing(LABELS).formatter(label);
+        let axis = |hints: AxisHints<'static>, i: usize| {
+            hints.label_spacing(shown_from(LABELS[i])).formatter(label)
+        };
         let [x, y] = [0, 1].map(|i| tr(&axes[i]));
         let plot = Plot::new(salt)
             .height(height)
             .allow_scroll(false)
-            .label_formatter(|place| default_label_formatter(place).map(tr_number))
-            .custom_x_axes(vec![axis(AxisHints::new_x().label(x))])
-            .custom_y_axes(vec![axis(AxisHints::new_y().label(y).min_thickness(width))])
-            .x_grid_spacer(uniform_grid_spacer(|input| grid(&input)))
-            .y_grid_spacer(uniform_grid_spacer(|input| grid(&input)));
+            .label_formatter(reading([x.clone(), y.clone()], |p| [p.x, p.y]))
+            .custom_x_axes(vec![axis(AxisHints::new_x().label(x), 0)])
+            .custom_y_axes(vec![axis(
+                AxisHints::new_y().label(y).min_thickness(width),
+                1,
+            )])
+            .x_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[0])))
+            .y_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[1])));
         Self {
             plot,
             salt,
@@ -99,14 +106,15 @@ impl<'a> Chart<'a> {
     #[must_use]
     pub fn decades(mut self) -> Self {
         self.decades = true;
+        let names = [0, 1].map(|i| tr(&self.axes[i]));
         let x = AxisHints::new_x()
-            .label(tr(&self.axes[0]))
-            .label_spacing(LABELS)
+            .label(names[0].clone())
+            .label_spacing(shown_from(LABELS[0]))
             .formatter(|mark, _| power_label(mark.value));
         self.with(|plot| {
             plot.custom_x_axes(vec![x])
                 .x_grid_spacer(|input| powers(&input))
-                .label_formatter(|place| power_formatter(place).map(tr_number))
+                .label_formatter(reading(names, |p| [10_f64.powf(p.x), p.y]))
         })
     }
 
@@ -227,6 +235,11 @@ pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) 
     Chart::new(name, [x, y], height, 0.0).still()
 }
 
+/// Labels that far apart are drawn, and in full.
+fn shown_from(points: f32) -> egui::Rangef {
+    egui::Rangef::new(points - 0.1, points)
+}
+
 /// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
 fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
     let step = mark.step_size.abs();
@@ -239,15 +252,11 @@ fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
         0.0
     };
     let decimals = (more - first).clamp(0.0, 12.0) as usize;
-    let value = if mark.value.abs() < 1e-9 * step {
-        0.0
-    } else {
-        mark.value
-    };
+    let value = mark.value;
+    if value.abs() < 1e-9 * step {
+        return "0".to_owned();
+    }
     if decimals > MOST_DECIMALS {
-        if value == 0.0 {
-            return "0".to_owned();
-        }
         let exponent = 3.0 * (first / 3.0).floor();
         let decimals = (more - first + exponent).max(0.0) as usize;
         let value = value / 10_f64.powf(exponent);
@@ -258,10 +267,10 @@ fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
 
 /// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
 /// a finer and a coarser set.
-fn grid(input: &GridInput) -> [f64; 3] {
+fn grid(input: &GridInput, apart: f32) -> [f64; 3] {
     let (low, high) = input.bounds;
     // The smallest step that egui_plot wants is 8 points wide; a label needs more.
-    let least = f64::from(LABELS.max) / 8.0 * input.base_step_size;
+    let least = f64::from(apart) / 8.0 * input.base_step_size;
     let wanted = ((high - low) / 7.0).max(least).max(f64::MIN_POSITIVE);
     let decade = 10_f64.powf(wanted.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0]
@@ -297,35 +306,149 @@ fn power_label(exponent: f64) -> String {
     tr_number(format!("{:.decimals$}", 10_f64.powf(exponent)))
 }
 
-/// What the pointer is at, where x is a logarithm.
-fn power_formatter(place: &HoverPosition<'_>) -> Option<String> {
-    let read = |p: &PlotPoint| PlotPoint::new(10_f64.powf(p.x), p.y);
-    default_label_formatter(&match place {
-        HoverPosition::NearDataPoint {
-            plot_name,
-            position,
-            index,
-        } => HoverPosition::NearDataPoint {
-            plot_name,
-            position: read(position),
-            index: *index,
-        },
-        HoverPosition::Elsewhere { position } => HoverPosition::Elsewhere {
-            position: read(position),
-        },
-    })
+/// What stands at the pointer: the curve, and the values by the names and units of their axes.
+fn reading(
+    names: [String; 2],
+    place: impl Fn(&PlotPoint) -> [f64; 2],
+) -> impl Fn(&HoverPosition<'_>) -> Option<String> {
+    move |at| {
+        let (curve, point) = match at {
+            HoverPosition::NearDataPoint {
+                plot_name,
+                position,
+                ..
+            } => (*plot_name, position),
+            HoverPosition::Elsewhere { position } => ("", position),
+        };
+        let [x, y] = place(point);
+        let [x, y] = [(&names[0], x, READ_X), (&names[1], y, READ_Y)]
+            .map(|(name, value, digits)| (name, read_out(value, digits)));
+        let across = line_of(x.0, &x.1);
+        Some(match curve {
+            "" => format!("{across}\n{}", line_of(y.0, &y.1)),
+            // An axis of several quantities: the curve says which one it is.
+            curve if y.0.contains(", ") => format!("{across}\n{}", line_of(curve, &y.1)),
+            curve => format!("{curve}\n{across}\n{}", line_of(y.0, &y.1)),
+        })
+    }
 }
 
-/// Names of the curves in their colours, above a plot: they hide nothing.
-pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[(&str, egui::Color32)]) {
+/// A value by the name of its axis, which ends with the unit.
+fn line_of(name: &str, value: &str) -> String {
+    match name.strip_suffix(']').and_then(|n| n.rsplit_once(" [")) {
+        Some((name, unit)) => format!("{name}: {value} {unit}"),
+        None => format!("{name}: {value}"),
+    }
+}
+
+/// A number with so many significant digits, and an exponent only where it needs one.
+fn read_out(value: f64, digits: i32) -> String {
+    let size = value.abs();
+    let text = if size == 0.0 {
+        "0".to_owned()
+    } else if (1e-4..1e6).contains(&size) {
+        let decimals = (digits - 1 - size.log10().floor() as i32).max(0) as usize;
+        let text = format!("{value:.decimals$}");
+        if text.contains('.') {
+            let text = text.trim_end_matches('0').trim_end_matches('.');
+            text.to_owned()
+        } else {
+            text
+        }
+    } else {
+        format!("{value:.3e}")
+    };
+    tr_number(text)
+}
+
+/// How a curve is drawn: its shape tells it where colours cannot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    Line,
+    Dashes,
+    Diamond,
+    Square,
+    Circle,
+    Cross,
+    Area,
+}
+
+/// A curve in the caption of a plot.
+pub type Key<'a> = (&'a str, egui::Color32, Shape);
+
+/// Size of a sample in a caption, points.
+const SAMPLE: egui::Vec2 = egui::vec2(18.0, 10.0);
+
+/// Names of the curves in their colours and shapes, above a plot: they hide nothing.
+pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[Key<'_>]) {
     ui.horizontal_wrapped(|ui| {
-        ui.strong(tr(title));
-        for (name, color) in curves {
-            let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 4.0), egui::Sense::hover());
-            ui.painter().rect_filled(rect, 1.0, *color);
-            ui.label(tr(*name));
+        if !title.is_empty() {
+            ui.strong(tr(title));
+        }
+        for key in curves {
+            let text = egui::RichText::new(tr(key.0));
+            // A sample never stands at the end of a line without its name.
+            let job = ui.painter().layout_no_wrap(
+                text.text().to_owned(),
+                egui::TextStyle::Body.resolve(ui.style()),
+                egui::Color32::PLACEHOLDER,
+            );
+            let width = SAMPLE.x + ui.spacing().item_spacing.x + job.size().x;
+            if width > ui.available_size_before_wrap().x && width < ui.max_rect().width() {
+                ui.end_row();
+            }
+            sample_ui(ui, key);
+            ui.label(text);
         }
     });
+}
+
+fn sample_ui(ui: &mut egui::Ui, (_, color, shape): &Key<'_>) {
+    let (rect, _) = ui.allocate_exact_size(SAMPLE, egui::Sense::hover());
+    let painter = ui.painter();
+    let middle = rect.center();
+    let bar = |from: f32, to: f32| {
+        let x = |share: f32| rect.left() + share * rect.width();
+        let half = egui::vec2(0.0, 2.0);
+        let ends = [egui::pos2(x(from), middle.y), egui::pos2(x(to), middle.y)];
+        painter.rect_filled(
+            egui::Rect::from_min_max(ends[0] - half, ends[1] + half),
+            1.0,
+            *color,
+        );
+    };
+    match shape {
+        Shape::Line => bar(0.0, 1.0),
+        Shape::Dashes => {
+            bar(0.0, 0.4);
+            bar(0.6, 1.0);
+        }
+        Shape::Area => {
+            painter.rect_filled(rect, 1.0, color.gamma_multiply(0.5));
+        }
+        Shape::Diamond => {
+            let corners = [(-5.0, 0.0), (0.0, -5.0), (5.0, 0.0), (0.0, 5.0)];
+            let points = corners.map(|(x, y)| middle + egui::vec2(x, y)).to_vec();
+            painter.add(egui::Shape::convex_polygon(
+                points,
+                *color,
+                egui::Stroke::NONE,
+            ));
+        }
+        Shape::Square => {
+            let square = egui::Rect::from_center_size(middle, egui::Vec2::splat(8.0));
+            painter.rect_filled(square, 0.0, *color);
+        }
+        Shape::Circle => {
+            painter.circle_filled(middle, 4.5, *color);
+        }
+        Shape::Cross => {
+            for side in [-4.0, 4.0] {
+                let half = egui::vec2(4.0, side);
+                painter.line_segment([middle - half, middle + half], (1.5, *color));
+            }
+        }
+    }
 }
 
 /// The place that the playback has reached.

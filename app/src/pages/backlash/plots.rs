@@ -5,7 +5,7 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, Points, Polygon, Text, 
 
 use super::scene::Scene;
 use crate::language::tr;
-use crate::pages::chart::{caption_ui, curve, dot, extremes, still};
+use crate::pages::chart::{Shape, caption_ui, curve, dot, extremes, still};
 use crate::theme;
 
 /// Periods of the relay that the phase portrait shows before the present one.
@@ -23,13 +23,13 @@ const ESTIMATED: Color32 = theme::RESIDUAL;
 /// Positions of motor and load; shaded where the motor pushes the load.
 pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let signature = scene.signature();
-    let mut curves = vec![("motor x1", theme::MEASURED)];
+    let mut curves = vec![("motor x1", theme::MEASURED, Shape::Line)];
     if !scene.load.is_empty() {
-        curves.push(("load x2", LOAD));
+        curves.push(("load x2", LOAD, Shape::Line));
     }
-    curves.push(("motor pushes load", CONTACT));
+    curves.push(("motor pushes load", CONTACT, Shape::Area));
     if !signature.is_empty() {
-        curves.push(("gap found by the motor", ESTIMATED));
+        curves.push(("gap found by the motor", ESTIMATED, Shape::Diamond));
     }
     caption_ui(ui, "Positions", &curves);
     let [low, high] = scene.range;
@@ -77,9 +77,9 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let to = clock.max(span);
     let points = scene.phase(to - span, to);
     let orbit = scene.orbit(to);
-    let mut curves = vec![("last periods", theme::MEASURED)];
+    let mut curves = vec![("last periods", theme::MEASURED, Shape::Line)];
     if orbit.is_some() {
-        curves.push(("closed form in the gap", theme::INPUT));
+        curves.push(("closed form in the gap", theme::INPUT, Shape::Dashes));
     }
     caption_ui(ui, "Phase portrait", &curves);
     let color = ui.visuals().text_color();
@@ -163,9 +163,9 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         ui.label(tr("The load was not measured: there is no map."));
         return;
     }
-    let mut curves = vec![("x2 over x1", LOAD)];
+    let mut curves = vec![("x2 over x1", LOAD, Shape::Line)];
     if scene.input().is_some() {
-        curves.push(("ends of the gap", CONTACT));
+        curves.push(("ends of the gap", CONTACT, Shape::Dashes));
     }
     caption_ui(ui, "Backlash map", &curves);
     let [low, high] = scene.range;

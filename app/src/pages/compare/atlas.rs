@@ -1,11 +1,11 @@
 //! Where the model fails: the residual over every axis, as small pictures.
 
-use egui_plot::{HLine, Line, Span};
+use egui_plot::{HLine, Line, LineStyle, Span};
 use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
 
 use super::Compare;
 use crate::language::tr;
-use crate::pages::chart::{Chart, caption_ui};
+use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
 
 /// Least width of a picture, and its height, points.
@@ -22,10 +22,13 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
     let (Some(report), Some(measurement)) = (page.report(), &page.measurement) else {
         return;
     };
-    let mut curves = vec![("this model", theme::RESIDUAL), ("noise", theme::NOISE)];
+    let mut curves = vec![
+        ("this model", theme::RESIDUAL, Shape::Line),
+        ("noise", theme::NOISE, Shape::Dashes),
+    ];
     let before = page.report_before().filter(|_| page.before);
     if before.is_some() {
-        curves.insert(0, ("the step before", theme::MODEL));
+        curves.insert(0, ("the step before", theme::MODEL, Shape::Line));
     }
     tests_ui(report, ui);
     caption_ui(ui, "Size of the residual, in units of the noise", &curves);
@@ -188,6 +191,7 @@ fn picture_ui(
                 .color(theme::RESIDUAL)
                 .width(2.0),
         );
-        plot.hline(HLine::new(tr("noise"), 1.0).color(theme::NOISE).width(1.5));
+        let noise = HLine::new(tr("noise"), 1.0).color(theme::NOISE).width(1.5);
+        plot.hline(noise.style(LineStyle::dashed_dense()));
     });
 }

@@ -9,7 +9,7 @@ use super::atlas::{axis_label, grid_ui, points, small, words};
 use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::tr;
-use crate::pages::chart::{Chart, caption_ui};
+use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
 
 /// Height of a plot over time, and width of its labels, points.
@@ -53,7 +53,10 @@ pub(super) fn ui(
     caption_ui(
         ui,
         "Residual",
-        &[("what is left", theme::RESIDUAL), (&name, theme::INPUT)],
+        &[
+            ("what is left", theme::RESIDUAL, Shape::Line),
+            (&name, theme::INPUT, Shape::Dashes),
+        ],
     );
     time_ui(measurement, report, print, ui);
     ui.label(tr("The mean over each axis, in units of the noise"));

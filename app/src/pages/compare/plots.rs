@@ -3,21 +3,29 @@
 use std::ops::Range;
 
 use egui_plot::{
-    HLine, Legend, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Span, Text,
+    HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Span, Text,
 };
 use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
 use crate::language::tr;
-use crate::pages::chart::{Chart, Pen, envelope, extremes};
+use crate::pages::chart::{Chart, Key, Pen, Shape, caption_ui, envelope, extremes};
 use crate::theme;
 
 /// Most points of a curve that are drawn; above, each stretch shows its extremes.
 const MAX_POINTS: usize = 10_000;
 
-/// Seconds that are shown at first, as a share of the record: a few periods, not a solid band.
-const FIRST_VIEW: f64 = 0.03;
+/// Times that the input passes its mean in what is shown at first: a few periods, not a solid band; and the least
+/// share of the record.
+const FIRST_PASSES: usize = 28;
+const LEAST_VIEW: f64 = 0.01;
+
+/// Room above and below what is in view, as a share of it.
+const ROOM: f64 = 0.08;
+
+/// Height of the caption, points.
+const CAPTION: f32 = 26.0;
 
 /// Width of the labels of y, so that the plots line up.
 const AXIS_WIDTH: f32 = 78.0;
@@ -32,7 +40,8 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let report = page.report();
     let finding = report.and_then(|r| r.step.findings.get(page.finding));
     let count = measurement.outputs.len().max(1) as f32;
-    let each = (height / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
+    caption_ui(ui, "", &curves(page, report.is_some()));
+    let each = ((height - CAPTION) / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
         signal_plot(ui, measurement, output, modelled, finding, each);
@@ -44,27 +53,58 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     }
 }
 
-/// A plot that has room for everything between two values, also for what is not in view.
-fn plot<'a>(
-    measurement: &Measurement,
-    id: String,
-    y_label: String,
-    height: f32,
-    (low, high): (f64, f64),
-) -> Chart<'a> {
-    let (start, end) = (measurement.time[0], measurement.time[measurement.len() - 1]);
+/// What stands in the plots, for all of them.
+fn curves(page: &Compare, modelled: bool) -> Vec<Key<'static>> {
+    let mut curves = vec![("measured", theme::MEASURED, Shape::Line)];
+    if modelled {
+        curves.push(("model", theme::MODEL, Shape::Dashes));
+        curves.push(("residual", theme::RESIDUAL, Shape::Line));
+        if page.before && page.report_before().is_some() {
+            curves.push(("the step before", theme::MODEL, Shape::Line));
+        }
+        curves.push(("noise, 2 sigma", theme::NOISE, Shape::Dashes));
+    }
+    curves
+}
+
+/// A plot over time that moves together with the others; what is in view fills its height.
+fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32) -> Chart<'a> {
     let group = egui::Id::unique(("compare", &measurement.name));
-    let first = start + FIRST_VIEW * (end - start).max(f64::MIN_POSITIVE);
+    let (start, end) = first_view(measurement);
     let axes = ["time [s]".to_owned(), y_label];
     Chart::new(id, axes, height, AXIS_WIDTH).with(|plot| {
-        plot.default_x_bounds(start, first)
-            .auto_bounds([false, true])
-            .include_y(low)
-            .include_y(high)
+        plot.default_x_bounds(start, end)
+            .allow_drag([true, false])
+            .allow_zoom([true, false])
+            .allow_boxed_zoom(false)
             .link_axis(group, [true, false])
             .link_cursor(group, [true, false])
-            .legend(Legend::default())
     })
+}
+
+/// Begin and end of what is shown at first, s.
+fn first_view(measurement: &Measurement) -> (f64, f64) {
+    let (time, input) = (&measurement.time, &measurement.input.values);
+    let (start, end) = (time[0], time[measurement.len() - 1]);
+    let mean = input.iter().sum::<f64>() / input.len() as f64;
+    let passes = input
+        .windows(2)
+        .zip(time)
+        .filter(|(pair, _)| (pair[0] > mean) != (pair[1] > mean));
+    let last = passes.map(|(_, t)| *t).nth(FIRST_PASSES);
+    let least = start + LEAST_VIEW * (end - start).max(f64::MIN_POSITIVE);
+    (start, last.unwrap_or(end).max(least))
+}
+
+/// Fills the height with the values in view, and these others.
+fn fit(plot: &mut Pen<'_, '_>, time: &[f64], curves: &[&[f64]], others: &[f64]) {
+    let view = in_view(&plot.plot_bounds(), time);
+    let values = curves.iter().filter_map(|c| c.get(view.clone()));
+    let (low, high) = extremes(values.flatten().chain(others).copied());
+    if low <= high {
+        let room = ROOM * (high - low).max(f64::MIN_POSITIVE);
+        plot.set_plot_bounds_y(low - room..=high + room);
+    }
 }
 
 fn unit_label(name: &str, unit: &str) -> String {
@@ -90,9 +130,9 @@ fn signal_plot(
         format!("signal {}", output.name),
         label,
         height,
-        extremes(output.values.iter().chain(model).copied()),
     )
     .show(ui, |plot| {
+        fit(plot, &measurement.time, &[&output.values, model], &[]);
         shade(plot, finding);
         let alone = measurement.outputs.len() == 1;
         mark(plot, finding.filter(|f| alone || is_about(f, output)));
@@ -136,9 +176,10 @@ fn residual_plot(
         format!("residual {}", output.name),
         label,
         height,
-        extremes(residual.iter().chain(&earlier).copied()),
     )
     .show(ui, |plot| {
+        let noise = [2.0, -2.0].map(|side| side * modelled.noise);
+        fit(plot, &measurement.time, &[&residual, &earlier], &noise);
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
         if before.is_some() {

@@ -7,7 +7,7 @@ use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
 use crate::language::tr;
-use crate::pages::chart::{caption_ui, curve, dot, still};
+use crate::pages::chart::{Shape, caption_ui, curve, dot, still};
 use crate::theme;
 
 /// How near the pointer must come to take hold, points.
@@ -49,8 +49,8 @@ impl Nyquist {
             ui,
             "Nyquist plot",
             &[
-                ("P(jω)", theme::MEASURED),
-                ("-1/N(a), drag it", theme::DESCRIBING),
+                ("P(jω)", theme::MEASURED, Shape::Line),
+                ("-1/N(a), drag it", theme::DESCRIBING, Shape::Dashes),
             ],
         );
         if self.held == Held::Nothing || self.view == 0.0 {
@@ -205,7 +205,12 @@ fn reach(data: &ExploreData, margin: bool) -> f64 {
     let met = data.intersections.iter().flat_map(|i| i.point);
     let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |m, v| m.max(v.abs()));
     let size = match size(&mut met.map(|v| 2.0 * v)) {
-        0.0 => size(&mut data.inverse_df.iter().flatten().copied()),
+        // The line of the relay has no end: where the plant does not meet it, the plant is what is seen.
+        0.0 => {
+            let line = size(&mut data.inverse_df.iter().flatten().copied());
+            let plant = size(&mut data.nyquist.iter().flatten().copied());
+            line.min(plant)
+        }
         size => size,
     };
     size.max(least)

@@ -5,7 +5,7 @@ use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
 use crate::language::tr;
-use crate::pages::chart::{caption_ui, curve, dot, still};
+use crate::pages::chart::{Shape, caption_ui, curve, dot, still};
 use crate::theme;
 
 /// Index of the sample at a time.
@@ -31,7 +31,10 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) 
     caption_ui(
         ui,
         "Phase portrait",
-        &[("from the start", start), ("limit cycle", theme::EXACT)],
+        &[
+            ("from the start", start, Shape::Line),
+            ("limit cycle", theme::EXACT, Shape::Line),
+        ],
     );
     let now = data.phase.get(index_at(data, clock)).copied();
     still("phase", "output y", "its rate dy/dt [1/s]", height).show(ui, |plot| {
@@ -58,9 +61,9 @@ pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64,
         ui,
         "Time",
         &[
-            ("output y", theme::SIMULATED),
-            ("input u", theme::INPUT),
-            ("thresholds ±ε", theme::NOISE),
+            ("output y", theme::SIMULATED, Shape::Line),
+            ("input u", theme::INPUT, Shape::Line),
+            ("thresholds ±ε", theme::NOISE, Shape::Dashes),
         ],
     );
     let i = index_at(data, clock);

@@ -7,7 +7,7 @@ use hysteron_core::mystery::{Mystery, columns};
 use crate::export::Table;
 use crate::language::tr;
 use crate::link::VERSION;
-use crate::pages::chart::{caption_ui, curve, envelope, still};
+use crate::pages::chart::{Shape, caption_ui, curve, envelope, still};
 use crate::pages::{Command, Desk};
 use crate::save::Document;
 use crate::tasks::Made;
@@ -110,7 +110,7 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
             Kind::Drive => ("velocity", "v1 [rad/s]"),
             Kind::Process => ("output", "y [1]"),
         };
-        caption_ui(ui, "What was measured", &[(quantity, theme::MEASURED)]);
+        caption_ui(ui, "What was measured", &[(quantity, theme::MEASURED, Shape::Line)]);
         still("mystery_record", "time [s]", axis, 200.0).show(ui, |plot| {
             plot.line(Line::new(tr(quantity), curve(points)).color(theme::MEASURED));
         });

@@ -1,10 +1,10 @@
 //! What the steps draw alike.
 
-use egui_plot::{Legend, Line, LineStyle, PlotPoints};
+use egui_plot::{Line, LineStyle, PlotPoints};
 use hysteron_core::tuning::{Pid, RelayTest};
 
 use crate::language::tr;
-use crate::pages::chart::Chart;
+use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
 
 /// Colour of what was before.
@@ -47,9 +47,12 @@ pub fn controller(pid: &Pid) -> String {
     parts.join(", ")
 }
 
+/// Height of the caption of a plot, points.
+pub const CAPTION: f32 = 26.0;
+
 /// An empty plot with named axes; the wheel scrolls the page.
 pub fn plot<'a>(id: &str, height: f32, x: &str, y: &str) -> Chart<'a> {
-    Chart::new(id, [x, y], height, 0.0).with(|plot| plot.legend(Legend::default()))
+    Chart::new(id, [x, y], height, 0.0)
 }
 
 /// Points as a curve.
@@ -75,7 +78,13 @@ pub fn staircase(changes: &[[f64; 2]], end: f64) -> PlotPoints<'static> {
 /// Output, input and thresholds of a relay run.
 pub fn run_ui(ui: &mut egui::Ui, id: &str, test: &RelayTest, height: f32) {
     let end = test.run.time.last().copied().unwrap_or(0.0);
-    plot(id, height, "time [s]", "output y, input u").show(ui, |plot| {
+    let curves = [
+        ("output y", theme::SIMULATED, Shape::Line),
+        ("input u", theme::INPUT, Shape::Line),
+        ("threshold ±ε", theme::NOISE, Shape::Dashes),
+    ];
+    caption_ui(ui, "", &curves);
+    plot(id, height - CAPTION, "time [s]", "output y, input u").show(ui, |plot| {
         plot.line(
             Line::new(tr("input u"), staircase(&test.run.input, end))
                 .color(theme::INPUT)

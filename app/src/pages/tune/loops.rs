@@ -3,10 +3,16 @@
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
 use hysteron_core::tuning::{LoopReport, Response};
 
-use super::draw::{AFTER, BEFORE, beside, controller, curve, maybe, number, plot, series, table};
+use super::draw::{
+    AFTER, BEFORE, CAPTION, beside, controller, curve, maybe, number, plot, series, table,
+};
 use super::{Seen, Stage};
 use crate::language::tr;
+use crate::pages::chart::{Key, Shape, caption_ui, envelope};
 use crate::theme;
+
+/// Most points of a dashed curve: closer ones would fill its gaps.
+const MOST_DASHED: usize = 200;
 
 pub const STAGE: Stage = Stage {
     id: "loops",
@@ -86,7 +92,9 @@ fn response_ui(
     let top = if top > 0.0 { 1.1 * top } else { 2.0 };
     let end = part(before).time.last().copied().unwrap_or(1.0);
     let bottom = if before.margins.is_some() { -0.1 } else { -0.5 } * top;
-    plot(id, height, "time [s]", axis)
+    let curves = curves(after.is_some());
+    caption_ui(ui, "", &curves);
+    plot(id, height - CAPTION, "time [s]", axis)
         .with(|plot| {
             plot.default_x_bounds(0.0, end)
                 .default_y_bounds(bottom, top)
@@ -95,11 +103,14 @@ fn response_ui(
         .show(ui, |plot| {
             let response = part(before);
             plot.line(
-                Line::new(tr("before"), series(&response.time, &response.output))
-                    .color(BEFORE)
-                    .width(2.0)
-                    .style(LineStyle::dashed_loose())
-                    .allow_band(false),
+                Line::new(
+                    tr("before"),
+                    envelope(&response.time, &response.output, MOST_DASHED),
+                )
+                .color(BEFORE)
+                .width(2.0)
+                .style(LineStyle::dashed_loose())
+                .allow_band(false),
             );
             if let Some(response) = after.map(part) {
                 plot.line(
@@ -112,47 +123,65 @@ fn response_ui(
         });
 }
 
+/// The curves of both loops.
+fn curves(tuned: bool) -> Vec<Key<'static>> {
+    let mut curves = vec![("before", BEFORE, Shape::Dashes)];
+    if tuned {
+        curves.push(("after", AFTER, Shape::Line));
+    }
+    curves
+}
+
 fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, height: f32) {
-    plot("loop nyquist", height, "real part", "imaginary part")
-        .with(|plot| {
-            plot.data_aspect(1.0)
-                .default_x_bounds(-2.2, 0.8)
-                .default_y_bounds(-1.6, 0.6)
-        })
-        .show(ui, |plot| {
-            let circle: Vec<[f64; 2]> = (0..=120)
-                .map(|i| std::f64::consts::TAU * f64::from(i) / 120.0)
-                .map(|t| [t.cos(), t.sin()])
-                .collect();
+    let mut curves = curves(after.is_some());
+    curves.push(("unit circle", theme::NOISE, Shape::Dashes));
+    curves.push(("-1", theme::MODEL, Shape::Cross));
+    caption_ui(ui, "", &curves);
+    plot(
+        "loop nyquist",
+        height - CAPTION,
+        "real part",
+        "imaginary part",
+    )
+    .with(|plot| {
+        plot.data_aspect(1.0)
+            .default_x_bounds(-2.2, 0.8)
+            .default_y_bounds(-1.6, 0.6)
+    })
+    .show(ui, |plot| {
+        let circle: Vec<[f64; 2]> = (0..=120)
+            .map(|i| std::f64::consts::TAU * f64::from(i) / 120.0)
+            .map(|t| [t.cos(), t.sin()])
+            .collect();
+        plot.line(
+            Line::new(tr("unit circle"), curve(&circle))
+                .color(theme::NOISE.gamma_multiply(0.6))
+                .width(1.0)
+                .style(LineStyle::dashed_dense())
+                .allow_band(false),
+        );
+        plot.line(
+            Line::new(tr("before"), curve(&before.nyquist))
+                .color(BEFORE)
+                .width(2.0)
+                .style(LineStyle::dashed_loose())
+                .allow_band(false),
+        );
+        if let Some(after) = after {
             plot.line(
-                Line::new(tr("unit circle"), curve(&circle))
-                    .color(theme::NOISE.gamma_multiply(0.6))
-                    .width(1.0)
-                    .style(LineStyle::dashed_dense())
+                Line::new(tr("after"), curve(&after.nyquist))
+                    .color(AFTER)
+                    .width(2.5)
                     .allow_band(false),
             );
-            plot.line(
-                Line::new(tr("before"), curve(&before.nyquist))
-                    .color(BEFORE)
-                    .width(2.0)
-                    .style(LineStyle::dashed_loose())
-                    .allow_band(false),
-            );
-            if let Some(after) = after {
-                plot.line(
-                    Line::new(tr("after"), curve(&after.nyquist))
-                        .color(AFTER)
-                        .width(2.5)
-                        .allow_band(false),
-                );
-            }
-            plot.points(
-                Points::new(tr("-1"), curve(&[[-1.0, 0.0]]))
-                    .color(theme::MODEL)
-                    .radius(6.0)
-                    .shape(MarkerShape::Cross),
-            );
-        });
+        }
+        plot.points(
+            Points::new(tr("-1"), curve(&[[-1.0, 0.0]]))
+                .color(theme::MODEL)
+                .radius(6.0)
+                .shape(MarkerShape::Cross),
+        );
+    });
 }
 
 fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, horizon: f64) {

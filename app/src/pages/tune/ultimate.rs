@@ -3,9 +3,10 @@
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
 use hysteron_core::tuning::Ultimate;
 
-use super::draw::{beside, curve, error, maybe, number, plot, table};
+use super::draw::{CAPTION, beside, curve, error, maybe, number, plot, table};
 use super::{Seen, Stage};
 use crate::language::tr;
+use crate::pages::chart::{Shape, caption_ui};
 use crate::theme;
 
 pub const STAGE: Stage = Stage {
@@ -55,58 +56,73 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
     let report = seen.report;
     let found = report.point.point.value;
     let reach = 2.2 * found[0].hypot(found[1]);
-    plot("ultimate", height, "real part", "imaginary part")
-        .with(|plot| {
-            plot.data_aspect(1.0)
-                .default_x_bounds(-reach, 0.4 * reach)
-                .default_y_bounds(-0.8 * reach, 0.4 * reach)
-        })
-        .show(ui, |plot| {
-            plot.line(
-                Line::new(tr("plant P(jω)"), curve(&report.nyquist))
-                    .color(theme::MEASURED)
-                    .width(2.0)
-                    .allow_band(false),
+    let mut curves = vec![
+        ("plant P(jω)", theme::MEASURED, Shape::Line),
+        ("relay -1/N(a)", theme::DESCRIBING, Shape::Dashes),
+        ("point by the relay", theme::MODEL, Shape::Diamond),
+        ("-1/K_u by the relay", theme::MODEL, Shape::Square),
+    ];
+    if report.ultimate.truth.is_some() {
+        curves.push(("true -1/K_u", theme::EXACT, Shape::Circle));
+    }
+    caption_ui(ui, "", &curves);
+    plot(
+        "ultimate",
+        height - 2.0 * CAPTION,
+        "real part",
+        "imaginary part",
+    )
+    .with(|plot| {
+        plot.data_aspect(1.0)
+            .default_x_bounds(-reach, 0.4 * reach)
+            .default_y_bounds(-0.8 * reach, 0.4 * reach)
+    })
+    .show(ui, |plot| {
+        plot.line(
+            Line::new(tr("plant P(jω)"), curve(&report.nyquist))
+                .color(theme::MEASURED)
+                .width(2.0)
+                .allow_band(false),
+        );
+        let line = curve(&[[-20.0, found[1]], [0.0, found[1]]]);
+        plot.line(
+            Line::new(tr("relay -1/N(a)"), line)
+                .color(theme::DESCRIBING)
+                .width(2.5)
+                .style(LineStyle::dashed_loose())
+                .allow_band(false),
+        );
+        let mut mark = |name: &str, at: [f64; 2], color, shape| {
+            plot.points(
+                Points::new(tr(name), curve(&[at]))
+                    .color(color)
+                    .radius(6.0)
+                    .shape(shape),
             );
-            let line = curve(&[[-20.0, found[1]], [0.0, found[1]]]);
-            plot.line(
-                Line::new(tr("relay -1/N(a)"), line)
-                    .color(theme::DESCRIBING)
-                    .width(2.5)
-                    .style(LineStyle::dashed_loose())
-                    .allow_band(false),
-            );
-            let mut mark = |name: &str, at: [f64; 2], color, shape| {
-                plot.points(
-                    Points::new(tr(name), curve(&[at]))
-                        .color(color)
-                        .radius(6.0)
-                        .shape(shape),
-                );
-            };
-            let on_axis = |u: Ultimate| [-1.0 / u.gain, 0.0];
+        };
+        let on_axis = |u: Ultimate| [-1.0 / u.gain, 0.0];
+        mark(
+            "point by the relay",
+            found,
+            theme::MODEL,
+            MarkerShape::Diamond,
+        );
+        let by_relay = on_axis(report.ultimate.corrected);
+        mark(
+            "-1/K_u by the relay",
+            by_relay,
+            theme::MODEL,
+            MarkerShape::Square,
+        );
+        if let Some(truth) = report.ultimate.truth {
             mark(
-                "point by the relay",
-                found,
-                theme::MODEL,
-                MarkerShape::Diamond,
+                "true -1/K_u",
+                on_axis(truth),
+                theme::EXACT,
+                MarkerShape::Circle,
             );
-            let by_relay = on_axis(report.ultimate.corrected);
-            mark(
-                "-1/K_u by the relay",
-                by_relay,
-                theme::MODEL,
-                MarkerShape::Square,
-            );
-            if let Some(truth) = report.ultimate.truth {
-                mark(
-                    "true -1/K_u",
-                    on_axis(truth),
-                    theme::EXACT,
-                    MarkerShape::Circle,
-                );
-            }
-        });
+        }
+    });
 }
 
 fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
