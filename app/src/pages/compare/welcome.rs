@@ -1,10 +1,19 @@
 //! The page before a measurement is open.
 
+use std::sync::Arc;
+
 use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::recent::{Recents, measurement};
 use crate::theme;
+
+/// Width below which everything stands in one column, points.
+const NARROW: f32 = 700.0;
+
+/// Height of the picture on a card, points, and how often the input switches in it.
+const GLIMPSE: f32 = 90.0;
+const GLIMPSE_SWITCHES: usize = 12;
 
 /// A measurement that comes with the app.
 pub(super) struct BuiltIn {
@@ -42,6 +51,94 @@ impl BuiltIn {
     }
 }
 
+/// A measurement: how it begins, what it is, and the button that opens it.
+fn card_ui(
+    ui: &mut egui::Ui,
+    index: usize,
+    built_in: &'static BuiltIn,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        // A column would stretch the words from edge to edge.
+        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
+            ui.strong(egui::RichText::new(tr(built_in.title)).size(17.0));
+            glimpse_ui(ui, built_in);
+            ui.label(tr(built_in.story));
+            let size = egui::vec2(ui.available_width(), 36.0);
+            let button = ui.add_sized(size, egui::Button::new(tr(format!("Open {}", built_in.id))));
+            targets.note(format!("builtin:{}", built_in.id), ui, &button);
+            if button.clicked() {
+                commands.push(Command::OpenBuiltIn(index));
+            }
+        });
+    });
+}
+
+/// The beginning of a record: its input, and over it what was measured last.
+#[derive(Default)]
+struct Glimpse {
+    time: Vec<f32>,
+    input: Vec<f32>,
+    output: Vec<f32>,
+}
+
+impl Glimpse {
+    fn of(csv: &[u8]) -> Self {
+        let mut glimpse = Self::default();
+        let text = String::from_utf8_lossy(csv);
+        let mut switches = 0;
+        for line in text.lines().skip(1) {
+            let mut fields = line.split(',').map_while(|f| f.parse::<f32>().ok());
+            let (Some(t), Some(u), Some(y)) = (fields.next(), fields.next(), fields.last()) else {
+                break;
+            };
+            switches += usize::from(glimpse.input.last().is_some_and(|last| *last != u));
+            if switches > GLIMPSE_SWITCHES {
+                break;
+            }
+            glimpse.time.push(t);
+            glimpse.input.push(u);
+            glimpse.output.push(y);
+        }
+        glimpse
+    }
+}
+
+/// Draws the beginning of a record, without axes: it is a picture on a door.
+fn glimpse_ui(ui: &mut egui::Ui, built_in: &'static BuiltIn) {
+    let id = egui::Id::unique(("glimpse", built_in.id));
+    let known = ui.data(|data| data.get_temp::<Arc<Glimpse>>(id));
+    let glimpse = known.unwrap_or_else(|| {
+        let glimpse = Arc::new(Glimpse::of(&built_in.csv()));
+        ui.data_mut(|data| data.insert_temp(id, glimpse.clone()));
+        glimpse
+    });
+    let size = egui::vec2(ui.available_width(), GLIMPSE);
+    let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+    ui.painter()
+        .rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
+    let place = rect.shrink(10.0);
+    let range = |values: &[f32]| {
+        let low = values.iter().copied().fold(f32::INFINITY, f32::min);
+        let high = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        egui::Rangef::new(low, high)
+    };
+    let across = range(&glimpse.time);
+    for (values, color, width) in [
+        (&glimpse.input, theme::INPUT, 1.0),
+        (&glimpse.output, theme::MEASURED, 2.0),
+    ] {
+        let up = range(values);
+        let points = glimpse.time.iter().zip(values).map(|(t, v)| {
+            let x = egui::emath::remap(*t, across, place.x_range());
+            egui::pos2(x, egui::emath::remap(*v, up, place.bottom()..=place.top()))
+        });
+        ui.painter().line(points.collect(), (width, color));
+    }
+}
+
 impl Compare {
     pub(super) fn welcome_ui(
         &self,
@@ -56,15 +153,14 @@ impl Compare {
             ui.label(tr("Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which physical effect would explain the rest."));
             self.message_ui(ui, commands);
             ui.add_space(12.0);
-            for (index, built_in) in BUILT_IN.iter().enumerate() {
-                egui::Frame::group(ui.style()).show(ui, |ui| {
-                    ui.set_width(ui.available_width().min(620.0));
-                    ui.strong(tr(built_in.title));
-                    ui.label(tr(built_in.story));
-                    let button = ui.button(tr(format!("Open {}", built_in.id)));
-                    targets.note(format!("builtin:{}", built_in.id), ui, &button);
-                    if button.clicked() {
-                        commands.push(Command::OpenBuiltIn(index));
+            if ui.available_width() < NARROW {
+                for (index, built_in) in BUILT_IN.iter().enumerate() {
+                    card_ui(ui, index, built_in, targets, commands);
+                }
+            } else {
+                ui.columns(BUILT_IN.len(), |columns| {
+                    for (index, (ui, built_in)) in columns.iter_mut().zip(&BUILT_IN).enumerate() {
+                        card_ui(ui, index, built_in, targets, commands);
                     }
                 });
             }
