@@ -24,13 +24,17 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
                         let owner = p.effect.map_or("baseline", name_of);
                         let hover = format!("{}, {owner}", p.label);
                         ui.label(tr(&p.name)).on_hover_text(tr(&hover));
-                        ui.label(tr(with_error(p.value, p.std_error, &p.unit)))
-                            .on_hover_text(tr(hover));
+                        ui.vertical(|ui| {
+                            ui.spacing_mut().item_spacing.y = 0.0;
+                            ui.label(tr(with_error(p.value, p.std_error, &p.unit)))
+                                .on_hover_text(tr(hover));
+                            ui.small(tr(&p.label));
+                        });
                         interval_ui(p, ui);
                         ui.end_row();
                     }
                 });
-            ui.small(tr("With one standard error. Bars: 95 % intervals, from 0 at the left to twice the value; red where 0 is in them."));
+            ui.small(tr("With one standard error. Bars: 95 % intervals, from 0 at the left to twice the value; hollow where 0 is in them."));
         });
 }
 
@@ -47,14 +51,13 @@ fn interval_ui(p: &Parameter, ui: &mut egui::Ui) {
         return;
     }
     let unsure = share >= 1.0;
-    let color = if unsure {
-        ui.visuals().error_fg_color
-    } else {
-        theme::MODEL
-    };
     let half = (0.5 * BAR.x * share.min(1.0) as f32).max(1.5);
     let bar = egui::Rect::from_center_size(middle, egui::vec2(2.0 * half, 6.0));
-    painter.rect_filled(bar, 1.0, color);
+    if unsure {
+        painter.rect_stroke(bar, 1.0, (1.5, theme::MODEL), egui::StrokeKind::Inside);
+    } else {
+        painter.rect_filled(bar, 1.0, theme::MODEL);
+    }
     response.on_hover_text(tr(format!(
         "95 % interval: {:.4e} to {:.4e} {}",
         p.value - INTERVAL * p.std_error,
