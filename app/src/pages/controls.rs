@@ -27,12 +27,17 @@ pub fn slider(
             .custom_parser(typed_in(unit))
             .clamping(egui::SliderClamping::Edits),
     );
-    if track_double_clicked(ui, &response) || reset_by_key(ui, &response) {
+    if reset_asked(ui, &response) {
         *value = normal;
     } else if response.changed() {
         *value = shown / scale;
     }
     response
+}
+
+/// Whether a slider is to be set back: by a double click, or by Delete.
+pub fn reset_asked(ui: &egui::Ui, response: &egui::Response) -> bool {
+    track_double_clicked(ui, response) || reset_by_key(ui, response)
 }
 
 /// Whether the slider itself was double-clicked, not the number beside it: that one takes what is typed.

@@ -2,11 +2,11 @@
 
 use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 
-use super::Backlash;
 use super::scene::MILLI;
+use super::{Backlash, SPEED};
 use crate::hook::Targets;
 use crate::language::{tr, tr_number, typed_in};
-use crate::pages::controls::slider;
+use crate::pages::controls::{reset_asked, slider};
 use crate::recent::Recents;
 
 /// Width below which the playback stands in two rows, points.
@@ -257,13 +257,15 @@ impl Backlash {
     }
 
     fn speed_ui(&mut self, ui: &mut egui::Ui) {
-        ui.add(
-            egui::Slider::new(&mut self.speed, 0.001..=2.0)
-                .logarithmic(true)
-                .custom_parser(typed_in("x"))
-                .suffix(" x"),
-        )
-        .on_hover_text(tr("Speed of the playback, times real time"));
+        let speed = egui::Slider::new(&mut self.speed, 0.001..=2.0)
+            .logarithmic(true)
+            .custom_parser(typed_in("x"))
+            .suffix(" x");
+        let speed = ui.add(speed);
+        if reset_asked(ui, &speed) {
+            self.speed = SPEED;
+        }
+        speed.on_hover_text(tr("Speed of the playback, times real time"));
         ui.label(tr_number(format!("t = {:.4} s", self.playback.clock)));
     }
 

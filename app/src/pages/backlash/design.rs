@@ -4,6 +4,7 @@ use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design
 
 use super::scene::MILLI;
 use crate::language::{tr, typed_in};
+use crate::pages::controls::reset_asked;
 
 /// What is asked for, and the last proposal.
 pub struct Design {
@@ -34,14 +35,20 @@ impl Design {
             .logarithmic(true)
             .custom_parser(typed_in("mrad"))
             .text(tr("expected gap [mrad]"));
-        if ui.add(gap).changed() {
+        let gap = ui.add(gap);
+        if reset_asked(ui, &gap) {
+            self.gap = Self::default().gap;
+        } else if gap.changed() {
             self.gap = shown / MILLI;
         }
         let torque = egui::Slider::new(&mut self.torque, 0.01..=5.0)
             .logarithmic(true)
             .custom_parser(typed_in("N m"))
             .text(tr("largest torque [N m]"));
-        ui.add(torque);
+        let torque = ui.add(torque);
+        if reset_asked(ui, &torque) {
+            self.torque = Self::default().torque;
+        }
         let mut changed = false;
         let button = ui.button(tr("Propose a drifting test")).on_hover_text(tr(
             "For inertia, friction and delay as set on this page, each known only roughly",

@@ -29,6 +29,9 @@ use crate::theme;
 use design::Design;
 use scene::{Scene, Shown};
 
+/// Speed of the playback, times real time.
+const SPEED: f64 = 0.1;
+
 /// Time that a frame gives to the simulation, s.
 const BUDGET: f64 = 1.5e-3;
 
@@ -74,7 +77,7 @@ impl Default for Backlash {
             figure: None,
             design: Design::default(),
             playback: Playback::default(),
-            speed: 0.1,
+            speed: SPEED,
             simulation: None,
             worked: 0.0,
             scene: None,

@@ -1,9 +1,11 @@
 //! What to map, and what the map says at one point.
 
+use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
 use super::{Command, Maps, axis_title, with_unit};
 use crate::language::{tr, typed_in};
+use crate::pages::controls::reset_asked;
 
 impl Maps {
     /// Axes and quantity.
@@ -49,14 +51,16 @@ impl Maps {
         });
         let mut point = old;
         for (value, axis) in point.iter_mut().zip([x, y]) {
-            ui.add(
-                egui::Slider::new(value, axis.from..=axis.to)
-                    .text(tr(axis_title(
-                        axis.parameter.label(),
-                        axis.parameter.unit(),
-                    )))
-                    .max_decimals(3),
-            );
+            let unit = axis.parameter.unit();
+            let slider = egui::Slider::new(value, axis.from..=axis.to)
+                .text(tr(axis_title(axis.parameter.label(), unit)))
+                .custom_parser(typed_in(unit))
+                .max_decimals(3);
+            let slider = ui.add(slider);
+            if reset_asked(ui, &slider) {
+                let usual = axis.parameter.read(&ExploreInput::default());
+                *value = usual.clamp(axis.from, axis.to);
+            }
         }
         if point != old {
             self.choose(point, commands);
