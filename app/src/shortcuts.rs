@@ -146,6 +146,10 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
             ui.label(tr(
                 "A double click on a slider, or Delete, resets it; a click on its number types one.",
             ));
+            ui.label(tr("A plot is zoomed with Ctrl and the wheel, with two fingers, or by a frame drawn with the right button."));
+            ui.label(tr(
+                "Then it can be dragged; a double click shows all of it again.",
+            ));
             ui.label(tr("A file is opened by dropping it on the window."));
         });
     open

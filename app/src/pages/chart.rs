@@ -4,8 +4,8 @@ use std::ops::{Deref, DerefMut, RangeInclusive};
 
 use egui::{AsIdSalt, IdSalt};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotPoint,
-    PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
+    AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory,
+    PlotPoint, PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
 };
 
 use super::chart_menu;
@@ -67,6 +67,8 @@ pub struct Chart<'a> {
     axes: [String; 2],
     /// The x of what is drawn are logarithms to base 10.
     decades: bool,
+    /// It can be dragged only while it is zoomed: else a finger on it moves the page.
+    drag_zoomed: bool,
 }
 
 impl<'a> Chart<'a> {
@@ -99,6 +101,7 @@ impl<'a> Chart<'a> {
             salt,
             axes,
             decades: false,
+            drag_zoomed: false,
         }
     }
 
@@ -125,9 +128,17 @@ impl<'a> Chart<'a> {
         self
     }
 
-    /// Shows its data and stays where it is.
+    /// Shows its data until someone zooms; a double click shows all of it again.
     #[must_use]
-    pub fn still(self) -> Self {
+    pub fn still(mut self) -> Self {
+        self.drag_zoomed = true;
+        self.with(|plot| plot.allow_axis_zoom_drag(false))
+    }
+
+    /// Stays where it is.
+    #[must_use]
+    pub fn fixed(mut self) -> Self {
+        self.drag_zoomed = false;
         self.with(|plot| {
             plot.allow_zoom(false)
                 .allow_boxed_zoom(false)
@@ -143,12 +154,18 @@ impl<'a> Chart<'a> {
         draw: impl FnOnce(&mut Pen<'_, 'a>) -> R + 'a,
     ) -> PlotResponse<R> {
         let Self {
-            plot,
+            mut plot,
             salt,
             axes,
             decades,
+            drag_zoomed,
         } = self;
         let id = ui.scope_id().with(salt);
+        if drag_zoomed {
+            let memory = PlotMemory::load(ui.ctx(), id);
+            let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
+            plot = plot.id(id).allow_drag(zoomed);
+        }
         let start = ui.cursor().min;
         let table = chart_menu::wants_numbers(ui.ctx(), id).then(|| Table::new("plot"));
         let titles = axes.clone();
@@ -230,7 +247,7 @@ impl DerefMut for Pen<'_, '_> {
     }
 }
 
-/// A plot that shows its data and stays where it is.
+/// A plot that shows its data until someone zooms.
 pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Chart<'static> {
     Chart::new(name, [x, y], height, 0.0).still()
 }

@@ -58,11 +58,13 @@ impl Nyquist {
         }
         let view = self.view;
         let shown_margin = self.margin.then(|| margin(relay)).flatten();
-        let plot = still("nyquist", "real part", "imaginary part", height).with(|plot| {
-            plot.data_aspect(1.0)
-                .default_x_bounds(-1.6 * view, view)
-                .default_y_bounds(-1.1 * view, 0.5 * view)
-        });
+        let plot = still("nyquist", "real part", "imaginary part", height)
+            .fixed()
+            .with(|plot| {
+                plot.data_aspect(1.0)
+                    .default_x_bounds(-1.6 * view, view)
+                    .default_y_bounds(-1.1 * view, 0.5 * view)
+            });
         let level = -PI * relay.hysteresis / (4.0 * relay.gain);
         let marker = amplitude.map(|a| {
             let a = a.max(relay.hysteresis);

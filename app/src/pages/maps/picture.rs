@@ -7,7 +7,7 @@ use hysteron_core::maps::{Map, MapInput, Outcome, Quantity};
 use super::side::stability;
 use super::{axis_title, number, with_unit};
 use crate::colors::viridis;
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 use crate::pages::chart::Chart;
 
 /// Pixels of the texture along a cell, so that hatching shows.
@@ -70,7 +70,7 @@ impl Picture {
         let (x, y) = (input.x, input.y);
         let axes = [x, y].map(|a| axis_title(a.parameter.label(), a.parameter.unit()));
         let shown = Chart::new("map", axes, height, 0.0)
-            .still()
+            .fixed()
             .with(|plot| {
                 plot.show_grid(false)
                     .show_crosshair(true)
@@ -244,7 +244,7 @@ fn bar_ui(ui: &egui::Ui, rect: egui::Rect, scale: [f64; 2]) {
                 rect.bottom() - share as f32 * rect.height(),
             ),
             anchor,
-            format!("{mark}{}", number(value)),
+            tr_number(format!("{mark}{}", number(value))),
             egui::FontId::proportional(13.0),
             ui.visuals().text_color(),
         );
