@@ -25,6 +25,7 @@ use hysteron_core::criticism::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
+use serde::{Deserialize, Serialize};
 
 use super::{Desk, View};
 pub use settings::is_built_in;
@@ -115,7 +116,8 @@ impl Default for Compare {
 }
 
 /// What the plots show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 enum Look {
     /// Everything over time.
     #[default]

@@ -5,7 +5,7 @@ use hysteron_core::mystery::Mystery;
 use hysteron_core::user_model::UserModel;
 use serde::{Deserialize, Serialize};
 
-use super::{BUILT_IN, Command, Compare};
+use super::{BUILT_IN, Command, Compare, Look};
 
 /// Effects that a link may add.
 const MOST_EFFECTS: usize = 12;
@@ -25,6 +25,11 @@ pub(super) struct Settings {
     effects: Vec<String>,
     /// The finding that is shaded.
     finding: usize,
+    /// What the plots show, and whether beside the step before.
+    look: Look,
+    before: bool,
+    /// The effect whose fingerprint is shown, if someone chose one.
+    fingerprint: Option<String>,
 }
 
 /// Whether a measurement of this name comes with the page.
@@ -43,6 +48,9 @@ impl Compare {
             own: self.own.clone(),
             effects: self.effects.iter().map(ToString::to_string).collect(),
             finding: self.finding,
+            look: self.look,
+            before: self.before,
+            fingerprint: self.fingerprint.map(|e| e.to_string()),
         }
     }
 
@@ -95,10 +103,18 @@ impl Compare {
         self.take_own(&settings.own)?;
         let effects = settings.effects.iter().map(|id| self.effect(id));
         let effects: Vec<EffectId> = effects.collect::<Result<_, _>>()?;
+        let fingerprint = settings.fingerprint.as_ref().map(|id| self.effect(id));
+        let fingerprint = fingerprint.transpose()?;
         if effects != self.effects {
             self.go_to(ctx, effects);
         }
         self.finding = settings.finding;
+        self.fingerprint = fingerprint;
+        self.look = match settings.look {
+            Look::Reveal if self.sealed.is_none() => Look::default(),
+            look => look,
+        };
+        self.before = settings.before;
         Ok(())
     }
 
