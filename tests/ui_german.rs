@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use egui::epaint::{ClippedShape, Shape};
 use egui_kittest::kittest::Queryable as _;
-use hysteron::language::{self, Catalogue, Language, is_plain};
+use hysteron::language::{self, Catalogue, Language, is_plain, tr_number};
 use hysteron::lessons;
 use ui::{App, NARROW, PLACES, TALL, WIDE, app, click, finish, show, state};
 
@@ -54,6 +54,10 @@ impl English {
         let alike = german.intersection(&english);
         let words = alike.filter(|t| !is_plain(t) && !SAME.contains(&t.trim()));
         self.0.extend(words.cloned());
+        // Formulas and names of files have a point in every language.
+        let pointed = german.iter().filter(|t| tr_number(t.as_str()) != **t);
+        let pointed = pointed.filter(|t| !t.contains("e^{-0.5s}") && !t.contains("[counts, "));
+        self.0.extend(pointed.cloned());
         self.0.extend(language::missed());
     }
 

@@ -8,7 +8,7 @@ use hysteron_core::measurement::Measurement;
 use super::atlas::{axis_label, grid_ui, points, small, words};
 use super::{Command, Compare};
 use crate::hook::Targets;
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
 
@@ -37,7 +37,8 @@ pub(super) fn ui(
         ui.label(tr("Effect:"));
         for print in &report.fingerprints {
             let id = print.effect;
-            let label = format!("{} {:.2}", tr(name_of(id)), print.likeness);
+            let likeness = tr_number(format!("{:.2}", print.likeness));
+            let label = format!("{} {likeness}", tr(name_of(id)));
             let button = ui.selectable_label(id == chosen, label);
             targets.note(format!("print:{id}"), ui, &button);
             if button.clicked() {

@@ -68,9 +68,9 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
 fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
     let pid = &found.pid;
     ui.label(tr(number(pid.gain)));
-    ui.label(maybe(pid.integral_time, "-"));
+    ui.label(tr(maybe(pid.integral_time, "-")));
     let derivative = (pid.derivative_time > 0.0).then_some(pid.derivative_time);
-    ui.label(maybe(derivative, "-"));
+    ui.label(tr(maybe(derivative, "-")));
     let Some(margins) = found.margins else {
         ui.label(tr("unstable"));
         return;
