@@ -36,6 +36,8 @@ pub struct HysteronApp {
     language: Language,
     /// Whether nothing moves by itself.
     calm: bool,
+    /// Width and height of the window, points.
+    size: [u32; 2],
     fingers: Fingers,
     /// Whether the sheet with the keys is open.
     sheet: bool,
@@ -70,6 +72,7 @@ impl Default for HysteronApp {
             look: None,
             language: Language::English,
             calm: false,
+            size: [0; 2],
             fingers: Fingers::default(),
             sheet: false,
             notice: None,
@@ -194,7 +197,9 @@ impl HysteronApp {
     fn fit_to_fingers(&mut self, ctx: &egui::Context) {
         let (touched, held) = ctx.input(|i| (i.any_touches(), i.pointer.any_down()));
         self.fingers.seen |= touched;
-        let fingers = ctx.content_rect().width() < PHONE || self.fingers.seen;
+        let size = ctx.content_rect().size();
+        self.size = [size.x, size.y].map(|v| v.round() as u32);
+        let fingers = size.x < PHONE || self.fingers.seen;
         // Nothing moves from under a finger.
         if fingers != self.fingers.fit && !held {
             self.fingers.fit = fingers;
@@ -341,6 +346,7 @@ impl HysteronApp {
         state["calm"] = self.calm.into();
         state["link"] = self.link().into();
         state["notice"] = self.notice.as_ref().map(Notice::text).into();
+        state["size"] = serde_json::json!(self.size);
         state["plots"] = serde_json::json!(self.plots);
         state["targets"] = self.desk.targets.to_json();
         state
@@ -416,7 +422,7 @@ impl HysteronApp {
 fn hint_ui(ui: &mut egui::Ui, sentence: &str, link: &str, desk: &mut Desk) {
     ui.horizontal_wrapped(|ui| {
         ui.label(tr(sentence));
-        let button = ui.small_button(tr("Try it"));
+        let button = ui.button(tr("Try it"));
         desk.targets.note("try", ui, &button);
         if button.clicked() {
             desk.commands.push(Command::OpenLink(link.to_owned()));

@@ -49,11 +49,12 @@ impl Bar<'_> {
         ui.horizontal(|ui| {
             if pages + more > room {
                 let title = self.pages.get(self.front).map_or("Hysteron", |p| p.1);
-                ui.menu_button(tr(format!("Menu: {title}")), |ui| {
+                let menu = ui.menu_button(tr(format!("Menu: {title}")), |ui| {
                     self.pages_ui(ui, targets, commands);
                     ui.separator();
                     self.tools_ui(ui, targets, commands);
                 });
+                targets.note("menu", ui, &menu.response);
                 self.undo_ui(ui, targets, commands);
                 return;
             }
@@ -110,19 +111,24 @@ impl Bar<'_> {
             commands.push(Command::CopyLink);
             ui.close();
         }
-        ui.menu_button(tr("Export"), |ui| {
-            let mut item = |label: String, command| {
-                if ui.button(tr(label)).clicked() {
+        let export = ui.menu_button(tr("Export"), |ui| {
+            let mut item = |label: String, name: &str, command| {
+                let button = ui.button(tr(label));
+                targets.note(format!("export:{name}"), ui, &button);
+                if button.clicked() {
                     commands.push(command);
                     ui.close();
                 }
             };
-            item("Picture of this page (SVG)".to_owned(), Command::SaveSvg);
-            item("Picture of this page (PNG)".to_owned(), Command::SavePng);
+            let [svg, png] = ["SVG", "PNG"].map(|kind| format!("Picture of this page ({kind})"));
+            item(svg, "svg", Command::SaveSvg);
+            item(png, "png", Command::SavePng);
             for table in self.tables {
-                item(format!("Data: {table} (CSV)"), Command::SaveTable(table));
+                let label = format!("Data: {table} (CSV)");
+                item(label, table, Command::SaveTable(table));
             }
         });
+        targets.note("export", ui, &export.response);
         ui.menu_button(tr("Look"), |ui| {
             for look in Look::ALL {
                 if ui.radio(self.look == look, tr(look.name())).clicked() {

@@ -1,7 +1,9 @@
 //! The page in a real headless Chromium: loads, opens a measurement, adds the effect, reads the error.
 
 mod driver;
+mod export;
 mod mystery;
+mod phone;
 mod same;
 mod speed;
 mod watch;
@@ -64,7 +66,9 @@ pub fn test() -> Result<(), String> {
     look(&session, &folder.join("added.png"))?;
     share(&session, &page, &after)?;
     offline(&session, &page)?;
+    export::journey(&session, &folder.join("exports"), &page)?;
     mystery::journey(&session, &page)?;
+    phone::journey(&session, &folder, port)?;
     speed::report(&session)?;
     println!("{interactive}\n{}", busy.report());
     session.quiet()

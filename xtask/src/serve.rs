@@ -6,6 +6,9 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::run::root;
 
+/// A path at which the page is served as well, as on a host that has others.
+pub const ELSEWHERE: &str = "/some/where";
+
 /// Serves until it is stopped.
 pub fn forever(port: u16) -> Result<(), String> {
     let dist = root().join("dist");
@@ -57,11 +60,9 @@ fn answer(mut stream: TcpStream, dist: &Path) -> std::io::Result<()> {
 
 /// The file inside `dist` that a request names; nothing outside it.
 fn file_for(dist: &Path, wanted: &str) -> Option<PathBuf> {
-    let path = wanted
-        .split(['?', '#'])
-        .next()
-        .unwrap_or("/")
-        .trim_start_matches('/');
+    let path = wanted.split(['?', '#']).next().unwrap_or("/");
+    let path = path.strip_prefix(ELSEWHERE).unwrap_or(path);
+    let path = path.trim_start_matches('/');
     let path = Path::new(if path.is_empty() { "index.html" } else { path });
     path.components()
         .all(|c| matches!(c, Component::Normal(_)))

@@ -116,7 +116,8 @@ impl Session {
         )
     }
 
-    fn devtools(&self, command: &str, params: &Value) -> Result<(), String> {
+    /// Asks the browser for what a driver has no word for.
+    pub fn devtools(&self, command: &str, params: &Value) -> Result<(), String> {
         let body = json!({"cmd": command, "params": params});
         self.command("POST", "goog/cdp/execute", &body).map(|_| ())
     }
