@@ -38,7 +38,7 @@ const PLAIN_AXES: [&str; 26] = [
     "output y",
     "output y, input u",
     "output y, set point 1",
-    "output y, load 1 at the input",
+    "output y, load 1",
     "step n",
     "error of the amplitude, log10",
     "hysteresis ε",

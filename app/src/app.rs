@@ -420,7 +420,7 @@ impl HysteronApp {
 
 /// What to try next.
 fn hint_ui(ui: &mut egui::Ui, sentence: &str, link: &str, desk: &mut Desk) {
-    ui.horizontal_wrapped(|ui| {
+    theme::running_text(ui, |ui| {
         ui.label(tr(sentence));
         let button = ui.button(tr("Try it"));
         desk.targets.note("try", ui, &button);

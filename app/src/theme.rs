@@ -139,6 +139,19 @@ pub fn fit_to_fingers(ctx: &egui::Context, fingers: bool) {
     });
 }
 
+/// Text that goes on from line to line, with a button or two in it: its first line is no higher than the others.
+pub fn running_text<R>(ui: &mut egui::Ui, text: impl FnOnce(&mut egui::Ui) -> R) -> R {
+    ui.scope(|ui| {
+        let pressed = std::mem::replace(&mut ui.spacing_mut().interact_size.y, 0.0);
+        let row = ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().interact_size.y = pressed;
+            text(ui)
+        });
+        row.inner
+    })
+    .inner
+}
+
 /// The large answer of a page.
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
     ui.add(egui::Label::new(egui::RichText::new(tr(text)).size(24.0).strong()).wrap());

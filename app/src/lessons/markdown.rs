@@ -2,6 +2,8 @@
 
 use egui::RichText;
 
+use crate::theme;
+
 /// A piece of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Piece {
@@ -45,7 +47,7 @@ pub fn ui(ui: &mut egui::Ui, lines: &[&'static str]) -> Option<&'static str> {
 fn line_ui(ui: &mut egui::Ui, line: &'static str) -> Option<&'static str> {
     let pieces = pieces(line);
     let mut clicked = None;
-    ui.horizontal_wrapped(|ui| {
+    theme::running_text(ui, |ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         for piece in pieces {
             match piece {

@@ -59,6 +59,26 @@ pub fn envelope(time: &[f64], values: &[f64], most: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
+/// A curve without the points that lie on the line between others: the dashes of one that is sampled finely would
+/// fill its gaps.
+pub fn sparse(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let (low, high) = extremes(points.iter().map(|p| p[1]));
+    let near = 2e-3 * (high - low);
+    let mut kept: Vec<[f64; 2]> = points.first().copied().into_iter().collect();
+    let mut from = 0;
+    for (i, end) in points.iter().enumerate().skip(2) {
+        let start = points[from];
+        let slope = (end[1] - start[1]) / (end[0] - start[0]);
+        let off = |p: &[f64; 2]| (start[1] + slope * (p[0] - start[0]) - p[1]).abs();
+        if points[from + 1..i].iter().any(|p| off(p) > near) {
+            from = i - 1;
+            kept.push(points[from]);
+        }
+    }
+    kept.extend(points.last().copied().filter(|_| points.len() > 1));
+    kept
+}
+
 /// A plot whose axes have names, whose labels have as many decimals as they need, and that has a menu.
 pub struct Chart<'a> {
     plot: Plot<'a>,
@@ -398,7 +418,7 @@ const SAMPLE: egui::Vec2 = egui::vec2(18.0, 10.0);
 
 /// Names of the curves in their colours and shapes, above a plot: they hide nothing.
 pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[Key<'_>]) {
-    ui.horizontal_wrapped(|ui| {
+    theme::running_text(ui, |ui| {
         if !title.is_empty() {
             ui.strong(tr(title));
         }

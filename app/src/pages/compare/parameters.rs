@@ -26,6 +26,7 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
                         ui.label(tr(&p.name)).on_hover_text(tr(&hover));
                         ui.vertical(|ui| {
                             ui.spacing_mut().item_spacing.y = 0.0;
+                            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
                             ui.label(tr(with_error(p.value, p.std_error, &p.unit)))
                                 .on_hover_text(tr(hover));
                             ui.small(tr(&p.label));

@@ -92,7 +92,7 @@ impl Maps {
             ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
         theme::answer_ui(ui, &self.answer());
-        ui.horizontal_wrapped(|ui| {
+        theme::running_text(ui, |ui| {
             ui.label(tr("Click a point to set it in Explore. Try another quantity: where is the describing function worst?"));
             if self.job.is_some() {
                 motion::busy_ui(ui);

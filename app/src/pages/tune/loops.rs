@@ -8,11 +8,8 @@ use super::draw::{
 };
 use super::{Seen, Stage};
 use crate::language::tr;
-use crate::pages::chart::{Key, Shape, caption_ui, envelope};
+use crate::pages::chart::{Key, Shape, caption_ui, sparse};
 use crate::theme;
-
-/// Most points of a dashed curve: closer ones would fill its gaps.
-const MOST_DASHED: usize = 200;
 
 pub const STAGE: Stage = Stage {
     id: "loops",
@@ -61,7 +58,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
             response_ui(ui, name, &report.before, after, |l| &l.set_point, height);
         },
         |ui, height| {
-            let name = ["load response", "output y, load 1 at the input"];
+            let name = ["load response", "output y, load 1"];
             response_ui(ui, name, &report.before, after, |l| &l.load, height);
         },
     );
@@ -102,15 +99,14 @@ fn response_ui(
         })
         .show(ui, |plot| {
             let response = part(before);
+            let times = response.time.iter().zip(&response.output);
+            let points: Vec<[f64; 2]> = times.map(|(t, y)| [*t, *y]).collect();
             plot.line(
-                Line::new(
-                    tr("before"),
-                    envelope(&response.time, &response.output, MOST_DASHED),
-                )
-                .color(BEFORE)
-                .width(2.0)
-                .style(LineStyle::dashed_loose())
-                .allow_band(false),
+                Line::new(tr("before"), sparse(&points))
+                    .color(BEFORE)
+                    .width(2.0)
+                    .style(LineStyle::dashed_loose())
+                    .allow_band(false),
             );
             if let Some(response) = after.map(part) {
                 plot.line(
