@@ -441,7 +441,10 @@ pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[Key<'_>]) {
 }
 
 fn sample_ui(ui: &mut egui::Ui, (_, color, shape): &Key<'_>) {
-    let (rect, _) = ui.allocate_exact_size(SAMPLE, egui::Sense::hover());
+    // As high as its name, so that all stand on one line.
+    let height = ui.text_style_height(&egui::TextStyle::Body);
+    let (place, _) = ui.allocate_exact_size(egui::vec2(SAMPLE.x, height), egui::Sense::hover());
+    let rect = egui::Rect::from_center_size(place.center(), SAMPLE);
     let painter = ui.painter();
     let middle = rect.center();
     let bar = |from: f32, to: f32| {
