@@ -236,6 +236,42 @@ fn the_interval_holds_the_truth_over_seeds() {
     assert!(covered(&rigs) >= 10);
 }
 
+/// A load with dry friction that the motor pushes along in some cycles and misses in others, behind a motor that rubs
+/// itself: no run of cycles shows a drift of its own, and single ones must do.
+#[test]
+fn a_load_that_is_pushed_along_now_and_then_has_its_gap() {
+    let rigs: Vec<(f64, DriveRig)> = (400..406)
+        .map(|seed| {
+            let mut random = Random::new(seed);
+            let load = Load {
+                half_gap: 0.003,
+                stiffness: 800.0,
+                damping: 0.15,
+                inertia: 8.8e-4,
+                viscous: 2e-3,
+                coulomb: 0.01,
+            };
+            let rig = DriveRig {
+                seed: random.seed(),
+                inertia: 8.8e-4 * random.between(0.9, 1.1),
+                friction: Friction::dry(random.between(0.03, 0.05)),
+                load: Some(load),
+                load_recorded: true,
+                samples: 25_000,
+                ..DriveRig::default()
+            };
+            (0.006, drifting(rig, 0.009, 1.5))
+        })
+        .collect();
+    assert!(covered(&rigs) >= 5);
+    for (gap, rig) in &rigs {
+        let estimate = estimate(&rig.measure());
+        for traverse in &estimate.traverses {
+            assert!((traverse.gap / gap - 1.0).abs() < 0.1, "{traverse:?}");
+        }
+    }
+}
+
 /// Such a load may rattle to and fro faster than the motor drifts. Gap and speed of the load can then be
 /// scaled together nearly as one likes: the estimate is less good, and its interval must say so.
 #[test]
