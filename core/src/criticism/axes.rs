@@ -301,6 +301,6 @@ pub(super) fn seconds(t: f64) -> String {
     } else if size >= 1e-3 {
         format!("{:.1} ms", 1e3 * t)
     } else {
-        format!("{:.0} us", 1e6 * t)
+        format!("{:.0} µs", 1e6 * t)
     }
 }

@@ -3,8 +3,9 @@
 //! Input path, body, dry friction, further forces, a load and the sensor are the mechanisms; an
 //! effect sets the ones that it needs. The order is: static maps of the input, dead time, lag, body,
 //! sensor. Between events the motion of body and load is an exact flow, sticking and slipping are
-//! modes with guards. Smooth forces and the torque between body and load are held at their value at
-//! the middle of steps short against their change (exponential midpoint rule, second order).
+//! modes with guards, and so is that of both on an elastic joint or while they touch. Smooth forces, and the torque
+//! between body and load where they come together or apart, are held at their value at the middle of steps short
+//! against their change (exponential midpoint rule, second order).
 
 mod closed_loop;
 mod contact;
