@@ -44,6 +44,26 @@ fn written(name: &str, bytes: &[u8]) -> PathBuf {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_it_says_so_and_shows_a_diagnosis() {
+    let mut command = hysteron();
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(name);
+    }
+    let output = command.output().unwrap();
+    let (said, shown) = (
+        String::from_utf8_lossy(&output.stderr),
+        String::from_utf8_lossy(&output.stdout),
+    );
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.lines().count() == 1 && said.contains("no display"),
+        "{said}"
+    );
+    assert!(shown.contains("Missing: Coulomb friction"), "{shown}");
+}
+
+#[test]
 fn bad_input_is_one_line_and_code_2() {
     refused(
         &diagnose(Path::new("no-such-file.csv")),

@@ -7,10 +7,7 @@ fn main() -> std::process::ExitCode {
     }
     match hysteron::run_native() {
         Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(line) => {
-            eprintln!("{line}");
-            std::process::ExitCode::from(2)
-        }
+        Err(line) => hysteron::cli::without_display(&line),
     }
 }
 

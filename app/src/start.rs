@@ -7,7 +7,7 @@ use crate::language::{self, Language, tr};
 /// What to say where no window can be opened.
 #[cfg(not(target_arch = "wasm32"))]
 const NO_DISPLAY: &str = "no display to open a window on: use the web page (cargo xtask web && cargo xtask serve) \
-     or the command line (hysteron diagnose FILE.csv)";
+     or the command line (hysteron diagnose FILE.csv), as here with a measurement of its own";
 
 /// Opens the window and returns when it is closed.
 ///
@@ -16,7 +16,7 @@ const NO_DISPLAY: &str = "no display to open a window on: use the web page (carg
 #[cfg(not(target_arch = "wasm32"))]
 pub fn run_native() -> Result<(), String> {
     if !display_exists() {
-        return Err(format!("hysteron: {NO_DISPLAY}"));
+        return Err(NO_DISPLAY.to_owned());
     }
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -32,7 +32,7 @@ pub fn run_native() -> Result<(), String> {
         options,
         Box::new(|context| Ok(Box::new(HysteronApp::restored(context)))),
     )
-    .map_err(|e| format!("hysteron: {NO_DISPLAY} ({})", one_line(&e.to_string())))
+    .map_err(|e| format!("{NO_DISPLAY} ({})", one_line(&e.to_string())))
 }
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -162,6 +162,23 @@ fn single(file: &Path, setup: &Setup) -> Result<String, String> {
     }
 }
 
+/// The report on a measurement that comes with the app.
+pub(super) fn of_built_in(arguments: &Arguments) -> Result<String, String> {
+    let (name, bytes) = crate::pages::built_in();
+    let measurement = import(name, &bytes, &ImportOptions::default()).map_err(|e| e.to_string())?;
+    let setup = Setup {
+        arguments,
+        model: None,
+    };
+    let mut line = ProgressLine::new();
+    let source = (Path::new(name), bytes.as_slice());
+    let report = of(&measurement, source, &setup, |fraction, text| {
+        line.show(fraction, text);
+    });
+    line.clear();
+    report.map(|report| report.text(name))
+}
+
 /// A finished diagnosis of one file.
 pub(super) struct Report {
     name: String,
@@ -238,10 +255,9 @@ impl Report {
 pub(super) fn one(
     file: &Path,
     setup: &Setup,
-    mut show: impl FnMut(f64, &str),
+    show: impl FnMut(f64, &str),
 ) -> Result<Report, String> {
     let arguments = setup.arguments;
-    let started = Instant::now();
     let options = ImportOptions {
         kind: arguments.kind.map(|k| match k {
             Kind::Drive => measurement::Kind::Drive,
@@ -254,6 +270,18 @@ pub(super) fn one(
         torque_constant: arguments.torque_constant.as_ref().map(|c| c.value),
     };
     let (measurement, bytes) = read(file, &options)?;
+    of(&measurement, (file, &bytes), setup, show)
+}
+
+/// Diagnoses a measurement; `source` is the file that it came from and its bytes.
+fn of(
+    measurement: &Measurement,
+    source: (&Path, &[u8]),
+    setup: &Setup,
+    mut show: impl FnMut(f64, &str),
+) -> Result<Report, String> {
+    let arguments = setup.arguments;
+    let started = Instant::now();
     let name = measurement.name.clone();
     let blank = || UserModel::blank(measurement.kind);
     let mut given = setup.model.clone().unwrap_or_else(blank);
@@ -262,11 +290,11 @@ pub(super) fn one(
             .add_candidate(effect)
             .map_err(|e| format!("--effect: {e}"))?;
     }
-    let mut limits = Limits::of(&measurement);
+    let mut limits = Limits::of(measurement);
     limits
         .set(arguments.limits.as_deref().unwrap_or_default())
         .map_err(|e| format!("--limits: {e}"))?;
-    let mut job = DiagnosisJob::with_model(&measurement, &given)
+    let mut job = DiagnosisJob::with_model(measurement, &given)
         .map_err(|e| format!("{name}: {e}"))?
         .within(limits);
     loop {
@@ -277,13 +305,13 @@ pub(super) fn one(
                 let page = arguments.report.as_ref().and_then(|_| {
                     let (first, last) = job.evidence()?;
                     Some(report::html(&ReportInput {
-                        measurement: &measurement,
+                        measurement,
                         steps: &diagnosis.steps,
                         first_atlas: &first.atlas,
                         last,
                         verdict: Some(&diagnosis.verdict),
                         model: (given != blank()).then_some(&given),
-                        provenance: &provenance(file, arguments, &bytes),
+                        provenance: &provenance(source.0, arguments, source.1),
                     }))
                 });
                 let last = diagnosis.steps.last();
@@ -292,7 +320,7 @@ pub(super) fn one(
                 });
                 return Ok(Report {
                     name,
-                    notes: measurement.warnings,
+                    notes: measurement.warnings.clone(),
                     diagnosis,
                     page,
                     model,

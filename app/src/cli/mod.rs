@@ -71,6 +71,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Option<ExitCode> {
     })
 }
 
+/// What the program does where there is no display: says so, and diagnoses a measurement that comes with it.
+pub fn without_display(line: &str) -> ExitCode {
+    complain(line);
+    let arguments = Arguments::try_parse_from(["hysteron", "diagnose", "built-in"]);
+    match arguments.map(|a| a.command) {
+        Ok(Some(Command::Diagnose(arguments))) => finish(diagnose::of_built_in(&arguments)),
+        _ => ExitCode::from(2),
+    }
+}
+
 /// Prints what a subcommand has to say, or the one line that says what is wrong with its input.
 fn finish(result: Result<String, String>) -> ExitCode {
     match result {
