@@ -7,6 +7,7 @@ mod bar;
 pub mod cli;
 mod colors;
 mod document;
+mod enclosed;
 pub mod export;
 mod files;
 mod hook;

@@ -14,6 +14,7 @@ use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
 use super::Format;
+use crate::enclosed::DRIVE_02;
 use crate::pieces;
 
 #[derive(Debug, clap::Args)]
@@ -164,7 +165,7 @@ fn single(file: &Path, setup: &Setup) -> Result<String, String> {
 
 /// The report on a measurement that comes with the app.
 pub(super) fn of_built_in(arguments: &Arguments) -> Result<String, String> {
-    let (name, bytes) = crate::pages::built_in();
+    let (name, bytes) = (DRIVE_02.id, DRIVE_02.csv());
     let measurement = import(name, &bytes, &ImportOptions::default()).map_err(|e| e.to_string())?;
     let setup = Setup {
         arguments,

@@ -92,12 +92,6 @@ pub fn is_built_in(name: &str) -> bool {
     compare::is_built_in(name) || backlash::is_built_in(name)
 }
 
-/// Name and text of a measurement that comes with the app.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn built_in() -> (&'static str, Vec<u8>) {
-    compare::first_built_in()
-}
-
 /// What the pages share.
 #[derive(Default)]
 pub struct Desk {

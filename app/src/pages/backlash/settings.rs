@@ -33,7 +33,7 @@ pub(super) struct Settings {
 
 /// Whether a measurement of this name comes with the page.
 pub fn is_built_in(name: &str) -> bool {
-    BUILT_IN.iter().any(|b| b.id == name)
+    BUILT_IN.iter().any(|b| b.file.id == name)
 }
 
 impl Backlash {
@@ -53,7 +53,7 @@ impl Backlash {
         settings.check()?;
         let file = match &settings.file {
             Some(name) if settings.file != self.file => {
-                let built_in = BUILT_IN.iter().find(|b| b.id == name);
+                let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
                 Some(built_in.ok_or_else(|| crate::document::not_enclosed(name))?)
             }
             _ => None,
@@ -69,7 +69,7 @@ impl Backlash {
         self.speed = settings.speed;
         self.message = None;
         if let Some(built_in) = file {
-            self.open_bytes(ctx, built_in.id, &built_in.csv());
+            self.open_bytes(ctx, built_in.file.id, &built_in.file.csv());
         } else if settings.file.is_none() && self.file.is_some() {
             self.close();
         }

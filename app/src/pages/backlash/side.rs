@@ -62,9 +62,9 @@ impl Backlash {
         ui.horizontal_wrapped(|ui| {
             for built_in in &BUILT_IN {
                 let button = ui
-                    .button(tr(format!("Open {}", built_in.id)))
+                    .button(tr(format!("Open {}", built_in.file.id)))
                     .on_hover_text(tr(built_in.story));
-                targets.note(format!("gap:{}", built_in.id), ui, &button);
+                targets.note(format!("gap:{}", built_in.file.id), ui, &button);
                 if button.clicked() {
                     chosen = Some(built_in);
                 }
@@ -83,7 +83,7 @@ impl Backlash {
             self.files.reopen(ui.ctx(), &recent);
         }
         if let Some(built_in) = chosen {
-            self.open_bytes(ui.ctx(), built_in.id, &built_in.csv());
+            self.open_bytes(ui.ctx(), built_in.file.id, &built_in.file.csv());
         }
     }
 

@@ -42,12 +42,6 @@ use crate::tasks::ExperimentTask;
 use answer::times_noise;
 use welcome::BUILT_IN;
 
-/// Name and text of the first measurement that comes with the page.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn first_built_in() -> (&'static str, Vec<u8>) {
-    (BUILT_IN[0].id, BUILT_IN[0].csv())
-}
-
 /// Longest time without a new frame while a job runs.
 const ALIVE: std::time::Duration = std::time::Duration::from_millis(100);
 
@@ -323,7 +317,7 @@ impl Compare {
         match command {
             Command::OpenBuiltIn(index) => {
                 if let Some(built_in) = BUILT_IN.get(index) {
-                    self.open(ctx, built_in.id, &built_in.csv());
+                    self.open(ctx, built_in.file.id, &built_in.file.csv());
                 }
             }
             Command::Reopen(recent) => self.files.reopen(ctx, &recent),

@@ -34,7 +34,7 @@ pub(super) struct Settings {
 
 /// Whether a measurement of this name comes with the page.
 pub fn is_built_in(name: &str) -> bool {
-    BUILT_IN.iter().any(|b| b.id == name)
+    BUILT_IN.iter().any(|b| b.file.id == name)
 }
 
 impl Compare {
@@ -59,7 +59,7 @@ impl Compare {
         let same_file = settings.file == present.file;
         let built_in = match &settings.file {
             Some(name) if !same_file => {
-                let found = BUILT_IN.iter().find(|b| b.id == name);
+                let found = BUILT_IN.iter().find(|b| b.file.id == name);
                 Some(found.ok_or_else(|| crate::document::not_enclosed(name))?)
             }
             _ => None,
@@ -90,7 +90,7 @@ impl Compare {
         }
         if let Some(built_in) = built_in {
             self.carry_out(ctx, Command::Close);
-            self.open(ctx, built_in.id, &built_in.csv());
+            self.open(ctx, built_in.file.id, &built_in.file.csv());
         }
         if let Some((mystery, text)) = &mystery {
             self.carry_out(ctx, Command::Close);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{Command, Compare};
+use crate::enclosed::{self, Enclosed};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::recent::{Recents, measurement};
@@ -17,39 +18,28 @@ const GLIMPSE_SWITCHES: usize = 12;
 
 /// A measurement that comes with the app.
 pub(super) struct BuiltIn {
-    pub id: &'static str,
+    pub file: Enclosed,
     title: &'static str,
     story: &'static str,
-    packed: &'static [u8],
 }
 
 pub(super) const BUILT_IN: [BuiltIn; 3] = [
     BuiltIn {
-        id: "drive-02",
+        file: enclosed::DRIVE_02,
         title: "A drive that loses its swing",
         story: "A motor under a velocity relay. It never moves quite as far as its inertia says it should.",
-        packed: include_bytes!(concat!(env!("OUT_DIR"), "/drive-02.packed")),
     },
     BuiltIn {
-        id: "drive-12",
+        file: enclosed::DRIVE_12,
         title: "A drive that answers late",
         story: "The same rig with another amplifier and older bearings. One effect is not enough.",
-        packed: include_bytes!(concat!(env!("OUT_DIR"), "/drive-12.packed")),
     },
     BuiltIn {
-        id: "process-02",
+        file: enclosed::PROCESS_02,
         title: "A slow heating process",
         story: "A heater switched by a relay. The temperature overshoots both limits, every time.",
-        packed: include_bytes!(concat!(env!("OUT_DIR"), "/process-02.packed")),
     },
 ];
-
-impl BuiltIn {
-    /// Its text.
-    pub(super) fn csv(&self) -> Vec<u8> {
-        crate::packed::unpack(self.packed).unwrap_or_default()
-    }
-}
 
 /// A measurement: how it begins, what it is, and the button that opens it.
 fn card_ui(
@@ -67,8 +57,11 @@ fn card_ui(
             glimpse_ui(ui, built_in);
             ui.label(tr(built_in.story));
             let size = egui::vec2(ui.available_width(), 36.0);
-            let button = ui.add_sized(size, egui::Button::new(tr(format!("Open {}", built_in.id))));
-            targets.note(format!("builtin:{}", built_in.id), ui, &button);
+            let button = ui.add_sized(
+                size,
+                egui::Button::new(tr(format!("Open {}", built_in.file.id))),
+            );
+            targets.note(format!("builtin:{}", built_in.file.id), ui, &button);
             if button.clicked() {
                 commands.push(Command::OpenBuiltIn(index));
             }
@@ -108,10 +101,10 @@ impl Glimpse {
 
 /// Draws the beginning of a record, without axes: it is a picture on a door.
 fn glimpse_ui(ui: &mut egui::Ui, built_in: &'static BuiltIn) {
-    let id = egui::Id::unique(("glimpse", built_in.id));
+    let id = egui::Id::unique(("glimpse", built_in.file.id));
     let known = ui.data(|data| data.get_temp::<Arc<Glimpse>>(id));
     let glimpse = known.unwrap_or_else(|| {
-        let glimpse = Arc::new(Glimpse::of(&built_in.csv()));
+        let glimpse = Arc::new(Glimpse::of(&built_in.file.csv()));
         ui.data_mut(|data| data.insert_temp(id, glimpse.clone()));
         glimpse
     });
@@ -174,19 +167,5 @@ impl Compare {
             }
             ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process."));
         });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_packed_is_the_very_file() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/measurements");
-        for built_in in &BUILT_IN {
-            let file = std::fs::read(format!("{folder}/{}.csv", built_in.id)).expect("the file");
-            assert!(built_in.csv() == file, "{}", built_in.id);
-        }
     }
 }
