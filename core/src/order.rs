@@ -1,4 +1,4 @@
-//! The least, the largest and the middle of some values.
+//! The least, the largest and the middle of some values, and those that are not marked.
 
 /// Least and largest value; without values infinity and minus infinity.
 pub fn range(values: &[f64]) -> (f64, f64) {
@@ -6,6 +6,12 @@ pub fn range(values: &[f64]) -> (f64, f64) {
     values
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), wider)
+}
+
+/// Takes out the values that are marked.
+pub fn drop_marked<T>(values: &mut Vec<T>, marked: &[bool]) {
+    let mut marks = marked.iter();
+    values.retain(|_| !marks.next().copied().unwrap_or(false));
 }
 
 /// Median; the order of the values is lost. 0 without values.

@@ -5,7 +5,7 @@ use super::drift::Drift;
 use super::estimate::Side;
 use super::free_motor::FreeMotor;
 use super::record::{DIFFERENCE, Record};
-use crate::order::median;
+use crate::order::{drop_marked, median};
 
 /// Cycles about an engaged one in which contacts are looked for.
 const MARGIN: usize = 2;
@@ -149,8 +149,7 @@ pub(super) fn touches(
                 (Vec::new(), true)
             };
         }
-        let mut keep = doubtful.iter().map(|d| !d);
-        touches.retain(|_| keep.next().unwrap_or(true));
+        drop_marked(&mut touches, &doubtful);
     }
 }
 

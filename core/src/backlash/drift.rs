@@ -15,6 +15,9 @@ const LEAST_SHARE: f64 = 5e-3;
 /// Deviation of a single engaged cycle, in standard deviations of the free ones.
 const SINGLE: f64 = 6.0;
 
+/// Standard deviation of normal values over the median of how far they are off.
+const DEVIATIONS_IN_MEDIAN: f64 = 1.4826;
+
 /// Fewest cycles of a run that can show how the free motor drifts; half a phase if that is shorter.
 const FREE: usize = 8;
 
@@ -81,7 +84,7 @@ impl Drift {
 /// Standard deviation by the median difference of neighbours, which changes of the mean leave alone.
 fn spread(values: &[f64]) -> f64 {
     let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
-    1.4826 * median(&mut steps) / std::f64::consts::SQRT_2
+    DEVIATIONS_IN_MEDIAN * median(&mut steps) / std::f64::consts::SQRT_2
 }
 
 /// Standard deviation of the changes in the runs of one phase that are free; infinite where none is.
@@ -95,7 +98,7 @@ fn free_spread(changes: &[f64], segments: &[Segment], free: f64, tolerance: f64)
     if off.is_empty() {
         return f64::INFINITY;
     }
-    1.4826 * median(&mut off)
+    DEVIATIONS_IN_MEDIAN * median(&mut off)
 }
 
 /// Mean change of the free motor in one phase: that of the run with the most change along the drift and

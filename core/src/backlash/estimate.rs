@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
 use crate::model::{SeenContact, SeenLoad, Sharpness};
-use crate::order::{median, range};
+use crate::order::{drop_marked, median, range};
 
 use super::contacts::{Touch, touches};
 use super::cycles::Cycles;
 use super::drift::Drift;
 use super::free_motor::FreeMotor;
-use super::likelihood::{self, Fit, Scales, fit};
+use super::likelihood::{self, Fit, Scales};
 use super::record::Record;
 use super::verdict;
 
@@ -229,7 +229,7 @@ impl Felt {
                 half_gap,
                 place_error,
             } => {
-                let fit = fit(&events, &scales, Some((half_gap, place_error)))?;
+                let fit = likelihood::fit(&events, &scales, Some((half_gap, place_error)))?;
                 seen_load(events, &fit, place_error)
             }
         }
@@ -327,28 +327,20 @@ fn nothing(record: &Record, quality: Quality) -> GapEstimate {
 /// Both ends were met: the likelihood decides. `period` is that of a cycle, s.
 fn two_sided(
     estimate: &mut GapEstimate,
-    events: Vec<SeenContact>,
+    mut events: Vec<SeenContact>,
     scales: &Scales,
     period: f64,
     place_error: f64,
 ) -> Option<SeenLoad> {
     estimate.quality = Quality::Undecided;
-    let mut events = events;
     let mut fit = likelihood::fit(&events, scales, None)?;
-    estimate.traverses = traverses(&estimate.contacts, &fit);
-    let stray = strays(
-        &estimate.contacts,
-        &estimate.traverses,
-        2.0 * fit.play.half_gap,
-    );
+    let stray = strays(&estimate.contacts, &fit);
     if stray.contains(&true) {
-        let mut others = stray.iter().map(|s| !s);
-        events.retain(|_| others.next().unwrap_or(true));
-        let mut others = stray.iter().map(|s| !s);
-        estimate.contacts.retain(|_| others.next().unwrap_or(true));
+        drop_marked(&mut events, &stray);
+        drop_marked(&mut estimate.contacts, &stray);
         fit = likelihood::fit(&events, scales, None)?;
-        estimate.traverses = traverses(&estimate.contacts, &fit);
     }
+    estimate.traverses = traverses(&estimate.contacts, &fit);
     let gap = 2.0 * fit.play.half_gap;
     let rattles = rattles(&estimate.traverses, period);
     let systematic = if rattles { RATTLE_ERROR * gap } else { 0.0 };
@@ -375,15 +367,16 @@ fn two_sided(
 
 /// Contacts at one end of the gap between two at the other from which the motor did not go anything like the gap: what
 /// else disturbed the motor there was no load.
-fn strays(contacts: &[Contact], traverses: &[Traverse], gap: f64) -> Vec<bool> {
-    let off = |t: &Traverse| (t.gap - gap).abs() > STRAY * gap + t.std_error;
-    let touched = |end: fn(&Traverse) -> f64, at: f64| {
-        let mut own = traverses.iter().filter(move |t| end(t) == at);
-        own.any(off)
-    };
-    contacts
-        .iter()
-        .map(|c| touched(|t| t.to.time, c.time) && touched(|t| t.from.time, c.time))
+fn strays(contacts: &[Contact], fit: &Fit) -> Vec<bool> {
+    let least = STRAY * 2.0 * fit.play.half_gap;
+    let off: Vec<bool> = contacts
+        .windows(2)
+        .zip(&fit.innovations)
+        .map(|(pair, i)| pair[0].side != pair[1].side && i.value.abs() > least + i.deviation)
+        .collect();
+    let at = |pair: Option<usize>| pair.and_then(|k| off.get(k)).copied().unwrap_or(false);
+    (0..contacts.len())
+        .map(|k| at(k.checked_sub(1)) && at(Some(k)))
         .collect()
 }
 
