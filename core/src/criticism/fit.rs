@@ -444,7 +444,8 @@ impl Fit {
         }
         let moved = self.bounded_step(&schur, &reduced_gradient, scales)?;
         let values: Vec<f64> = self.values.iter().zip(&moved).map(|(v, d)| v + d).collect();
-        let farthest = self.farthest(data);
+        let model = self.structure.model(&self.values);
+        let farthest = farthest(data.excitation.sees_load_of(&model));
         let starts = self
             .starts
             .iter()
@@ -458,17 +459,6 @@ impl Fit {
             })
             .collect();
         Some((values, starts))
-    }
-
-    /// Standard deviations by which a load may be off at most. One that was felt may have been met by chance, but if one
-    /// on a joint is far off where it follows the body, the model is wrong.
-    fn farthest(&self, data: &Data) -> f64 {
-        let model = self.structure.model(&self.values);
-        if data.excitation.sees_load_of(&model) {
-            f64::INFINITY
-        } else {
-            FARTHEST
-        }
     }
 
     /// Solves for the step; values that would leave their range stop at its end and the others are
@@ -572,7 +562,7 @@ impl Fit {
         let sees_load = data
             .excitation
             .sees_load_of(&self.structure.model(&self.values));
-        let farthest = self.farthest(data);
+        let farthest = farthest(sees_load);
         let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
         for share in shares {
             let changes = windows
@@ -644,6 +634,12 @@ impl Fit {
         }
         errors
     }
+}
+
+/// Standard deviations by which a load may be off at most. One that was seen by its contacts may have been met by
+/// chance, but if one on a joint is far off where it follows the body, the model is wrong.
+fn farthest(seen: bool) -> f64 {
+    if seen { f64::INFINITY } else { FARTHEST }
 }
 
 /// Runs the model through the whole record.

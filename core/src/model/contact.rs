@@ -232,35 +232,22 @@ impl Acting {
 mod tests {
     use super::*;
     use crate::model::engine::{Engine, State};
-    use crate::model::{DryFriction, Model};
+    use crate::model::{DryFriction, Model, runge_kutta};
 
-    /// Bristle, body and input in many small steps of Runge-Kutta, as an independent reference.
+    /// Bristle, body and input in many small steps, as an independent reference.
     fn integrate(
         contact: &Contact,
         level: impl Fn(f64) -> f64,
         w: f64,
         h: f64,
-        mut s: [f64; 3],
+        s: [f64; 3],
     ) -> [f64; 3] {
-        let n = 2_000;
-        let dt = h / f64::from(n);
-        let f = |s: [f64; 3]| {
-            let [_, v, z] = s;
+        let rates = |[_, v, z]: [f64; 3], _| {
             let rate = v - contact.stiffness * v.abs() / level(v) * z;
             let force = contact.stiffness * z + contact.damping * rate;
             [v, (w - contact.viscous * v - force) * contact.b, rate]
         };
-        let add = |s: [f64; 3], k: [f64; 3], c: f64| std::array::from_fn(|i| s[i] + c * k[i]);
-        for _ in 0..n {
-            let k1 = f(s);
-            let k2 = f(add(s, k1, dt / 2.0));
-            let k3 = f(add(s, k2, dt / 2.0));
-            let k4 = f(add(s, k3, dt));
-            for i in 0..3 {
-                s[i] += dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
-            }
-        }
-        s
+        runge_kutta::integrate(rates, s, h, 2_000)
     }
 
     #[test]

@@ -278,10 +278,8 @@ impl<'m> Engine<'m> {
             return false;
         }
         let side = state.twist.signum();
-        let pushes = |twist: f64, rate: f64| {
-            half_gap == 0.0 || (side * twist > half_gap && load.coupling.force(twist, rate) != 0.0)
-        };
-        if !pushes(state.twist, state.motion.v - state.load.v) {
+        let joins = |twist, rate| load.coupling.joins(side, twist, rate);
+        if !joins(state.twist, state.motion.v - state.load.v) {
             return false;
         }
         let (constant, rise) = self.model.late_load();
@@ -303,7 +301,7 @@ impl<'m> Engine<'m> {
         let turns = |way: f64, v: f64| way != 0.0 && way * v <= 0.0;
         if turns(way, next.body.v)
             || turns(load_way, next.load)
-            || !pushes(twist, next.body.v - next.load)
+            || !joins(twist, next.body.v - next.load)
         {
             return false;
         }

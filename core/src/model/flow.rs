@@ -383,29 +383,13 @@ pub(crate) fn root(h: f64, f0: f64, fh: f64, f: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::runge_kutta;
 
-    /// Fourth-order Runge-Kutta with many steps, as an independent reference.
+    /// In many small steps, as an independent reference.
     fn integrate(lambda: f64, b: f64, mu: f64, m: Motion, w: f64, q: f64, h: f64) -> Motion {
-        let n = 20_000;
-        let dt = h / f64::from(n);
-        let f = |s: [f64; 3]| [s[1], -lambda * s[1] + b * (s[2] + q), -mu * (s[2] - w)];
-        let mut s = [m.x, m.v, m.z];
-        let add =
-            |s: [f64; 3], k: [f64; 3], c: f64| [s[0] + c * k[0], s[1] + c * k[1], s[2] + c * k[2]];
-        for _ in 0..n {
-            let k1 = f(s);
-            let k2 = f(add(s, k1, dt / 2.0));
-            let k3 = f(add(s, k2, dt / 2.0));
-            let k4 = f(add(s, k3, dt));
-            for i in 0..3 {
-                s[i] += dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
-            }
-        }
-        Motion {
-            x: s[0],
-            v: s[1],
-            z: s[2],
-        }
+        let rates = |[_, v, z]: [f64; 3], _| [v, -lambda * v + b * (z + q), -mu * (z - w)];
+        let [x, v, z] = runge_kutta::integrate(rates, [m.x, m.v, m.z], h, 20_000);
+        Motion { x, v, z }
     }
 
     #[test]

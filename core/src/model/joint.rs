@@ -109,6 +109,7 @@ impl Joint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::runge_kutta::integrate;
     use crate::model::{Coupling, Engine, Load, State};
 
     /// `x, s, v, u, z` and the rates at which they change.
@@ -124,20 +125,9 @@ mod tests {
         ]
     }
 
-    /// Runge and Kutta, 1901, in many steps.
     fn integrated(model: &Model, from: [f64; 5], forces: &Forces, h: f64) -> [f64; 5] {
-        let steps = 20_000;
-        let h = h / f64::from(steps);
         let load = model.load.expect("a load");
-        let rates = |s| rates(model, &load, s, forces);
-        let moved = |s: [f64; 5], k: [f64; 5], h: f64| std::array::from_fn(|i| s[i] + h * k[i]);
-        (0..steps).fold(from, |s, _| {
-            let k1 = rates(s);
-            let k2 = rates(moved(s, k1, 0.5 * h));
-            let k3 = rates(moved(s, k2, 0.5 * h));
-            let k4 = rates(moved(s, k3, h));
-            std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
-        })
+        integrate(|s, _| rates(model, &load, s, forces), from, h, 20_000)
     }
 
     fn model(half_gap: f64, dry_friction: f64) -> Model {

@@ -32,6 +32,12 @@ impl Coupling {
         let side = twist.signum();
         side * (self.stiffness * pressed + self.damping * rate * side).max(0.0)
     }
+
+    /// Whether body and load are joined at `twist` and its `rate`: always without play, else where they push each
+    /// other on this `side` of it.
+    pub(super) fn joins(&self, side: f64, twist: f64, rate: f64) -> bool {
+        self.half_gap == 0.0 || (side * twist > self.half_gap && self.force(twist, rate) != 0.0)
+    }
 }
 
 /// The second body.
@@ -74,12 +80,12 @@ impl Load {
         // A load with less damping has not yet forgotten how it began to follow.
         let damping = damping.max(1.0 / (WARM_UP as f64 * h));
         let excited = frequency * frequency * h / (2.0 * damping);
-        let (level, variance) = match noise {
-            FollowedNoise::Position(level) => (level, excited),
-            FollowedNoise::Velocity(level) => (level / frequency, excited),
+        let level = match noise {
+            FollowedNoise::Position(level) => level,
+            FollowedNoise::Velocity(level) => level / frequency,
         };
         // The twist counts from the measured position with its own noise.
-        let x = WIDELY * level * (1.0 + variance).sqrt();
+        let x = WIDELY * level * (1.0 + excited).sqrt();
         [x, x * frequency]
     }
 
@@ -178,12 +184,8 @@ impl<'m> Follower<'m> {
         let swing = self.swing.as_ref().filter(|s| s.h == h)?;
         let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
         let side = (from - self.motion.x).signum();
-        let pushes = |twist: f64, rate: f64| {
-            coupling.half_gap == 0.0
-                || (side * twist > coupling.half_gap && coupling.force(twist, rate) != 0.0)
-        };
         let begin = way - 0.5 * bend;
-        if !pushes(from - self.motion.x, begin / h - self.motion.v) {
+        if !coupling.joins(side, from - self.motion.x, begin / h - self.motion.v) {
             return None;
         }
         let rubs = dry > 0.0;
@@ -198,7 +200,7 @@ impl<'m> Follower<'m> {
         };
         let (end, torque) = swing.advance(self.motion, &body, -sign * dry);
         let turns = rubs && end.v * sign <= 0.0;
-        if turns || !pushes(from + way - end.x, (begin + bend) / h - end.v) {
+        if turns || !coupling.joins(side, from + way - end.x, (begin + bend) / h - end.v) {
             return None;
         }
         (self.motion, self.mode) = (end, Mode::of(end.v));

@@ -16,6 +16,8 @@ mod friction;
 mod joint;
 mod load;
 mod replay;
+#[cfg(test)]
+mod runge_kutta;
 mod seen_load;
 mod swing;
 

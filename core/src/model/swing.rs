@@ -89,6 +89,7 @@ impl Swing {
 mod tests {
     use super::*;
     use crate::model::Coupling;
+    use crate::model::runge_kutta::integrate;
 
     const LOAD: Load = Load {
         inertia: 7e-4,
@@ -101,7 +102,7 @@ mod tests {
         },
     };
 
-    /// Runge and Kutta, 1901: place, velocity and the integral of the torque.
+    /// Place, velocity and the integral of the torque.
     fn integrated(body: &Parabola, start: Motion, force: f64, h: f64) -> [f64; 3] {
         let rates = |s: [f64; 3], t: f64| {
             let share = t / h;
@@ -115,17 +116,7 @@ mod tests {
                 torque,
             ]
         };
-        let steps = 10_000;
-        let dt = h / f64::from(steps);
-        (0..steps).fold([start.x, start.v, 0.0], |s, k| {
-            let t = dt * f64::from(k);
-            let moved = |k: [f64; 3], c: f64| std::array::from_fn(|i| s[i] + c * k[i]);
-            let k1 = rates(s, t);
-            let k2 = rates(moved(k1, dt / 2.0), t + dt / 2.0);
-            let k3 = rates(moved(k2, dt / 2.0), t + dt / 2.0);
-            let k4 = rates(moved(k3, dt), t + dt);
-            std::array::from_fn(|i| s[i] + dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
-        })
+        integrate(rates, [start.x, start.v, 0.0], h, 10_000)
     }
 
     #[test]
