@@ -17,7 +17,7 @@ use super::window_sums::{
     BODY_STATES, STATES, WindowSums, changed, inverse, kept_within, reduced, state,
 };
 use crate::effect::Scales;
-use crate::model::Start;
+use crate::model::{FollowedLoad, Start};
 
 /// Iterations after which a fit ends in any case.
 const MAX_ITERATIONS: usize = 30;
@@ -68,6 +68,8 @@ pub(super) struct Motion {
     pub velocity: Vec<f64>,
     /// For each window, what its state costs by itself: how far a load is off where it is taken to be.
     pub priors: Vec<f64>,
+    /// Where a load begins in the windows.
+    loads: FollowedLoad,
 }
 
 impl Motion {
@@ -77,6 +79,7 @@ impl Motion {
             position: vec![0.0; n],
             velocity: vec![0.0; n],
             priors: Vec::new(),
+            loads: FollowedLoad::default(),
         }
     }
 
@@ -135,7 +138,8 @@ impl Fit {
         scales: &Scales,
     ) -> Self {
         structure.clamp(&mut values, scales);
-        let motion = simulate(data, &structure, &values, &starts);
+        let unknown = FollowedLoad::default();
+        let motion = simulate(data, &structure, &values, &starts, &unknown);
         let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE) + structure.prior_cost(&values);
         let p = values.len();
         let mut fit = Self {
@@ -229,6 +233,11 @@ impl Fit {
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
     }
 
+    /// Motion with these values and starts; a load that they leave alone is not followed again.
+    fn simulate(&self, data: &Data, values: &[f64], starts: &[Start]) -> Motion {
+        simulate(data, &self.structure, values, starts, &self.motion.loads)
+    }
+
     /// What a step must lower: the cost of the data and of what the user knows before.
     fn objective(&self, data: &Data, motion: &Motion, values: &[f64], scale: f64) -> f64 {
         robust_cost(data, motion, scale) + self.structure.prior_cost(values)
@@ -259,7 +268,7 @@ impl Fit {
         present: f64,
         scales: &Scales,
     ) -> (Vec<Start>, Motion) {
-        let moved = simulate(data, &self.structure, values, &starts);
+        let moved = self.simulate(data, values, &starts);
         if self.objective(data, &moved, values, scale) <= present {
             return (starts, moved);
         }
@@ -332,16 +341,13 @@ impl Fit {
                 }
                 let mut values = self.values.clone();
                 values[j] += step;
-                difference(
-                    simulate(data, &self.structure, &values, &self.starts),
-                    *step,
-                )
+                difference(self.simulate(data, &values, &self.starts), *step)
             })
             .collect();
         let moved = |change: [f64; STATES]| -> Motion {
             let change = Vector4::from(change);
             let starts: Vec<Start> = self.starts.iter().map(|s| changed(s, &change)).collect();
-            simulate(data, &self.structure, &self.values, &starts)
+            self.simulate(data, &self.values, &starts)
         };
         let model = self.structure.model(&self.values);
         let dx = 1e-6 * scales.travel.max(f64::MIN_POSITIVE);
@@ -579,13 +585,13 @@ impl Fit {
 
     /// Takes up the motion from the present starts.
     pub(super) fn follow_starts(&mut self, data: &Data) {
-        self.motion = simulate(data, &self.structure, &self.values, &self.starts);
+        self.motion = self.simulate(data, &self.values, &self.starts);
         self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
     }
 
     /// Takes for each window its state of `trial` where that fits better.
     pub(super) fn take_better(&mut self, data: &Data, trial: &[Start]) {
-        let motion = simulate(data, &self.structure, &self.values, trial);
+        let motion = self.simulate(data, &self.values, trial);
         let before = window_costs(data, &self.motion);
         let after = window_costs(data, &motion);
         // A slow sensor carries over from window to window; apart from that each has its own motion.
@@ -642,17 +648,20 @@ fn farthest(seen: bool) -> f64 {
     if seen { f64::INFINITY } else { FARTHEST }
 }
 
-/// Runs the model through the whole record.
-pub(super) fn simulate(
+/// Runs the model through the whole record; what its load does may be known.
+fn simulate(
     data: &Data,
     structure: &Structure,
     values: &[f64],
     starts: &[Start],
+    known: &FollowedLoad,
 ) -> Motion {
     let mut motion = Motion::still(data.len());
     let model = structure.model(values);
+    motion.loads = data.excitation.follow(&model, starts, known);
+    let (position, velocity) = (&mut motion.position, &mut motion.velocity);
     data.excitation
-        .replay(&model, starts, &mut motion.position, &mut motion.velocity);
+        .replay(&model, starts, &motion.loads, position, velocity);
     let doubts_load = data.excitation.doubts_load_of(&model);
     let prior = |s: &Start| {
         if doubts_load {

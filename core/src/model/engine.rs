@@ -4,7 +4,7 @@ use super::contact::Contact;
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
 use super::joint::{Forces, Joined, Joint};
-use super::load::Follower;
+use super::load::Followed;
 use super::{Instant, Model};
 
 /// Halvings of an interval at most.
@@ -117,14 +117,14 @@ impl State {
         }
     }
 
-    /// The same with the load as `follower` found it, shifted in position and velocity; `position` is where the
+    /// The same with the load where it followed the body, shifted in position and velocity; `position` is where the
     /// body was measured.
     #[must_use]
-    pub(super) fn with_load(&self, follower: &Follower, position: f64, shift: [f64; 2]) -> Self {
+    pub(super) fn with_load(&self, load: &Followed, position: f64, shift: [f64; 2]) -> Self {
         let mut next = *self;
-        next.twist = position - follower.motion.x - shift[0];
-        next.load = follower.motion;
-        next.load_mode = follower.mode;
+        next.twist = position - load.motion.x - shift[0];
+        next.load = load.motion;
+        next.load_mode = load.mode;
         if shift[1] != 0.0 {
             next.load.v += shift[1];
             next.load_mode = Mode::of(next.load.v);

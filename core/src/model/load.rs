@@ -103,6 +103,13 @@ impl Load {
     }
 }
 
+/// State of a load that follows the body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Followed {
+    pub motion: Motion,
+    pub mode: Mode,
+}
+
 /// A load that follows a body which moves as measured.
 ///
 /// Since the body's motion is given, the load cannot drift away from it: its hidden state is known at
@@ -110,8 +117,7 @@ impl Load {
 pub(super) struct Follower<'m> {
     load: &'m Load,
     flow: Flow,
-    pub motion: Motion,
-    pub mode: Mode,
+    pub now: Followed,
     steps: u32,
     /// In one step where the load neither turns nor comes or goes.
     swing: Option<Swing>,
@@ -138,11 +144,13 @@ impl<'m> Follower<'m> {
         Self {
             load,
             flow,
-            motion: Motion {
-                x: position,
-                ..Motion::default()
+            now: Followed {
+                motion: Motion {
+                    x: position,
+                    ..Motion::default()
+                },
+                mode: Mode::Stick,
             },
-            mode: Mode::Stick,
             steps: steps as u32,
             swing: Swing::new(load, h),
             sample: 0,
@@ -151,8 +159,8 @@ impl<'m> Follower<'m> {
 
     /// Moves the load to position `x` with velocity `v` at a sample.
     pub fn place(&mut self, x: f64, v: f64, sample: usize) {
-        (self.motion.x, self.motion.v) = (x, v);
-        self.mode = Mode::of(v);
+        (self.now.motion.x, self.now.motion.v) = (x, v);
+        self.now.mode = Mode::of(v);
         self.sample = sample;
     }
 
@@ -163,8 +171,8 @@ impl<'m> Follower<'m> {
             self.sample = sample - WARM_UP;
             let (from, to) = (position[self.sample], position[self.sample + 1]);
             let v = (to - from) / h(self.sample);
-            (self.motion.x, self.motion.v) = (from, v);
-            self.mode = Mode::of(v);
+            (self.now.motion.x, self.now.motion.v) = (from, v);
+            self.now.mode = Mode::of(v);
         }
         while self.sample < sample {
             self.step(position, h(self.sample));
@@ -183,13 +191,17 @@ impl<'m> Follower<'m> {
     fn swing_along(&mut self, from: f64, way: f64, bend: f64, h: f64) -> Option<f64> {
         let swing = self.swing.as_ref().filter(|s| s.h == h)?;
         let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
-        let side = (from - self.motion.x).signum();
+        let side = (from - self.now.motion.x).signum();
         let begin = way - 0.5 * bend;
-        if !coupling.joins(side, from - self.motion.x, begin / h - self.motion.v) {
+        if !coupling.joins(
+            side,
+            from - self.now.motion.x,
+            begin / h - self.now.motion.v,
+        ) {
             return None;
         }
         let rubs = dry > 0.0;
-        let sign = if rubs { self.mode.sign() } else { 0.0 };
+        let sign = if rubs { self.now.mode.sign() } else { 0.0 };
         if rubs && sign == 0.0 {
             return None;
         }
@@ -198,12 +210,15 @@ impl<'m> Follower<'m> {
             begin,
             bend,
         };
-        let (end, torque) = swing.advance(self.motion, &body, -sign * dry);
+        let (end, torque) = swing.advance(self.now.motion, &body, -sign * dry);
         let turns = rubs && end.v * sign <= 0.0;
         if turns || !coupling.joins(side, from + way - end.x, (begin + bend) / h - end.v) {
             return None;
         }
-        (self.motion, self.mode) = (end, Mode::of(end.v));
+        self.now = Followed {
+            motion: end,
+            mode: Mode::of(end.v),
+        };
         Some(torque)
     }
 
@@ -225,7 +240,7 @@ impl<'m> Follower<'m> {
         let v1 = (to - from) / h;
         let touching = self
             .load
-            .may_touch(from - self.motion.x, v1 - self.motion.v, h);
+            .may_touch(from - self.now.motion.x, v1 - self.now.motion.v, h);
         let steps = if touching { self.steps } else { 1 };
         let part = h / f64::from(steps);
         let mut sum = 0.0;
@@ -233,13 +248,13 @@ impl<'m> Follower<'m> {
             let share = (f64::from(k) + 0.5) / f64::from(steps);
             let middle = from + (to - from) * share - 0.5 * bend * share * (1.0 - share);
             let rate = v1 - 0.5 * bend * (1.0 - 2.0 * share) / h;
-            let twist = middle - self.motion.x - 0.5 * part * self.motion.v;
-            let force = self.load.coupling.force(twist, rate - self.motion.v);
+            let twist = middle - self.now.motion.x - 0.5 * part * self.now.motion.v;
+            let force = self.load.coupling.force(twist, rate - self.now.motion.v);
             sum += force;
             slide(
                 &self.flow,
-                &mut self.motion,
-                &mut self.mode,
+                &mut self.now.motion,
+                &mut self.now.mode,
                 0.0,
                 force,
                 self.load.dry_friction,

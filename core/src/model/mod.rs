@@ -7,6 +7,7 @@
 //! between body and load where they come together or apart, are held at their value at the middle of steps short
 //! against their change (exponential midpoint rule, second order).
 
+mod bristle;
 mod closed_loop;
 mod contact;
 mod engine;
@@ -26,7 +27,7 @@ pub use engine::{Engine, State};
 pub(crate) use flight::Slowing;
 pub(crate) use flow::free_body;
 pub use load::{Coupling, FollowedNoise, Load, load_torque};
-pub use replay::{Excitation, Sensor, Start};
+pub use replay::{Excitation, FollowedLoad, Sensor, Start};
 pub(crate) use seen_load::{LoadState, Play, SeenContact, SeenLoad, Sharpness};
 
 /// Static map of the input or the output, applied sample by sample.

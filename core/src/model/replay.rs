@@ -1,9 +1,9 @@
 //! Replay: a model driven by a measured input, restarted at the windows' estimated states.
 
-use super::contact::Contact;
-use super::load::{FollowedNoise, Follower};
+use super::bristle::{Bristle, Steady};
+use super::load::{Followed, FollowedNoise, Follower};
 use super::seen_load::{SeenLoad, Sight, Tracker};
-use super::{DryFriction, Engine, Model, State};
+use super::{Engine, Load, Model, State};
 
 /// A time step within this share of the mean one counts as equal: files round their time column.
 const UNIFORM_TOLERANCE: f64 = 0.02;
@@ -20,6 +20,28 @@ pub struct Start {
     /// By how much the load is off where it is taken to be: its position, and what is then left of its velocity, in
     /// standard deviations of what its contacts tell, or of a load that follows the noisy motion of the body.
     pub load: [f64; 2],
+}
+
+/// Where a load is at the start of each window if the body moves as measured: models that differ in their body alone
+/// have the same.
+#[derive(Clone, Debug, Default)]
+pub struct FollowedLoad {
+    /// None where there is none, or where it hangs on the body too.
+    load: Option<Load>,
+    samples: Vec<usize>,
+    at: Vec<Followed>,
+}
+
+impl FollowedLoad {
+    /// Whether this is what the load of `model` does at these starts.
+    fn suits(&self, model: &Model, starts: &[Start]) -> bool {
+        self.load.is_some()
+            && self.load == model.load
+            && starts
+                .iter()
+                .map(|s| s.sample)
+                .eq(self.samples.iter().copied())
+    }
 }
 
 /// A measured input, held between samples.
@@ -172,15 +194,43 @@ impl Excitation {
         (self.time[self.len() - 1] - self.time[0]) / (self.len() - 1) as f64
     }
 
+    /// Where the load of `model` is at each of `starts` if the body moved as measured; taken over from what is `known`,
+    /// if that is the same.
+    pub fn follow(&self, model: &Model, starts: &[Start], known: &FollowedLoad) -> FollowedLoad {
+        if known.suits(model, starts) {
+            return known.clone();
+        }
+        let Some(load) = model.load.filter(|_| self.position.len() == self.len()) else {
+            return FollowedLoad::default();
+        };
+        let mut follower = Follower::new(&load, self.position[0], self.mean_step());
+        let mut tracker = self.tracker(model);
+        let at = starts.iter().map(|start| {
+            let i = start.sample;
+            if let Some(tracker) = &mut tracker {
+                self.take_sight(&mut follower, &tracker.at(self.time[i]), i);
+            }
+            follower.reach(&self.position, i, |k| self.step_after(k));
+            follower.now
+        });
+        FollowedLoad {
+            at: at.collect(),
+            samples: starts.iter().map(|s| s.sample).collect(),
+            // Where it was seen, it is followed by its contacts, and the body bounces off in them.
+            load: tracker.is_none().then_some(load),
+        }
+    }
+
     /// Runs `model` through the record and writes position and velocity at every simulated sample.
     ///
     /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
-    /// given there. Of the hidden states the lagged input goes on from the window before; a load and the
-    /// deflection of a friction contact are where they must be if the body moved as measured.
+    /// given there. Of the hidden states the lagged input goes on from the window before; a load ([`Excitation::follow`])
+    /// and the deflection of a friction contact are where they must be if the body moved as measured.
     pub fn replay(
         &self,
         model: &Model,
         starts: &[Start],
+        loads: &FollowedLoad,
         position: &mut [f64],
         velocity: &mut [f64],
     ) {
@@ -188,13 +238,8 @@ impl Excitation {
         let mut path = DelayedInput::new(self, model);
         path.prepare(&mut engine);
         let mut state = State::at_rest(path.before);
-        let mut next = starts.iter().peekable();
-        let mut follower = model
-            .load
-            .as_ref()
-            .filter(|_| self.position.len() == self.len())
-            .map(|load| Follower::new(load, self.position[0], self.mean_step()));
-        let mut tracker = self.tracker(model);
+        let mut next = starts.iter().enumerate().peekable();
+        let tracker = self.tracker(model);
         let doubt = self.doubt(model).unwrap_or_default();
         let mut bristle = engine
             .contact()
@@ -211,18 +256,14 @@ impl Excitation {
                 }
             }
             for i in *from..*end {
-                if let Some(start) = next.next_if(|s| s.sample == i) {
+                if let Some((window, start)) = next.next_if(|(_, s)| s.sample == i) {
                     state = state.restarted(start.position, start.velocity);
-                    if let Some(follower) = &mut follower {
-                        let shift = match &mut tracker {
-                            Some(tracker) => {
-                                self.take_sight(follower, &tracker.at(self.time[i]), i);
-                                tracker.shift(self.time[i], start.load)
-                            }
+                    if let Some(load) = loads.at.get(window) {
+                        let shift = match &tracker {
+                            Some(tracker) => tracker.shift(self.time[i], start.load),
                             None => [doubt[0] * start.load[0], doubt[1] * start.load[1]],
                         };
-                        follower.reach(&self.position, i, |k| self.step_after(k));
-                        state = state.with_load(follower, self.position[i], shift);
+                        state = state.with_load(load, self.position[i], shift);
                     }
                     if let Some(bristle) = &mut bristle {
                         state = state.with_deflection(bristle.at(i, &self.time));
@@ -338,94 +379,8 @@ impl Excitation {
     }
 }
 
-/// Noise of the position, in standard deviations, that does not count as motion: a little more than half
-/// a step of an encoder.
-const TREMBLING: f64 = 2.0;
-
-/// Time constants, or displacements of a friction contact, after which the state before is forgotten to
-/// the last digit.
+/// Time constants after which the state before is forgotten to the last digit.
 const FORGOTTEN: f64 = 37.0;
-
-/// The measured position without its trembling.
-#[derive(Clone, Debug, PartialEq)]
-struct Steady {
-    position: Vec<f64>,
-    /// Way travelled up to each sample.
-    travelled: Vec<f64>,
-}
-
-impl Steady {
-    fn new(measured: &[f64], noise: f64) -> Self {
-        let width = TREMBLING * noise;
-        let mut now = measured.first().copied().unwrap_or(0.0);
-        let mut way = 0.0;
-        let (position, travelled) = measured
-            .iter()
-            .map(|x| {
-                let before = now;
-                now = now.max(x - width).min(x + width);
-                way += (now - before).abs();
-                (now, way)
-            })
-            .unzip();
-        Self {
-            position,
-            travelled,
-        }
-    }
-
-    /// The first `n` samples.
-    fn head(&self, n: usize) -> Self {
-        Self {
-            position: self.position.iter().take(n).copied().collect(),
-            travelled: self.travelled.iter().take(n).copied().collect(),
-        }
-    }
-}
-
-/// A friction contact that follows a body which moves as measured.
-struct Bristle<'e> {
-    contact: &'e Contact,
-    steady: &'e Steady,
-    friction: &'e DryFriction,
-    deflection: f64,
-    /// Sample up to which it has followed.
-    sample: usize,
-}
-
-impl<'e> Bristle<'e> {
-    fn new(contact: &'e Contact, steady: &'e Steady, friction: &'e DryFriction) -> Self {
-        Self {
-            contact,
-            steady,
-            friction,
-            deflection: 0.0,
-            sample: 0,
-        }
-    }
-
-    /// Deflection at a sample, not before the last one asked for.
-    fn at(&mut self, sample: usize, time: &[f64]) -> f64 {
-        let Steady {
-            position,
-            travelled,
-        } = self.steady;
-        // The contact forgets over its displacement, which is longest at the highest level; a fast body may move
-        // farther in the last interval alone.
-        let since = travelled[sample] - FORGOTTEN * self.friction.presliding;
-        let forgotten = travelled[..sample].partition_point(|way| *way < since);
-        let from = self.sample.max(forgotten.saturating_sub(1));
-        for i in from + 1..=sample {
-            let moved = position[i] - position[i - 1];
-            if moved != 0.0 {
-                let level = self.friction.level_at(moved / (time[i] - time[i - 1]));
-                self.deflection = self.contact.followed(self.deflection, moved, level);
-            }
-        }
-        self.sample = sample;
-        self.deflection
-    }
-}
 
 /// The held input shifted by a dead time, as pieces of constant value in each sampling interval.
 struct DelayedInput<'a> {
