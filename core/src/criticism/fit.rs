@@ -62,14 +62,14 @@ const POLISHED: [f64; 3] = [1.0, 0.3, 0.1];
 const LEAST_DIFFERENCE: f64 = 1e-4;
 
 /// Position and velocity of the body at every sample.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
     pub position: Vec<f64>,
     pub velocity: Vec<f64>,
     /// For each window, what its state costs by itself: how far a load is off where it is taken to be.
     pub priors: Vec<f64>,
     /// Where a load begins in the windows.
-    loads: FollowedLoad,
+    pub loads: FollowedLoad,
 }
 
 impl Motion {
@@ -78,8 +78,7 @@ impl Motion {
         Self {
             position: vec![0.0; n],
             velocity: vec![0.0; n],
-            priors: Vec::new(),
-            loads: FollowedLoad::default(),
+            ..Self::default()
         }
     }
 

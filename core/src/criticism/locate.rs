@@ -204,11 +204,7 @@ mod tests {
             .map(|i| if i / 200 % 2 == 0 { 1.0 } else { -1.0 })
             .collect();
         let (mut x, mut v) = (0.0, -1.0);
-        let mut motion = Motion {
-            position: Vec::new(),
-            velocity: Vec::new(),
-            priors: Vec::new(),
-        };
+        let mut motion = Motion::default();
         for u in &input {
             motion.position.push(x);
             motion.velocity.push(v + drift);
@@ -372,7 +368,7 @@ mod tests {
         let mut motion = Motion {
             position: series(false),
             velocity: series(true),
-            priors: Vec::new(),
+            ..Motion::default()
         };
         // A velocity that is off in the ten samples after each contact.
         for i in felt.iter().flat_map(|s| *s..(s + 10).min(data.len())) {

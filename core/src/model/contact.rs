@@ -289,6 +289,26 @@ mod tests {
     }
 
     #[test]
+    fn zz_probe() {
+        for (s, damping, h) in [(2e-5, 0.2, 2e-4), (1e-4, 0.2, 2e-4), (1e-3, 0.3, 2e-4), (1e-2, 0.3, 1e-3), (1e-4, 0.05, 5e-5), (1e-3, 0.7, 1e-3), (2e-5,0.3,1e-3)] {
+            let mut model = Model::body(9e-4, 2e-3);
+            model.friction = DryFriction { level: 0.05, presliding: s, contact_damping: damping, ..DryFriction::default() };
+            let contact = Contact::new(&model).unwrap();
+            let engine = Engine::new(&model);
+            let (mut state, mut exact) = (State::at_rest(0.0), [0.0; 3]);
+            let (mut ex, mut ev) = (0.0_f64, 0.0_f64);
+            for i in 0..300 {
+                let u = [0.2, -0.25, 0.03, 0.1, -0.06, 0.0][(i / 12) % 6];
+                engine.advance(&mut state, u, h);
+                exact = integrate(&contact, |_| 0.05, u, h, exact);
+                ex = ex.max((state.position() - exact[0]).abs());
+                ev = ev.max((state.velocity() - exact[1]).abs());
+            }
+            println!("s {s} z {damping} h {h}: x {:.2e} of s, v {:.2e} of a sample's", ex / s, ev / (0.1 / 9e-4 * h));
+        }
+    }
+
+    #[test]
     fn the_force_of_a_bristle_lags_behind_a_level_that_falls_with_speed() {
         let mut model = Model::body(9e-4, 2e-3);
         model.friction = DryFriction {
