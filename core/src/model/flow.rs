@@ -328,6 +328,33 @@ impl Spring {
     }
 }
 
+impl Spring {
+    /// Time after which the velocity passes through zero, if it does before `until`, where it is `end`.
+    pub fn stops(&self, m: Motion, w: f64, q: f64, until: f64, end: f64) -> f64 {
+        if self.mu.is_some() {
+            return root(until, m.v, end, |t| self.after(m, w, q, t).v);
+        }
+        // v cos(omega t) = (alpha v + kappa y) sin(omega t) / omega
+        let alpha = 0.5 * self.lambda;
+        let square = self.kappa - alpha * alpha;
+        let y = m.x - self.b * (w + q) / self.kappa;
+        let pull = (alpha * m.v + self.kappa * y) * m.v.signum();
+        let (omega, speed) = (square.abs().sqrt(), m.v.abs());
+        let time = if omega * until < STRAIGHT {
+            speed / pull
+        } else if square > 0.0 {
+            libm::atan2(omega * speed, pull) / omega
+        } else {
+            libm::atanh(omega * speed / pull) / omega
+        };
+        // Not clamp: a wild trial of a fit may bring times that are no numbers.
+        time.max(0.0).min(until)
+    }
+}
+
+/// Radians below which a sine is its angle to round-off.
+const STRAIGHT: f64 = 1e-8;
+
 /// Squared radians of a swing below which the first terms of the series are exact to round-off.
 const SHORT_SWING: f64 = 0.25;
 
