@@ -6,6 +6,8 @@ mod bar;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 mod colors;
+#[cfg(not(target_arch = "wasm32"))]
+mod cores;
 mod document;
 mod enclosed;
 pub mod export;
@@ -19,8 +21,6 @@ mod motion;
 mod notice;
 mod packed;
 mod pages;
-#[cfg(not(target_arch = "wasm32"))]
-mod pieces;
 mod recent;
 mod save;
 mod shortcuts;

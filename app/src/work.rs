@@ -2,6 +2,7 @@
 //! itself has none of it, which keeps it small.
 
 use hysteron_core::backlash::estimate_gap;
+use hysteron_core::crew::Crew;
 use hysteron_core::criticism::{ExperimentJob, NextExperiment, Progress, StepJob, StepReport};
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
@@ -29,13 +30,13 @@ impl Work for StepTask {
         let blank = UserModel::blank(self.measurement.kind);
         let model = self.model.as_ref().unwrap_or(&blank);
         let mut job = match StepJob::with_model(&self.measurement, &self.effects, model) {
-            Ok(job) => job,
+            Ok(job) => job.with_crew(&crew()),
             Err(error) => {
                 say(News::Failed(error.to_string()));
                 return;
             }
         };
-        if let Some(report) = finish(|| advance_step(&mut job), say) {
+        if let Some(report) = finish(|| job.advance(), say) {
             say(News::Report(Box::new(report)));
         }
     }
@@ -155,15 +156,16 @@ impl Work for RevealTask {
     }
 }
 
-/// Some work, on all cores.
+/// Who does the parts of a computation: all cores.
 #[cfg(not(target_arch = "wasm32"))]
-fn advance_step(job: &mut StepJob) -> Progress<StepReport> {
-    job.advance_with(crate::pieces::width(), &mut crate::pieces::run)
+fn crew() -> Crew {
+    crate::cores::all()
 }
 
+/// The worker alone.
 #[cfg(target_arch = "wasm32")]
-fn advance_step(job: &mut StepJob) -> Progress<StepReport> {
-    job.advance()
+fn crew() -> Crew {
+    Crew::default()
 }
 
 /// One batch on all cores.

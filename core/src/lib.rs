@@ -17,6 +17,7 @@
 //! | [`measurement`] | what was measured? |
 //! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
+//! | [`crew`] | who does the parts of a computation? |
 //! | [`drive`] | what does a drive with a hidden gap do? |
 //! | [`scenario`] | a loop or a drive in a file |
 //! | [`effect`] | which physics can be added? |
@@ -28,6 +29,7 @@
 #![warn(missing_docs, clippy::disallowed_methods)]
 
 pub mod backlash;
+pub mod crew;
 pub mod criticism;
 pub mod drive;
 pub mod effect;

@@ -14,8 +14,8 @@ use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
 use super::Format;
+use crate::cores;
 use crate::enclosed::DRIVE_02;
-use crate::pieces;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -297,9 +297,10 @@ fn of(
         .map_err(|e| format!("--limits: {e}"))?;
     let mut job = DiagnosisJob::with_model(measurement, &given)
         .map_err(|e| format!("{name}: {e}"))?
-        .within(limits);
+        .within(limits)
+        .with_crew(&cores::all());
     loop {
-        match job.advance_with(pieces::width(), &mut pieces::run) {
+        match job.advance() {
             Progress::Running { fraction, text } => show(fraction, &text),
             Progress::Done(mut diagnosis) => {
                 diagnosis.seconds = started.elapsed().as_secs_f64();

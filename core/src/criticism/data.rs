@@ -3,6 +3,7 @@
 use super::CriticismError;
 use super::noise::{Noise, noise};
 use super::window::drive_window;
+use crate::crew::Crew;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start};
@@ -61,6 +62,8 @@ pub(super) struct Block {
 /// A measurement made ready for fitting.
 #[derive(Clone, Debug)]
 pub(super) struct Data {
+    /// Who does the parts of what is computed on it.
+    pub crew: Crew,
     pub kind: Kind,
     pub excitation: Excitation,
     pub input: Vec<f64>,
@@ -144,6 +147,7 @@ impl Data {
             }
         });
         Ok(Self {
+            crew: Crew::default(),
             kind: measurement.kind,
             excitation: Excitation::new(
                 &measurement.time,

@@ -331,40 +331,38 @@ impl Fit {
         let spans = data.spans();
         let difference = |moved: Motion, step: f64| difference(moved, &self.motion, step, &spans);
         let fixed = self.structure.fixed();
-        let mut columns: Vec<Motion> = steps
-            .iter()
-            .enumerate()
-            .map(|(j, step)| {
-                if j >= self.held || fixed[j] {
-                    return Motion::still(data.len());
-                }
-                let mut values = self.values.clone();
-                values[j] += step;
-                difference(self.simulate(data, &values, &self.starts), *step)
-            })
-            .collect();
-        let moved = |change: [f64; STATES]| -> Motion {
-            let change = Vector4::from(change);
-            let starts: Vec<Start> = self.starts.iter().map(|s| changed(s, &change)).collect();
-            self.simulate(data, &self.values, &starts)
+        let by_value = |j: usize| {
+            if j >= self.held || fixed[j] {
+                return Motion::still(data.len());
+            }
+            let mut values = self.values.clone();
+            values[j] += steps[j];
+            difference(self.simulate(data, &values, &self.starts), steps[j])
         };
         let model = self.structure.model(&self.values);
         let dx = 1e-6 * scales.travel.max(f64::MIN_POSITIVE);
         let dv = 1e-6 * scales.speed.max(f64::MIN_POSITIVE);
-        columns.push(if !data.has_position {
-            Motion::still(data.len())
-        } else if model.is_same_everywhere() {
-            Motion::shifted(data)
+        let by_state = |k: usize| {
+            if k == 0 && !data.has_position {
+                return Motion::still(data.len());
+            }
+            if k == 0 && model.is_same_everywhere() {
+                return Motion::shifted(data);
+            }
+            let step = [dx, dv, LOAD_DIFFERENCE, LOAD_DIFFERENCE][k];
+            let change = Vector4::ith(k, step);
+            let starts: Vec<Start> = self.starts.iter().map(|s| changed(s, &change)).collect();
+            difference(self.simulate(data, &self.values, &starts), step)
+        };
+        let states = if data.excitation.doubts_load_of(&model) {
+            STATES
         } else {
-            difference(moved([dx, 0.0, 0.0, 0.0]), dx)
-        });
-        columns.push(difference(moved([0.0, dv, 0.0, 0.0]), dv));
-        if data.excitation.doubts_load_of(&model) {
-            let d = LOAD_DIFFERENCE;
-            columns.push(difference(moved([0.0, 0.0, d, 0.0]), d));
-            columns.push(difference(moved([0.0, 0.0, 0.0, d]), d));
-        }
-        columns
+            BODY_STATES
+        };
+        let values = steps.len();
+        data.crew.gather(values + states, |j| {
+            j.checked_sub(values).map_or_else(|| by_value(j), by_state)
+        })
     }
 
     fn normal_equations(

@@ -1,10 +1,10 @@
 //! Long computations as resumable jobs: threads natively, a worker on the web, a loop in tests.
 
-use super::race::{Piece, one_by_one};
 use super::select::is_trifle;
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
 use super::{Diagnosis, Limits, Step, StepReport};
+use crate::crew::Crew;
 use crate::effect::{EffectId, FormulaError};
 use crate::measurement::Measurement;
 use crate::user_model::UserModel;
@@ -196,22 +196,19 @@ impl DiagnosisJob {
         }
     }
 
-    /// Does a small piece of work.
-    pub fn advance(&mut self) -> Progress<Diagnosis> {
-        self.advance_with(1, &mut one_by_one)
+    /// The same with the independent parts of the work done by `crew`.
+    #[must_use]
+    pub fn with_crew(self, crew: &Crew) -> Self {
+        let job = self.job.map(|job| job.with_crew(crew));
+        Self { job, ..self }
     }
 
-    /// Does some work, of which `run` gets up to `width` independent pieces at a time where there are any.
-    /// It must run each of them, in any order, on one thread or on many; the result is the same.
-    pub fn advance_with(
-        &mut self,
-        width: usize,
-        run: &mut dyn FnMut(&mut [Piece<'_>]),
-    ) -> Progress<Diagnosis> {
+    /// Does some work.
+    pub fn advance(&mut self) -> Progress<Diagnosis> {
         let Some(job) = &mut self.job else {
             return Progress::Done(self.diagnosis.clone());
         };
-        let report = match job.advance_with(width, run) {
+        let report = match job.advance() {
             Progress::Running { fraction, text } => {
                 let done = self.diagnosis.steps.len() as f64;
                 // The number of steps is not known: each takes half of what is left.

@@ -41,7 +41,6 @@ pub use next_experiment::{
     Sine, Trial,
 };
 pub use noise::noise_level;
-pub use race::Piece;
 pub use report::{
     Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
     StepReport, Verdict,

@@ -112,28 +112,6 @@ impl Contender {
     }
 }
 
-/// A piece of a computation that is independent of others handed out with it: they may be done in any order,
-/// also at the same time, and the result is the same to the last digit.
-pub struct Piece<'a> {
-    contender: &'a mut Contender,
-    track: &'a Track,
-    session: &'a Session,
-}
-
-impl Piece<'_> {
-    /// Does it; once.
-    pub fn run(&mut self) {
-        self.contender.advance(self.track, self.session);
-    }
-}
-
-/// Does pieces one after the other.
-pub(super) fn one_by_one(pieces: &mut [Piece<'_>]) {
-    for piece in pieces {
-        piece.run();
-    }
-}
-
 /// Whether the effect at this place of a fit contains `part`.
 fn contains(whole: &Fit, place: usize, part: &dyn Effect) -> bool {
     let effect = whole.structure.effects.get(place);
@@ -275,31 +253,18 @@ impl Race {
         }
     }
 
-    /// Some work, at most `width` pieces at a time given to `run`; false when the race is over.
-    pub fn advance(
-        &mut self,
-        session: &Session,
-        width: usize,
-        run: &mut dyn FnMut(&mut [Piece<'_>]),
-    ) -> bool {
+    /// Some work; false when the race is over.
+    pub fn advance(&mut self, session: &Session) -> bool {
         let open = |c: &Contender| if self.run { !c.closed } else { !c.over };
         let ready = |c: &Contender| open(c) && !self.waits(c);
         let ready: Vec<bool> = self.contenders.iter().map(ready).collect();
-        let mut pieces: Vec<Piece<'_>> = self
-            .contenders
-            .iter_mut()
-            .zip(ready)
-            .filter(|(_, ready)| *ready)
-            .map(|(c, _)| c)
-            .take(width.max(1))
-            .map(|contender| Piece {
-                contender,
-                track: &self.track,
-                session,
-            })
-            .collect();
-        if !pieces.is_empty() {
-            run(&mut pieces);
+        let crew = &session.data.crew;
+        let contenders = self.contenders.iter_mut().zip(ready);
+        let some = contenders.filter(|(_, ready)| *ready).take(crew.width());
+        let some: Vec<&mut Contender> = some.map(|(c, _)| c).collect();
+        if !some.is_empty() {
+            let track = &self.track;
+            crew.for_each(some, |contender| contender.advance(track, session));
             return true;
         }
         if self.run {

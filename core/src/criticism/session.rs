@@ -11,6 +11,7 @@ use super::select::is_noise;
 use super::split::hold_back;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::backlash::{Quality, sighted};
+use crate::crew::Crew;
 use crate::effect::{
     self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Scales,
     SeenGap,
@@ -115,6 +116,18 @@ impl Session {
         })
     }
 
+    /// Has the parts of what is computed done by `crew`.
+    pub fn employ(&mut self, crew: &Crew) {
+        let parts = [
+            Some(&mut self.data),
+            Some(&mut self.scout),
+            self.full.as_mut(),
+        ];
+        for data in parts.into_iter().flatten() {
+            data.crew = crew.clone();
+        }
+    }
+
     /// Effects that may be in a model: those of the library and the user's own.
     pub fn library(&self) -> impl Iterator<Item = &'static dyn Effect> {
         effect::for_kind(self.kind()).chain(self.own.iter().copied())
@@ -209,6 +222,7 @@ impl Session {
             spans: &data.spans(),
             body: (model.inertia, model.viscous),
             gap: self.gap,
+            crew: &data.crew,
         })
     }
 

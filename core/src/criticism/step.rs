@@ -7,7 +7,7 @@ use super::judge::{
 use super::knowledge::contradictions;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, TRYING, designs};
-use super::race::{Piece, Race, one_by_one};
+use super::race::Race;
 use super::residual_test::residual_tests;
 use super::score::Score;
 use super::search::Search;
@@ -17,6 +17,7 @@ use super::verdict::{Class, add_experiments, add_idle, add_imitations, add_rest,
 use super::{
     Candidate, Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport,
 };
+use crate::crew::Crew;
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::Measurement;
 use crate::user_model::UserModel;
@@ -118,6 +119,13 @@ impl StepJob {
         Self { limits, ..self }
     }
 
+    /// The same with the independent parts of the work done by `crew`.
+    #[must_use]
+    pub fn with_crew(mut self, crew: &Crew) -> Self {
+        self.session.employ(crew);
+        self
+    }
+
     fn of(
         session: Session,
         wanted: Vec<&'static dyn Effect>,
@@ -203,18 +211,8 @@ impl StepJob {
             .collect()
     }
 
-    /// Does a small piece of work.
+    /// Does some work.
     pub fn advance(&mut self) -> Progress<StepReport> {
-        self.advance_with(1, &mut one_by_one)
-    }
-
-    /// Does some work, of which `run` gets up to `width` independent pieces at a time where there are any.
-    /// It must run each of them, in any order, on one thread or on many; the result is the same.
-    pub fn advance_with(
-        &mut self,
-        width: usize,
-        run: &mut dyn FnMut(&mut [Piece<'_>]),
-    ) -> Progress<StepReport> {
         if matches!(self.stage, Stage::Report)
             && let Some(report) = self.report()
         {
@@ -226,7 +224,7 @@ impl StepJob {
                 let (data, scales) = (&session.data, &session.scales);
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
-            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session, width, run),
+            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session),
             Stage::Design(designs) => !designs.first_mut().is_some_and(Design::advance),
             Stage::Report => true,
         };

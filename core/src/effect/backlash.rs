@@ -168,6 +168,13 @@ impl Trial {
     }
 }
 
+/// What comes of these guesses.
+fn tried(probe: &Probe, guesses: &[Guess]) -> Vec<Trial> {
+    let trial = |i: usize| Trial::new(probe, guesses[i]);
+    let trials = probe.crew.gather(guesses.len(), trial).into_iter();
+    trials.flatten().collect()
+}
+
 fn best(mut trials: Vec<Trial>, count: usize) -> Vec<Trial> {
     trials.sort_by(|a, b| a.left.total_cmp(&b.left));
     trials.truncate(count);
@@ -206,12 +213,16 @@ fn behind(probe: &Probe, gaps: &[f64]) -> Vec<Trial> {
             .into_iter()
             .flat_map(|friction| STIFFNESS.map(|k| Guess::new(*half_gap, friction, k)))
     });
-    let trials = guesses.filter_map(|guess| Trial::new(probe, guess));
-    let mut trials: Vec<Trial> = best(trials.collect(), BEST);
-    for trial in trials.iter_mut().take(FOLLOWED) {
-        *trial = trial.clone().refined(probe);
-    }
-    best(trials, BEST)
+    let trials = best(tried(probe, &guesses.collect::<Vec<_>>()), BEST);
+    let refined = probe.crew.gather(trials.len(), |i| {
+        let trial = trials[i].clone();
+        if i < FOLLOWED {
+            trial.refined(probe)
+        } else {
+            trial
+        }
+    });
+    best(refined, BEST)
 }
 
 impl Effect for Backlash {
@@ -295,15 +306,9 @@ impl Effect for Backlash {
             return seen.iter().map(Trial::values).collect();
         }
         let stretch = &probe.stretch();
-        let scanned = gap_shares()
-            .filter_map(|share| {
-                let half_gap = share * probe.scales.travel;
-                Trial::new(
-                    stretch,
-                    Guess::new(half_gap, LOAD_FRICTION[0], STIFFNESS[0]),
-                )
-            })
-            .collect();
+        let gaps = gap_shares().map(|share| share * probe.scales.travel);
+        let guesses = gaps.map(|gap| Guess::new(gap, LOAD_FRICTION[0], STIFFNESS[0]));
+        let scanned = tried(stretch, &guesses.collect::<Vec<_>>());
         let gaps: Vec<f64> = best(scanned, REFINED)
             .iter()
             .map(|trial| trial.guess.half_gap)

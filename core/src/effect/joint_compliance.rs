@@ -103,20 +103,22 @@ impl Effect for JointCompliance {
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         let stretch = &probe.stretch();
-        let coarse = stretch
-            .load_frequencies()
-            .into_iter()
-            .filter_map(|omega| trial(stretch, omega, DAMPING_RATIO))
-            .collect();
-        let finer = best(coarse)
+        let tried = |guesses: Vec<(f64, f64)>| {
+            let trial = |i: usize| trial(stretch, guesses[i].0, guesses[i].1);
+            let trials = stretch.crew.gather(guesses.len(), trial);
+            best(trials.into_iter().flatten().collect())
+        };
+        let frequencies = stretch.load_frequencies().into_iter();
+        let coarse = tried(frequencies.map(|omega| (omega, DAMPING_RATIO)).collect());
+        let finer = coarse
             .iter()
             .flat_map(|(_, omega, _)| {
                 (-FINER_STEPS..=FINER_STEPS).map(move |k| omega * FINER.powi(k))
             })
-            .flat_map(|omega| FINER_DAMPING.map(|damping| (omega, damping)))
-            .filter_map(|(omega, damping)| trial(stretch, omega, damping))
-            .collect();
-        let found = best(finer).into_iter().filter(|t| Probe::may_be(t.0));
+            .flat_map(|omega| FINER_DAMPING.map(|damping| (omega, damping)));
+        let found = tried(finer.collect())
+            .into_iter()
+            .filter(|t| Probe::may_be(t.0));
         found.map(|t| t.2).collect()
     }
 

@@ -13,6 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Scales;
 use super::spec::WHOLE_TURN;
+use crate::crew::Crew;
 use crate::measurement::Kind;
 use crate::model::{Instant, Load, free_body, load_torque};
 use crate::order::range;
@@ -82,6 +83,8 @@ pub struct Probe {
     base_left: f64,
     inverse_inertia: f64,
     gap: Option<SeenGap>,
+    /// Who tries forces.
+    pub crew: Crew,
 }
 
 /// Products of the base answers of a window with each other and with its error, and of that with itself.
@@ -168,6 +171,8 @@ pub struct ProbeInput<'a> {
     pub body: (f64, f64),
     /// The gap that was seen, if any.
     pub gap: Option<SeenGap>,
+    /// Who tries forces.
+    pub crew: &'a Crew,
 }
 
 /// Outcome of a regression on force signatures.
@@ -215,6 +220,7 @@ impl Probe {
             base_left: f64::NAN,
             inverse_inertia: 1.0 / inertia,
             gap: input.gap,
+            crew: input.crew.clone(),
         };
         let mut lengths: Vec<usize> = probe.spans.iter().map(|(a, b)| b - a).collect();
         lengths.sort_unstable();
