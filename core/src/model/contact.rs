@@ -7,8 +7,8 @@
 //! its direction; over short pieces the body moves on the spring that joins their ends, by its exact
 //! flow; while the bristle slips, by the flow of the free body. Reversals are located as events.
 
-use super::Model;
 use super::flow::{Flow, Motion, Spring};
+use super::{Model, short};
 
 /// A contact with more radians of its own oscillation than this in one interval is taken as rigid.
 const RIGID_RADIANS: f64 = 4.0;
@@ -26,18 +26,7 @@ const PIECE: f64 = 0.3;
 const LONGEST_PIECE: f64 = 1.0;
 const PIECE_RADIANS: f64 = 0.35;
 
-/// Displacements in units of `s` beside the guess for which the exponential is a short series with these inverses, and
-/// below which that of its mean is.
-const NEAR_GUESS: f64 = 0.05;
-const NEAR_TERMS: [f64; 7] = [
-    1.0,
-    1.0 / 2.0,
-    1.0 / 3.0,
-    1.0 / 4.0,
-    1.0 / 5.0,
-    1.0 / 6.0,
-    1.0 / 7.0,
-];
+/// Way in units of `s` below which the mean of an exponential over it is a short series.
 const SHORT_WAY: f64 = 1e-3;
 
 /// A displacement below this share of the motion that is left is crossed at once: far less would be lost in
@@ -62,55 +51,34 @@ pub(super) struct Contact {
 }
 
 /// A bristle on its way from a deflection `z`, as it follows the displacement.
-struct Bent {
-    limit: f64,
+struct Bent<'a> {
+    acting: &'a Acting,
     z: f64,
-    /// A displacement, and the share of `steady - z` that is left after it.
-    guess: f64,
-    left: f64,
-    /// Deflection that it comes to on that way.
-    steady: f64,
 }
 
-impl Bent {
-    fn new(limit: f64, z: f64, guess: f64) -> Self {
-        Self {
-            limit,
-            z,
-            guess,
-            left: libm::exp(-guess.abs() / limit),
-            steady: limit * guess.signum(),
-        }
-    }
-
+impl Bent<'_> {
     /// Deflection after the displacement `moved`.
     fn at(&self, moved: f64) -> f64 {
-        let further = (self.guess.abs() - moved.abs()) / self.limit;
-        let left = if further.abs() < NEAR_GUESS && moved * self.guess > 0.0 {
-            // exp(further), to round-off.
-            let series = NEAR_TERMS.iter().rev();
-            self.left * series.fold(1.0, |sum, inverse| 1.0 + further * inverse * sum)
-        } else {
-            libm::exp(-moved.abs() / self.limit)
-        };
-        let steady = self.limit * moved.signum();
-        steady + (self.z - steady) * left
+        let steady = self.acting.limit * moved.signum();
+        steady + (self.z - steady) * short::exp(-moved.abs() * self.acting.inverse)
     }
 
-    /// Deflection per displacement over the guess, and by how much its mean over the displacement lies above the middle
-    /// of its ends; `None` where it does not move.
-    fn chord(&self) -> Option<(f64, f64)> {
-        if self.guess.abs() <= f64::MIN_POSITIVE {
+    /// Size of the change of deflection per displacement over `moved`, and by how much its mean over the displacement lies above the middle of
+    /// its ends; `None` where it does not move.
+    fn chord(&self, moved: f64) -> Option<(f64, f64)> {
+        let way = moved.abs() * self.acting.inverse;
+        if way <= f64::MIN_POSITIVE {
             return None;
         }
-        let (way, lost) = (self.guess.abs() / self.limit, 1.0 - self.left);
-        let joined = (self.steady - self.z) * lost / self.guess;
+        let left = short::exp(-way);
+        let slope = (1.0 - left) / way;
+        let ahead = self.acting.limit * moved.signum() - self.z;
         let mean = if way < SHORT_WAY {
             way * way / 12.0 * (1.0 - 0.5 * way)
         } else {
-            0.5 * (1.0 + self.left) - lost / way
+            0.5 * (1.0 + left) - slope
         };
-        Some((joined, (self.steady - self.z) * mean))
+        Some((ahead.abs() * slope * self.acting.inverse, ahead * mean))
     }
 }
 
@@ -119,6 +87,9 @@ struct Acting {
     w: f64,
     force: f64,
     level: f64,
+    /// Deflection at which the bristle slips, and its inverse.
+    limit: f64,
+    inverse: f64,
 }
 
 impl Contact {
@@ -182,7 +153,13 @@ impl Contact {
             return;
         }
         *deflection = self.within_reach(*deflection);
-        let acting = Acting { w, force, level };
+        let acting = Acting {
+            w,
+            force,
+            level,
+            limit,
+            inverse: self.stiffness / level,
+        };
         let mut left = h;
         for _ in 0..MAX_PIECES {
             // Not so either where a wild motion has used a time that is no number.
@@ -194,7 +171,7 @@ impl Contact {
             } else {
                 motion.v.signum()
             };
-            let share = 1.0 - direction * *deflection / limit;
+            let share = 1.0 - direction * *deflection * acting.inverse;
             let seen = limit > UNSEEN * (motion.v * left).abs();
             left -= if seen && share.abs() > SLIP_SHARE {
                 self.bend(&acting, motion, deflection, direction, left)
@@ -215,37 +192,32 @@ impl Contact {
         left: f64,
     ) -> f64 {
         let (start, z) = (*motion, *deflection);
-        let limit = acting.level / self.stiffness;
-        let share = 1.0 - direction * z / limit;
-        let reach = limit * (PIECE / share.abs()).min(LONGEST_PIECE);
-        let time = self.piece(acting, motion, z, share, reach, left);
-        // A spring with the force of the bristle at the start.
-        let held = |share: f64| Motion {
-            x: z / share,
-            ..start
-        };
-        let tangent = self.spring(share);
-        let guess = tangent.moved(held(share), acting.w, acting.force, time);
+        let bent = Bent { acting, z };
+        let share = 1.0 - direction * z * acting.inverse;
+        // The bristle's force at the start is held, and a spring takes what it changes by.
+        let here = Motion { x: 0.0, ..start };
+        let held = acting.force - self.stiffness * z;
+        let time = self.piece(acting, start.v, start.z + held, share.abs(), left);
+        let guess = self.spring(share).moved(here, acting.w, held, time);
         // The spring that joins the ends of the piece instead of the one at its start, and by how much its mean force is
         // off: the bristle's is bent between them.
-        let bent = Bent::new(limit, z, guess);
-        let (share, missing) = match bent.chord() {
+        let (share, missing) = match bent.chord(guess) {
             Some((joined, missing)) => {
-                let size = joined.abs().clamp(SLIP_SHARE * 0.5, 2.0);
+                let size = joined.clamp(SLIP_SHARE * 0.5, 2.0);
                 (size.copysign(share), missing)
             }
             None => (share, 0.0),
         };
-        let force = acting.force - self.stiffness * missing;
-        let (spring, held) = (self.spring(share), held(share));
-        let mut end = spring.after(held, acting.w, force, time);
+        let held = held - self.stiffness * missing;
+        let spring = self.spring(share);
+        let mut end = spring.after(here, acting.w, held, time);
         let mut used = time;
         if end.v * direction < 0.0 && start.v != 0.0 {
-            used = spring.stops(held, acting.w, force, time, end.v);
-            end = spring.after(held, acting.w, force, used);
+            used = spring.stops(here, acting.w, held, time, end.v);
+            end = spring.after(here, acting.w, held, used);
             end.v = 0.0;
         }
-        let moved = end.x - held.x;
+        let moved = end.x;
         *deflection = if moved * direction > 0.0 {
             bent.at(moved)
         } else {
@@ -258,26 +230,19 @@ impl Contact {
         used
     }
 
-    /// Time of a piece of at most `left` seconds in which the body does not move farther than `reach`, nor the contact
-    /// swing far.
-    fn piece(
-        &self,
-        acting: &Acting,
-        start: &Motion,
-        z: f64,
-        share: f64,
-        reach: f64,
-        left: f64,
-    ) -> f64 {
-        let net = start.z + acting.force - self.stiffness * z;
-        let (v, a) = (start.v.abs(), (net * self.b).abs());
+    /// Time of a piece of at most `left` seconds in which neither the bristle bends far, under the force `net` on the body,
+    /// nor the contact swings far; `share` of its stiffness is left.
+    fn piece(&self, acting: &Acting, v: f64, net: f64, share: f64, left: f64) -> f64 {
+        let (v, a) = (v.abs(), (net * self.b).abs());
         let mut time = left;
-        if left * (v + 0.5 * a * left) > reach {
+        let way = left * (v + 0.5 * a * left) * acting.inverse;
+        if way * share > PIECE || way > LONGEST_PIECE {
+            let reach = acting.limit * (PIECE / share).min(LONGEST_PIECE);
             time = time.min(2.0 * reach / (v + (v * v + 2.0 * a * reach).sqrt()));
         }
         let turned = self.frequency * time;
-        if turned * turned * share.abs() > PIECE_RADIANS * PIECE_RADIANS {
-            time = PIECE_RADIANS / (self.frequency * share.abs().sqrt());
+        if turned * turned * share > PIECE_RADIANS * PIECE_RADIANS {
+            time = PIECE_RADIANS / (self.frequency * share.sqrt());
         }
         time
     }

@@ -8,6 +8,8 @@
 //! affine in `(x, v, z, w, q)`; its coefficients depend on the duration only and are cached, since
 //! measurements are sampled at equal distances.
 
+use super::short;
+
 /// Coefficients of the solution after a duration `h`.
 #[derive(Clone, Copy, Debug)]
 struct Coefficients {
@@ -301,15 +303,15 @@ impl Spring {
             None => (0.0, 0.0, 0.0, w),
             Some(mu) => {
                 let gain = self.b / (mu * mu - self.lambda * mu + self.kappa);
-                let (offset, decay) = (m.z - w, libm::exp(-mu * h));
+                let (offset, decay) = (m.z - w, short::exp(-mu * h));
                 (offset * gain, mu, offset * gain * decay, w + offset * decay)
             }
         };
         let (y0, v0) = (m.x - rest - fading, m.v + mu * fading);
         let alpha = 0.5 * self.lambda;
         let square = self.kappa - alpha * alpha;
-        let (cosine, sine) = if (square * h * h).abs() < SHORT_SWING {
-            short_swing(square, h)
+        let (cosine, sine) = if (square * h * h).abs() < short::SHORT_SWING {
+            short::swing(square, h)
         } else if square > 0.0 {
             let omega = square.sqrt();
             (libm::cos(omega * h), libm::sin(omega * h) / omega)
@@ -319,7 +321,7 @@ impl Spring {
         } else {
             (1.0, h)
         };
-        let envelope = libm::exp(-alpha * h);
+        let envelope = short::exp(-alpha * h);
         Motion {
             x: rest + late + envelope * (y0 * (cosine + alpha * sine) + v0 * sine),
             v: -mu * late + envelope * (v0 * (cosine - alpha * sine) - self.kappa * y0 * sine),
@@ -354,32 +356,6 @@ impl Spring {
 
 /// Radians below which a sine is its angle to round-off.
 const STRAIGHT: f64 = 1e-8;
-
-/// Squared radians of a swing below which the first terms of the series are exact to round-off.
-const SHORT_SWING: f64 = 0.25;
-
-/// Inverses of 1 * 2, 3 * 4, ... and of 2 * 3, 4 * 5, ...
-const SWING_INVERSES: [(f64, f64); 8] = [
-    (1.0 / 2.0, 1.0 / 6.0),
-    (1.0 / 12.0, 1.0 / 20.0),
-    (1.0 / 30.0, 1.0 / 42.0),
-    (1.0 / 56.0, 1.0 / 72.0),
-    (1.0 / 90.0, 1.0 / 110.0),
-    (1.0 / 132.0, 1.0 / 156.0),
-    (1.0 / 182.0, 1.0 / 210.0),
-    (1.0 / 240.0, 1.0 / 272.0),
-];
-
-/// `cos(omega h)` and `sin(omega h) / omega` by their series in `square = omega^2`, which may be negative.
-fn short_swing(square: f64, h: f64) -> (f64, f64) {
-    let q = square * h * h;
-    let (mut cosine, mut sine) = (1.0, 1.0);
-    for (even, odd) in SWING_INVERSES.iter().rev() {
-        cosine = 1.0 - q * even * cosine;
-        sine = 1.0 - q * odd * sine;
-    }
-    (cosine, h * sine)
-}
 
 /// Root of `f` between 0 and `h`, where `f(0)` and `f(h)` have different signs.
 ///

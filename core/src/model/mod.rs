@@ -20,6 +20,7 @@ mod replay;
 #[cfg(test)]
 mod runge_kutta;
 mod seen_load;
+mod short;
 mod swing;
 
 pub use closed_loop::{Run, run_controlled};
