@@ -32,6 +32,9 @@ const PROMISING: f64 = 0.995;
 /// to where that was may still have some way to go.
 const WITHIN_REACH: f64 = 30.0;
 
+/// An effect that costs this many times the best on the scout is not followed on the whole record.
+const LEFT_BEHIND: f64 = 10.0;
+
 /// What the effects in a race are added to.
 struct Track {
     fit: Fit,
@@ -41,6 +44,19 @@ struct Track {
     ground: Ground,
 }
 
+/// How far an effect has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    /// Its starting points are tried on the scout.
+    Scan,
+    /// It has had so many heats.
+    Heat(usize),
+    /// It has had its heats; its result is not taken yet.
+    Over,
+    /// Nothing more is done.
+    Closed,
+}
+
 /// One effect in the race.
 struct Contender {
     effect: &'static dyn Effect,
@@ -48,11 +64,7 @@ struct Contender {
     search: Option<Search>,
     /// It is fitted to the end while it may come this close to the best cost.
     close: f64,
-    heats: usize,
-    /// It has had its heats.
-    over: bool,
-    /// Nothing more is done.
-    closed: bool,
+    stage: Stage,
     /// What it came to.
     result: Option<Fit>,
     /// That leaves nothing but noise.
@@ -62,29 +74,48 @@ struct Contender {
 impl Contender {
     /// Begins, tries a starting point, does an iteration, or after all that takes the result.
     fn advance(&mut self, track: &Track, session: &Session) {
-        if self.over {
-            self.take_result(session);
-            return;
-        }
         let Session {
             data,
             scout,
             scales,
             ..
         } = session;
-        let search = self.search.get_or_insert_with(|| {
-            let instead = track.instead.as_ref().map(|(fit, place)| (fit, *place));
-            let (fit, probe, ground) = (&track.fit, &track.probe, Some(track.ground));
-            Search::adding(data, fit, self.effect, probe, instead, ground)
-        });
-        if !search.scan(data, scout, scales) {
-            self.heats += 1;
-            let goes_on = search.iterate(data, scales);
-            self.over = !goes_on || self.heats >= HEAT;
-            if !goes_on {
-                self.take_result(session);
+        if self.stage == Stage::Scan {
+            let search = self.search.get_or_insert_with(|| {
+                let instead = track.instead.as_ref().map(|(fit, place)| (fit, *place));
+                let (fit, probe, ground) = (&track.fit, &track.probe, Some(track.ground));
+                Search::adding(data, fit, self.effect, probe, instead, ground)
+            });
+            if !search.scan(data, scout, scales) {
+                self.stage = Stage::Heat(0);
             }
+            return;
         }
+        self.stage = match (self.stage, &mut self.search) {
+            (Stage::Heat(heats), Some(search)) => {
+                if !search.iterate(data, scales) {
+                    self.take_result(session);
+                    return;
+                }
+                if heats + 1 < HEAT {
+                    Stage::Heat(heats + 1)
+                } else {
+                    Stage::Over
+                }
+            }
+            _ => return self.take_result(session),
+        };
+    }
+
+    /// Whether it has had its heats.
+    fn over(&self) -> bool {
+        matches!(self.stage, Stage::Over | Stage::Closed)
+    }
+
+    /// Least cost on the scout.
+    fn scouted(&self) -> f64 {
+        let search = self.search.as_ref();
+        search.and_then(Search::scouted).unwrap_or(f64::INFINITY)
     }
 
     /// Least cost so far.
@@ -108,7 +139,7 @@ impl Contender {
         self.result = search.and_then(|s| s.finish(&session.data, &session.scales));
         let plain = |fit: &Fit| is_plain_noise(&score(&session.data, fit));
         self.explains = self.result.as_ref().is_some_and(plain);
-        self.closed = true;
+        self.stage = Stage::Closed;
     }
 }
 
@@ -126,6 +157,8 @@ fn contains_effect(whole: &dyn Effect, part: &dyn Effect) -> bool {
 pub(super) struct Race {
     track: Track,
     contenders: Vec<Contender>,
+    /// Least cost on the scout of those that are followed, or of what they stand in for.
+    scouted: f64,
     /// Cost to come close to; infinite where the best of the race sets it.
     target: f64,
     /// Cost above which it is not worth going on.
@@ -146,13 +179,14 @@ impl Race {
         effects: impl IntoIterator<Item = &'static dyn Effect>,
         instead: Option<(&Fit, usize)>,
     ) -> Self {
+        let scouted = instead.map_or(f64::INFINITY, |(whole, _)| session.scouted(whole));
         let ground = match instead {
             None => Ground {
                 limit: PROMISING * session.scouted(fit),
                 settled: is_plain_noise(&score(&session.data, fit)),
             },
-            Some((whole, _)) => Ground {
-                limit: WITHIN_REACH * session.scouted(whole),
+            Some(_) => Ground {
+                limit: WITHIN_REACH * scouted,
                 settled: false,
             },
         };
@@ -172,13 +206,12 @@ impl Race {
                         Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
                         _ => CLOSE,
                     },
-                    heats: 0,
-                    over: false,
-                    closed: false,
+                    stage: Stage::Scan,
                     result: None,
                     explains: false,
                 })
                 .collect(),
+            scouted,
             target: instead.map_or(f64::INFINITY, |(whole, _)| whole.cost),
             ceiling: match instead {
                 Some(_) => f64::INFINITY,
@@ -196,9 +229,9 @@ impl Race {
         let done: f64 = self
             .contenders
             .iter()
-            .map(|c| if c.over { 1.0 } else { scanned(c) })
+            .map(|c| if c.over() { 1.0 } else { scanned(c) })
             .sum();
-        match self.contenders.iter().find(|c| !c.over && !self.waits(c)) {
+        match self.contenders.iter().find(|c| !c.over() && !self.waits(c)) {
             Some(c) => (0.7 * done / count, c.effect.name()),
             None => (0.8, "the best of them"),
         }
@@ -245,18 +278,48 @@ impl Race {
             .map(|c| {
                 let mut parts = self.parts_of(c).peekable();
                 let vain = parts.peek().is_some() && parts.all(idle);
-                !c.over && c.search.is_none() && (vain || self.is_needless(c))
+                c.search.is_none() && (vain || self.is_needless(c))
             })
             .collect();
         for (contender, vain) in self.contenders.iter_mut().zip(vain) {
-            contender.over |= vain;
+            if vain {
+                contender.stage = Stage::Over;
+            }
+        }
+    }
+
+    /// Whether starting points of an effect are still to be tried.
+    fn scans(&self, contender: &Contender) -> bool {
+        contender.stage == Stage::Scan && !self.waits(contender)
+    }
+
+    /// Once all are tried on the scout: those that are far behind there are not followed.
+    fn leave_behind(&mut self) {
+        let costs = self.contenders.iter().map(Contender::scouted);
+        self.scouted = costs.fold(self.scouted, f64::min);
+        for contender in &mut self.contenders {
+            if contender.stage == Stage::Heat(0) && contender.scouted() > LEFT_BEHIND * self.scouted
+            {
+                contender.search.iter_mut().for_each(Search::fall_behind);
+            }
         }
     }
 
     /// Some work; false when the race is over.
     pub fn advance(&mut self, session: &Session) -> bool {
-        let open = |c: &Contender| if self.run { !c.closed } else { !c.over };
-        let ready = |c: &Contender| open(c) && !self.waits(c);
+        let scanning = self.contenders.iter().any(|c| self.scans(c));
+        if !scanning {
+            self.leave_behind();
+        }
+        let ready = |c: &Contender| {
+            if scanning {
+                self.scans(c)
+            } else if self.run {
+                c.stage != Stage::Closed
+            } else {
+                !c.over() && !self.waits(c)
+            }
+        };
         let ready: Vec<bool> = self.contenders.iter().map(ready).collect();
         let crew = &session.data.crew;
         let contenders = self.contenders.iter_mut().zip(ready);

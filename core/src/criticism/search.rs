@@ -65,7 +65,10 @@ pub(super) struct Search {
     tried: Vec<(f64, Point)>,
     /// The best of these, worst first.
     shortlist: Vec<Point>,
+    /// What they came to on the scout, the best first once all are tried.
     scanned: Vec<(Fit, Vec<Start>)>,
+    /// Share of the record that the scout is.
+    share: f64,
     finalists: Vec<Fit>,
     /// No starting point came to be followed.
     given_up: bool,
@@ -288,6 +291,7 @@ impl Search {
             tried: Vec::new(),
             shortlist,
             scanned: Vec::new(),
+            share: 1.0,
             finalists: Vec::new(),
             given_up: false,
             present,
@@ -307,7 +311,7 @@ impl Search {
         1.0 - left as f64 / self.total as f64
     }
 
-    /// Tries the next starting point on `scout`; false when all are tried and the best are chosen.
+    /// Tries the next starting point on `scout`; false when all are tried.
     pub fn scan(&mut self, data: &Data, scout: &Data, scales: &Scales) -> bool {
         if let Some(point) = self.pending.pop_front() {
             let mut fit = self.begun(&point, scout, scales);
@@ -345,7 +349,7 @@ impl Search {
         }
         self.scanned.push((fit, point.1));
         if self.shortlist.is_empty() {
-            self.choose_finalists(data, scout, scales);
+            self.rank(data, scout, scales);
         }
         true
     }
@@ -364,12 +368,11 @@ impl Search {
         fit
     }
 
-    /// Goes on with the best of the scanned points on the whole record.
-    fn choose_finalists(&mut self, data: &Data, scout: &Data, scales: &Scales) {
+    /// Puts the scanned points in order; the best goes on while it is coming on.
+    fn rank(&mut self, data: &Data, scout: &Data, scales: &Scales) {
         self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
-        let share = scout.used() as f64 / data.used() as f64;
-        let mut scanned = std::mem::take(&mut self.scanned).into_iter();
-        let Some((mut best, starts)) = scanned.next() else {
+        self.share = scout.used() as f64 / data.used() as f64;
+        let Some((best, _)) = self.scanned.first_mut() else {
             return;
         };
         while !self.settled && best.cost > self.limit && !best.done {
@@ -379,17 +382,41 @@ impl Search {
                 break;
             }
         }
-        let hopeless = HOPELESS * self.present * share;
+    }
+
+    /// Least cost on the scout, once all points are tried.
+    pub fn scouted(&self) -> Option<f64> {
+        let all = self.pending.is_empty() && self.shortlist.is_empty();
+        let best = self.scanned.first().filter(|_| all);
+        best.map(|(fit, _)| fit.cost)
+    }
+
+    /// Is not followed, for another one is far ahead on the scout: all that is left to see is where its best point leads.
+    pub fn fall_behind(&mut self) {
+        self.given_up = true;
+        self.scanned.truncate(1);
+    }
+
+    /// Goes on with the best of the scanned points on the whole record.
+    fn choose_finalists(&mut self, data: &Data, scales: &Scales) {
+        let mut scanned = std::mem::take(&mut self.scanned).into_iter();
+        let Some((best, starts)) = scanned.next() else {
+            return;
+        };
+        let hopeless = HOPELESS * self.present * self.share;
         let near = (NEAR * best.cost).min(self.limit);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        self.given_up = best.cost > hopeless.min(self.limit);
+        if self.given_up {
+            first.take_measured_starts(data);
+        }
+        self.given_up |= best.cost > hopeless.min(self.limit);
         first.done |= self.given_up;
-        settle(&mut first, best.cost / share, data, scales);
+        settle(&mut first, best.cost / self.share, data, scales);
         self.finalists.push(first);
         for (fit, starts) in scanned.take(FINALISTS - 1) {
             if fit.cost <= near.min(hopeless) {
                 let mut next = Fit::new(data, fit.structure, fit.values, starts, scales);
-                settle(&mut next, fit.cost / share, data, scales);
+                settle(&mut next, fit.cost / self.share, data, scales);
                 self.finalists.push(next);
             }
         }
@@ -402,6 +429,9 @@ impl Search {
 
     /// One iteration of every fit that may still win; false when none goes on.
     pub fn iterate(&mut self, data: &Data, scales: &Scales) -> bool {
+        if self.finalists.is_empty() {
+            self.choose_finalists(data, scales);
+        }
         self.optimism = f64::INFINITY;
         for fit in &mut self.finalists {
             let before = fit.cost;

@@ -49,6 +49,9 @@ const ENOUGH: f64 = 1e-4;
 const REFINED: usize = 5;
 const BEST: usize = 3;
 
+/// Share of the unexplained force that the best gap may leave for loads behind it to be tried.
+const PROMISING: f64 = 0.995;
+
 /// Share of the unexplained force that may be left by a gap seen in the record for no other to be tried.
 const WELL_SEEN: f64 = 0.2;
 
@@ -311,6 +314,7 @@ impl Effect for Backlash {
         let scanned = tried(stretch, &guesses.collect::<Vec<_>>());
         let gaps: Vec<f64> = best(scanned, REFINED)
             .iter()
+            .filter(|trial| trial.left < PROMISING)
             .map(|trial| trial.guess.half_gap)
             .collect();
         let found = behind(stretch, &gaps).into_iter();

@@ -12,7 +12,7 @@ mod steps;
 use nalgebra::{DMatrix, DVector};
 
 use super::Scales;
-use super::spec::WHOLE_TURN;
+use super::spec::SEEN_TURN;
 use crate::crew::Crew;
 use crate::measurement::Kind;
 use crate::model::{Instant, Load, free_body, load_torque};
@@ -536,7 +536,7 @@ impl Probe {
         let scan: Vec<(f64, f64, f64, f64)> = fine
             .chain(coarse)
             .take_while(|n| *n <= fastest)
-            .skip_while(|n| *n * travel < WHOLE_TURN)
+            .skip_while(|n| *n * travel < SEEN_TURN)
             .filter_map(|n| self.spatial(n))
             .collect();
         let mut peaks: Vec<(f64, f64, f64, f64)> = (0..scan.len())

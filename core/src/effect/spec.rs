@@ -1,5 +1,7 @@
 //! What a parameter of an effect is: symbol, unit, range.
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 /// Whether a drive turns or slides; a process does neither.
@@ -110,7 +112,7 @@ pub enum Range {
     /// At least `RIGID_CROSSINGS` times [`Scales::crossed`], at most the travel: friction that built up over more
     /// would be a spring.
     Long,
-    /// At least `WHOLE_TURN` times its [`Scales::of`]: what repeats over the position does so within
+    /// At least `SEEN_TURN` times its [`Scales::of`]: what repeats over the position goes through most of a wave within
     /// the travel.
     Repeating,
 }
@@ -158,9 +160,9 @@ pub const STIFFEST: f64 = 0.3;
 /// A load lighter than this share of the motor is part of it.
 pub const LIGHTEST: f64 = 0.03;
 
-/// Radians in the travel from which a periodic force is seen to repeat; a part of a wave may look like
-/// any other force.
-pub const WHOLE_TURN: f64 = std::f64::consts::TAU;
+/// Radians in the travel from which a periodic force is known by its wave, three quarters of a turn; less of it may look
+/// like any other force.
+pub const SEEN_TURN: f64 = 0.75 * TAU;
 
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
@@ -202,7 +204,7 @@ impl ParameterSpec {
                 let least = RIGID_CROSSINGS * scales.crossed();
                 value.max(least).min(scales.travel.max(least))
             }
-            Range::Repeating => value.max(WHOLE_TURN * scale),
+            Range::Repeating => value.max(SEEN_TURN * scale),
         }
     }
 }
@@ -297,7 +299,7 @@ mod tests {
                 time_constant: 1.0,
             };
             // 2 Hz
-            let soft = scales.inertia * (2.0 * WHOLE_TURN).powi(2);
+            let soft = scales.inertia * (2.0 * TAU).powi(2);
             assert_eq!(stiffness.clamp(soft, &scales), soft, "{step}");
             let rigid = stiffness.clamp(1e9, &scales);
             assert!(rigid * step * step < 0.5 * scales.inertia, "{step}");
