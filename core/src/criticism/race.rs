@@ -65,6 +65,8 @@ struct Contender {
     /// It is fitted to the end while it may come this close to the best cost.
     close: f64,
     stage: Stage,
+    /// Another one is so far ahead on the scout that it is not followed.
+    behind: bool,
     /// What it came to.
     result: Option<Fit>,
     /// That leaves nothing but noise.
@@ -157,8 +159,10 @@ fn contains_effect(whole: &dyn Effect, part: &dyn Effect) -> bool {
 pub(super) struct Race {
     track: Track,
     contenders: Vec<Contender>,
-    /// Least cost on the scout of those that are followed, or of what they stand in for.
+    /// Least cost on the scout, also of what they stand in for.
     scouted: f64,
+    /// Times that cost from which an effect is left behind.
+    patience: f64,
     /// Cost to come close to; infinite where the best of the race sets it.
     target: f64,
     /// Cost above which it is not worth going on.
@@ -207,11 +211,13 @@ impl Race {
                         _ => CLOSE,
                     },
                     stage: Stage::Scan,
+                    behind: false,
                     result: None,
                     explains: false,
                 })
                 .collect(),
             scouted,
+            patience: LEFT_BEHIND,
             target: instead.map_or(f64::INFINITY, |(whole, _)| whole.cost),
             ceiling: match instead {
                 Some(_) => f64::INFINITY,
@@ -220,6 +226,19 @@ impl Race {
             parts_known: false,
             run: false,
         }
+    }
+
+    /// The same with none left behind.
+    #[must_use]
+    pub fn patient(self) -> Self {
+        let patience = f64::INFINITY;
+        Self { patience, ..self }
+    }
+
+    /// Effects that were left behind.
+    pub fn left_behind(&self) -> Vec<&'static dyn Effect> {
+        let behind = self.contenders.iter().filter(|c| c.behind);
+        behind.map(|c| c.effect).collect()
     }
 
     /// Share done, 0 to 1, roughly, and the name of the effect that is tried.
@@ -298,8 +317,9 @@ impl Race {
         let costs = self.contenders.iter().map(Contender::scouted);
         self.scouted = costs.fold(self.scouted, f64::min);
         for contender in &mut self.contenders {
-            if contender.stage == Stage::Heat(0) && contender.scouted() > LEFT_BEHIND * self.scouted
-            {
+            let far = contender.scouted() > self.patience * self.scouted;
+            if contender.stage == Stage::Heat(0) && far {
+                contender.behind = true;
                 contender.search.iter_mut().for_each(Search::fall_behind);
             }
         }

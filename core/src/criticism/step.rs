@@ -1,6 +1,7 @@
 //! One step of a diagnosis: fits one model and tries every effect on top of it.
 
 use super::fingerprint::fingerprints;
+use super::fit::Fit;
 use super::judge::{
     alike, helps_clearly, is_certain, may_hide, nested, part_does, same_body, tied,
 };
@@ -268,13 +269,17 @@ impl StepJob {
                 }
             }
             Stage::Try(race) => {
-                let fits = race.finish();
-                self.tried = fits
-                    .into_iter()
-                    .map(|(effect, fit)| (effect, self.session.scored(fit)))
-                    .collect();
+                let behind = race.left_behind();
+                self.take_tried(race.finish());
                 self.contradicted = self.contradictions();
-                self.revisit_stage()
+                match &self.model {
+                    // What was ahead does not stand up to the whole record.
+                    Some(model) if !behind.is_empty() && self.suggestion(model).is_none() => {
+                        let race = Race::new(&self.session, &model.fit, behind, None);
+                        Stage::Try(race.patient())
+                    }
+                    _ => self.revisit_stage(),
+                }
             }
             Stage::Revisit(search) => {
                 let again = self.finished(&search);
@@ -283,6 +288,7 @@ impl StepJob {
                         if again.fit.cost < BETTER_VALLEY * model.fit.cost =>
                     {
                         self.model = Some(again);
+                        self.tried.clear();
                         self.try_stage()
                     }
                     _ => self.remove_stage(0),
@@ -310,6 +316,17 @@ impl StepJob {
             }
             Stage::Report => Stage::Report,
         }
+    }
+
+    /// Takes what effects on top of the model came to, in place of what they came to before.
+    fn take_tried(&mut self, fits: Vec<(&'static dyn Effect, Fit)>) {
+        for (effect, fit) in fits {
+            self.tried.retain(|(e, _)| e.id() != effect.id());
+            self.tried.push((effect, self.session.scored(fit)));
+        }
+        let order: Vec<EffectId> = self.session.library().map(Effect::id).collect();
+        let place = |e: &dyn Effect| order.iter().position(|id| *id == e.id());
+        self.tried.sort_by_key(|(e, _)| place(*e));
     }
 
     /// A part of an effect that leaves nothing but noise is not widened to the whole.
