@@ -1,5 +1,8 @@
 //! A measurement made ready for fitting: noise levels, windows, held-back blocks.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use super::CriticismError;
 use super::noise::{Noise, noise};
 use super::window::drive_window;
@@ -64,6 +67,8 @@ pub(super) struct Block {
 pub(super) struct Data {
     /// Who does the parts of what is computed on it.
     pub crew: Crew,
+    /// Samples of models with a load that were replayed on it and on its parts: these take long.
+    load_replayed: Arc<AtomicU64>,
     pub kind: Kind,
     pub excitation: Excitation,
     pub input: Vec<f64>,
@@ -148,6 +153,7 @@ impl Data {
         });
         Ok(Self {
             crew: Crew::default(),
+            load_replayed: Arc::default(),
             kind: measurement.kind,
             excitation: Excitation::new(
                 &measurement.time,
@@ -228,6 +234,17 @@ impl Data {
             windows,
             ..self
         }
+    }
+
+    /// Counts a replay of a model with a load.
+    pub fn count_load_replay(&self) {
+        let samples = self.used() as u64;
+        self.load_replayed.fetch_add(samples, Ordering::Relaxed);
+    }
+
+    /// Such replays so far, of it and of its parts, in times of all of it.
+    pub fn load_replays(&self) -> f64 {
+        self.load_replayed.load(Ordering::Relaxed) as f64 / self.used() as f64
     }
 
     /// Samples that are used.

@@ -655,6 +655,9 @@ fn simulate(
 ) -> Motion {
     let mut motion = Motion::still(data.len());
     let model = structure.model(values);
+    if model.load.is_some() {
+        data.count_load_replay();
+    }
     motion.loads = data.excitation.follow(&model, starts, known);
     let (position, velocity) = (&mut motion.position, &mut motion.velocity);
     data.excitation

@@ -12,6 +12,10 @@ use crate::user_model::UserModel;
 /// Most effects that a diagnosis adds; a model that needs more is not this one.
 const MAX_EFFECTS: usize = 6;
 
+/// Replays of models with a load, in times of the record, after which no further model is visited: where so many do not
+/// explain it, more would not, and it would take minutes. (A gap with friction takes some twelve thousand.)
+const MOST_LOAD_REPLAYS: f64 = 20_000.0;
+
 /// Most models that a diagnosis visits, so that adding and removing cannot go round for ever.
 const MAX_STEPS: usize = 12;
 
@@ -236,7 +240,8 @@ impl DiagnosisJob {
         let unknown = report.verdict.as_ref().filter(|v| v.unknown);
         let imitation = unknown.and_then(|_| job.imitation(report.step.error));
         let (session, next) = job.successor();
-        let ended = self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS;
+        let ended =
+            self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS || exhausted(&session);
         let verdict = report.verdict.clone();
         if verdict.as_ref().is_some_and(|v| !v.contradicted.is_empty()) {
             // Wrong values are to be put right; no other way round them is looked for.
@@ -312,10 +317,14 @@ impl DiagnosisJob {
             Some(other) if !self.diagnosis.verdict.complete => other,
             _ => here,
         };
-        let settled = best.diagnosis.verdict.complete || trifling(&best.diagnosis, &session);
+        let settled = best.diagnosis.verdict.complete
+            || trifling(&best.diagnosis, &session)
+            || exhausted(&session);
         let next = if settled || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
             (self.diagnosis, self.last) = (best.diagnosis, best.last);
-            let more = !self.diagnosis.verdict.complete && self.diagnosis.steps.len() < MAX_STEPS;
+            let more = !self.diagnosis.verdict.complete
+                && self.diagnosis.steps.len() < MAX_STEPS
+                && !exhausted(&session);
             let Some((effect, without)) = best.imitation.filter(|_| more) else {
                 return Some(self.diagnosis.clone());
             };
@@ -363,6 +372,11 @@ fn trifling(diagnosis: &Diagnosis, session: &Session) -> bool {
     let last = diagnosis.steps.last().map(|s| s.error);
     last.zip(session.baseline.as_ref())
         .is_some_and(|(error, first)| is_trifle(error, first))
+}
+
+/// Whether enough was tried.
+fn exhausted(session: &Session) -> bool {
+    session.data.load_replays() > MOST_LOAD_REPLAYS
 }
 
 /// The report without what is as long as the measurement.
