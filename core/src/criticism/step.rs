@@ -273,8 +273,9 @@ impl StepJob {
                 self.take_tried(race.finish());
                 self.contradicted = self.contradictions();
                 match &self.model {
-                    // What was ahead does not stand up to the whole record.
-                    Some(model) if !behind.is_empty() && self.suggestion(model).is_none() => {
+                    // What was ahead does not stand up to the whole record, or leaves more to be found: then it may have
+                    // led astray, and the way may be another one.
+                    Some(model) if !behind.is_empty() && !self.comes_to_noise(model) => {
                         let race = Race::new(&self.session, &model.fit, behind, None);
                         Stage::Try(race.patient())
                     }
@@ -491,6 +492,13 @@ impl StepJob {
             })
             .min_by_key(|(_, s)| s.fit.values.len())
             .or(Some(best))
+    }
+
+    /// Whether the effect to add next leaves nothing but noise.
+    fn comes_to_noise(&self, model: &Scored) -> bool {
+        let first = self.session.first(model);
+        let next = self.suggestion(model);
+        next.is_some_and(|(_, with)| is_noise(&with.score, first))
     }
 
     /// Effects without which the held-back error does not rise; those of the user's model stay.
