@@ -3,6 +3,7 @@
 
 mod backlash;
 mod chart;
+mod chart_caption;
 pub mod chart_menu;
 mod compare;
 mod controls;
