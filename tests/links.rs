@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable as _;
 use hysteron::{HysteronApp, link};
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use ui::{WIDE, app, click, finish, picture, show, state, type_over};
+use ui::{App, TALL, WIDE, app, click, finish, picture, show, state, type_over};
 
 /// Opens a link in an app of its own and gives the link to what is there then.
 fn through(text: &str) -> Result<String, String> {
@@ -89,6 +89,48 @@ fn a_link_opens_a_measured_drifting_test_and_back() {
     finish(&mut there);
     assert_eq!(state(&there)["file"], Value::Null);
     assert_eq!(state(&there)["direction"], "against");
+}
+
+#[test]
+fn what_compare_shows_comes_back_in_another_window() {
+    let mut here = app("compare", TALL);
+    show(
+        &mut here,
+        "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02",
+    );
+    for (label, parts) in [
+        ("Where it fails", &["compare.look=places"][..]),
+        (
+            "Beside the step before",
+            &["compare.before=true", "compare.look=places"],
+        ),
+        (
+            "Fingerprints",
+            &["compare.before=true", "compare.look=fingerprint"],
+        ),
+    ] {
+        here.get_by_label(label).click_accesskit();
+        finish(&mut here);
+        comes_back(&here, parts);
+    }
+    // Another fingerprint than the one that is shown by itself.
+    assert_eq!(state(&here)["fingerprint"], "constant_load");
+    here.get_by_label_contains("Sensor lag 0").click_accesskit();
+    finish(&mut here);
+    comes_back(&here, &["compare.fingerprint=sensor_lag"]);
+}
+
+/// Whether the link to what is here has these settings, and shows them in another window.
+fn comes_back(here: &App, parts: &[&str]) {
+    let link = state(here)["link"].as_str().expect("a link").to_owned();
+    for part in parts {
+        assert!(link.split(';').any(|p| p == *part), "{part}: {link}");
+    }
+    let mut there = app("explore", TALL);
+    show(&mut there, &link);
+    for key in ["link", "effects", "error", "fingerprint", "plots"] {
+        assert_eq!(state(&there)[key], state(here)[key], "{key} of {link}");
+    }
 }
 
 #[test]

@@ -77,6 +77,8 @@ pub struct Compare {
     limits: Option<Limits>,
     /// A search within other limits: for which model, and the number of the proposal.
     search: Option<(Vec<EffectId>, usize, Job<ExperimentTask>)>,
+    /// The step before the one on screen, where it is not known: a link brings the last one alone.
+    earlier: Option<(Vec<EffectId>, Job)>,
     /// The finding that is shaded.
     finding: usize,
     /// The truth that came with the measurement, sealed.
@@ -107,6 +109,7 @@ impl Default for Compare {
             fingerprint: None,
             limits: None,
             search: None,
+            earlier: None,
             finding: 0,
             sealed: None,
             files: Files::default(),
@@ -201,6 +204,7 @@ impl Compare {
             }
         }
         self.take_search();
+        self.take_earlier(ctx);
         if let Some(sealed) = &mut self.sealed {
             sealed.update(self.shown.as_deref().unwrap_or_default());
         }
@@ -285,7 +289,7 @@ impl Compare {
             }
             let mut before = self.before;
             let can =
-                self.report_before().is_some() && matches!(self.look, Look::Time | Look::Places);
+                self.effects_before().is_some() && matches!(self.look, Look::Time | Look::Places);
             let toggle = ui.add_enabled(
                 can,
                 egui::Checkbox::new(&mut before, tr("Beside the step before")),
@@ -390,7 +394,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.job.is_some() || self.search.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
+            "busy": self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
             "progress": self.progress.0,
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
             "effects": report.map(|r| r.step.effects.clone()),
