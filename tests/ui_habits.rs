@@ -8,10 +8,9 @@ mod ui;
 use std::collections::BTreeSet;
 use std::sync::mpsc::channel;
 
-use egui::epaint::{ClippedShape, Shape};
 use egui::{Event, Modifiers, PointerButton, Pos2, Rect, Role, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use ui::{App, PLACES, TALL, app, finish, show, state};
+use ui::{App, PLACES, TALL, app, finish, show, state, texts};
 
 /// A phone's window, points.
 const PHONE: [f32; 2] = [390.0, 844.0];
@@ -35,21 +34,6 @@ const PLOTS: [&str; 13] = [
     "v1;compare;compare.file=drive-02;compare.look=fingerprint",
     "v1;compare;compare.file=process-02",
 ];
-
-fn texts(harness: &App) -> Vec<String> {
-    fn collect(shape: &Shape, texts: &mut Vec<String>) {
-        match shape {
-            Shape::Text(text) => texts.push(text.galley.job.text.clone()),
-            Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, texts)),
-            _ => {}
-        }
-    }
-    let mut texts = Vec::new();
-    for ClippedShape { shape, .. } in &harness.output().shapes {
-        collect(shape, &mut texts);
-    }
-    texts
-}
 
 /// Names and places of the controls of some roles.
 fn controls(harness: &App, roles: &[Role]) -> Vec<(String, Rect)> {

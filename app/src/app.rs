@@ -14,7 +14,7 @@ use crate::document::Document;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
-use crate::pages::{Command, Desk, View, chart_menu, registry};
+use crate::pages::{Command, Desk, View, chart_menu, chart_zoom, registry};
 use crate::shortcuts;
 use crate::theme::{self, Look};
 use crate::{lessons, link};
@@ -181,7 +181,10 @@ impl HysteronApp {
             egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, sentence, link, desk));
         }
         if let Some(page) = self.pages.get_mut(self.front) {
+            desk.zooms.follow(page.id(), &present.settings[page.id()]);
+            chart_zoom::begin(ui.ctx(), desk.zooms.of(page.id()));
             page.ui(ui, desk);
+            desk.zooms.note(page.id(), chart_zoom::end(ui.ctx()));
         }
         self.give_plots(ui);
         self.plots = chart_menu::axes(ui.ctx());

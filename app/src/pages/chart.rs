@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut, RangeInclusive};
 
-use egui::{AsIdSalt, IdSalt};
+use egui::IdSalt;
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory,
     PlotPoint, PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
@@ -10,6 +10,7 @@ use egui_plot::{
 
 pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_menu;
+use super::chart_zoom::Zoomed;
 use crate::export::Table;
 use crate::language::{tr, tr_number};
 use crate::theme;
@@ -83,6 +84,8 @@ pub fn sparse(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 pub struct Chart<'a> {
     plot: Plot<'a>,
     salt: IdSalt,
+    /// What its zoom is called in links, and which of its axes have one.
+    zoom: (String, [bool; 2]),
     /// Names of the axes with their units, in English.
     axes: [String; 2],
     /// The x of what is drawn are logarithms to base 10.
@@ -93,13 +96,15 @@ pub struct Chart<'a> {
 
 impl<'a> Chart<'a> {
     /// A plot of this height; the labels of y are at least `width` wide, so that plots above each other line up.
+    /// No other of its page has its name.
     pub fn new(
-        salt: impl AsIdSalt,
+        name: impl Into<String>,
         [x, y]: [impl Into<String>; 2],
         height: f32,
         width: f32,
     ) -> Self {
-        let salt = IdSalt::new(salt);
+        let name = name.into();
+        let salt = IdSalt::new(&name);
         let axes = [x.into(), y.into()];
         let axis = |hints: AxisHints<'static>, i: usize| {
             hints.label_spacing(shown_from(LABELS[i])).formatter(label)
@@ -119,6 +124,7 @@ impl<'a> Chart<'a> {
         Self {
             plot,
             salt,
+            zoom: (name, [true; 2]),
             axes,
             decades: false,
             drag_zoomed: false,
@@ -155,10 +161,18 @@ impl<'a> Chart<'a> {
         self.with(|plot| plot.allow_axis_zoom_drag(false))
     }
 
+    /// Is zoomed in x alone, together with those of the same group, which moves them.
+    #[must_use]
+    pub fn zoomed_as(mut self, group: &str) -> Self {
+        self.zoom = (group.to_owned(), [true, false]);
+        self
+    }
+
     /// Stays where it is.
     #[must_use]
     pub fn fixed(mut self) -> Self {
         self.drag_zoomed = false;
+        self.zoom.1 = [false; 2];
         self.with(|plot| {
             plot.allow_zoom(false)
                 .allow_boxed_zoom(false)
@@ -176,20 +190,31 @@ impl<'a> Chart<'a> {
         let Self {
             mut plot,
             salt,
+            zoom,
             axes,
             decades,
             drag_zoomed,
         } = self;
         let id = ui.scope_id().with(salt);
+        plot = plot.id(id);
         if drag_zoomed {
             let memory = PlotMemory::load(ui.ctx(), id);
             let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
-            plot = plot.id(id).allow_drag(zoomed);
+            plot = plot.allow_drag(zoomed);
+        }
+        let zoom = Zoomed::new(id, &zoom.0, zoom.1);
+        let change = zoom.change(ui.ctx());
+        if change.is_some() {
+            // What is drawn may depend on what was in view before.
+            ui.ctx().request_repaint();
         }
         let start = ui.cursor().min;
         let table = chart_menu::wants_numbers(ui.ctx(), id).then(|| Table::new("plot"));
         let titles = axes.clone();
         let shown = plot.show(ui, move |plot| {
+            if let Some(change) = change {
+                change.make(plot);
+            }
             let mut pen = Pen {
                 plot,
                 axes: titles,
@@ -198,6 +223,7 @@ impl<'a> Chart<'a> {
             };
             (draw(&mut pen), pen.table)
         });
+        zoom.note(ui.ctx());
         let (inner, table) = shown.inner;
         chart_menu::ui(ui, id, &axes, start, shown.response.rect, table);
         PlotResponse {

@@ -5,6 +5,7 @@ mod backlash;
 mod chart;
 mod chart_caption;
 pub mod chart_menu;
+pub mod chart_zoom;
 mod compare;
 mod controls;
 mod explore;
@@ -24,6 +25,7 @@ use crate::lessons::Study;
 use crate::recent::{Recent, Recents};
 use crate::save::Document;
 use crate::theme::Look;
+use crate::zoom::AllZooms;
 
 /// A page.
 pub trait View {
@@ -102,6 +104,8 @@ pub struct Desk {
     pub study: Study,
     /// Files that were opened before.
     pub recent: Recents,
+    /// What of the plots is in view.
+    pub zooms: AllZooms,
     /// Where the buttons are.
     pub targets: Targets,
     /// What is to be done after this frame.
