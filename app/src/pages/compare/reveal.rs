@@ -2,7 +2,7 @@
 
 use egui::RichText;
 use hysteron_core::criticism::with_error;
-use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
+use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of, shown_unit};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 
 use super::{Command, Compare};
@@ -250,7 +250,7 @@ fn with_unit(value: f64, unit: &str) -> String {
     if unit.is_empty() || unit == "1" {
         text
     } else {
-        format!("{text} {unit}")
+        format!("{text} {}", shown_unit(unit))
     }
 }
 
