@@ -56,8 +56,8 @@ pub trait View {
     fn table_names(&self) -> Vec<&'static str> {
         Vec::new()
     }
-    /// What to try next on it: a sentence, and the link that shows it.
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
+    /// What to try next on it.
+    fn hint(&self) -> Option<Hint> {
         None
     }
     /// Plays or pauses, if something moves on it.
@@ -110,6 +110,30 @@ pub struct Desk {
     pub targets: Targets,
     /// What is to be done after this frame.
     pub commands: Vec<Command>,
+}
+
+/// What to try next: a sentence, and what does it at a press; some things only the user can do.
+pub struct Hint {
+    pub sentence: String,
+    pub commands: Vec<Command>,
+}
+
+impl Hint {
+    /// One that a link shows.
+    pub fn open(sentence: &str, link: &str) -> Self {
+        Self {
+            sentence: sentence.to_owned(),
+            commands: vec![Command::OpenLink(link.to_owned())],
+        }
+    }
+
+    /// One that the app cannot do.
+    pub fn say(sentence: impl Into<String>) -> Self {
+        Self {
+            sentence: sentence.into(),
+            commands: Vec::new(),
+        }
+    }
 }
 
 /// What a page asks of the app; carried out once, after drawing.

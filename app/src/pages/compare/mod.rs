@@ -5,6 +5,7 @@ mod atlas;
 mod experiment;
 mod export;
 mod fingerprint;
+mod hint;
 mod history;
 mod missing;
 mod open;
@@ -27,7 +28,7 @@ use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
 use serde::{Deserialize, Serialize};
 
-use super::{Desk, View};
+use super::{Desk, Hint, View};
 pub use settings::is_built_in;
 
 use crate::document::parsed;
@@ -432,11 +433,8 @@ impl View for Compare {
         Self::ui(self, ui, desk);
     }
 
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
-        Some((
-            "A drive that answers late: there one effect is not enough.",
-            "v1;compare;compare.file=drive-12",
-        ))
+    fn hint(&self) -> Option<Hint> {
+        Some(self.next())
     }
 
     fn table_names(&self) -> Vec<&'static str> {
