@@ -43,6 +43,9 @@ use crate::tasks::ExperimentTask;
 use answer::times_noise;
 use welcome::BUILT_IN;
 
+/// Height of the plots over time in a narrow window, points.
+const NARROW_PLOTS: f32 = 220.0;
+
 /// Longest time without a new frame while a job runs.
 const ALIVE: std::time::Duration = std::time::Duration::from_millis(100);
 
@@ -225,16 +228,23 @@ impl Compare {
             if narrow {
                 egui::CentralPanel::default().show(ui, |ui| {
                     egui::ScrollArea::vertical().show(ui, |ui| {
+                        // What is seen first, then what could be done: the list of effects is long.
                         self.answer_ui(ui);
-                        // What was asked for stands where it was asked.
-                        let reveals = self.look == Look::Reveal;
-                        if reveals {
-                            reveal::ui(self, ui, targets, &mut commands);
-                        }
-                        side::ui(self, ui, targets, &mut commands);
+                        self.message_ui(ui, &mut commands);
+                        side::progress_ui(self, ui, &mut commands);
+                        let top = ui.cursor().min;
                         self.looks_ui(ui, targets, &mut commands);
-                        if !reveals {
-                            self.evidence_ui(ui, 220.0, targets, &mut commands);
+                        self.evidence_ui(ui, NARROW_PLOTS, targets, &mut commands);
+                        let asked = commands.len();
+                        ui.separator();
+                        side::file_ui(self, ui, targets, &mut commands);
+                        side::findings_ui(self, ui, targets, &mut commands);
+                        // What is asked for below stands above.
+                        let shows =
+                            |c: &Command| matches!(c, Command::Look(_) | Command::Fingerprint(_));
+                        if commands.iter().skip(asked).any(shows) {
+                            let place = egui::Rect::from_min_size(top, egui::Vec2::ZERO);
+                            ui.scroll_to_rect(place, Some(egui::Align::TOP));
                         }
                     });
                 });
