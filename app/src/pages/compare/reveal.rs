@@ -149,13 +149,9 @@ pub(super) fn ui(
             "They are for the model that was on screen then; the model is another one now.",
         ));
     }
-    egui::ScrollArea::vertical()
-        .id_salt("truth")
-        .show(ui, |ui| {
-            effects_ui(reveal, ui);
-            numbers_ui(reveal, ui);
-            rule_ui(reveal, ui);
-        });
+    effects_ui(reveal, ui);
+    numbers_ui(reveal, ui);
+    rule_ui(reveal, ui);
 }
 
 fn effects_ui(reveal: &Reveal, ui: &mut egui::Ui) {
