@@ -256,6 +256,7 @@ fn every_plot_gives_its_picture_and_its_numbers() {
             let menu = format!("Menu of the plot: {y} over {x}");
             for (item, ending) in [
                 ("Picture of this plot (SVG)", "svg"),
+                ("Picture of this plot (PNG)", "png"),
                 ("Data of this plot (CSV)", "csv"),
             ] {
                 let mut menus = harness.query_all_by_label(&menu);
@@ -267,6 +268,10 @@ fn every_plot_gives_its_picture_and_its_numbers() {
                 finish(&mut harness);
                 let (name, bytes) = files.try_recv().expect("a file");
                 assert!(name.ends_with(ending), "{name}");
+                if ending == "png" {
+                    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{place}: {menu}");
+                    continue;
+                }
                 let text = String::from_utf8(bytes).expect("text");
                 let first = text.lines().next().unwrap_or_default();
                 if ending == "svg" {
