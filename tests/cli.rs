@@ -229,7 +229,7 @@ fn the_text_tells_the_story_in_80_columns() {
         "rig.csv: 10000 samples of a drive",
         "Baseline",
         "Error 8.31 times the noise",
-        "(8.790 ± 0.010)e-4 kg m^2",
+        "(8.790 ± 0.010)e-4 kg m²",
         "71 % of the error lies within 3 ms",
         "coulomb_friction          1.02     -5210.0  helps",
         "same as constant_load",

@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable as _;
 use hysteron::{HysteronApp, link};
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use ui::{WIDE, app, click, finish, picture, show, state, type_over};
+use ui::{App, TALL, WIDE, app, click, finish, picture, show, state, texts, type_over};
 
 /// Opens a link in an app of its own and gives the link to what is there then.
 fn through(text: &str) -> Result<String, String> {
@@ -91,6 +91,146 @@ fn a_link_opens_a_measured_drifting_test_and_back() {
     assert_eq!(state(&there)["direction"], "against");
 }
 
+/// What is written on the screen, the numbers of axes too, without a pointer.
+fn written(harness: &mut App) -> Vec<String> {
+    harness.remove_cursor();
+    harness.run_steps(4);
+    let mut texts = texts(harness);
+    texts.sort();
+    texts
+}
+
+/// Zooms into the plot of this name by a pinch.
+fn zoom_in(harness: &mut App, axes: &str) -> Value {
+    let menu = format!("Menu of the plot: {axes}");
+    let mut menus = harness.get_all_by_label(&menu);
+    let corner = menus.next().expect("a plot").rect().left_top();
+    drop(menus);
+    harness.hover_at(corner - egui::vec2(90.0, 60.0));
+    harness.step();
+    harness.input_mut().events.push(egui::Event::Zoom(2.5));
+    finish(harness);
+    state(harness)["link"].clone()
+}
+
+#[test]
+fn the_zoom_of_a_plot_comes_back_in_another_window() {
+    for (place, axes, plot) in [
+        (
+            "v1;explore;explore.paused=20",
+            "output y, input u over time [s]",
+            "explore=time:",
+        ),
+        (
+            "v1;tune",
+            "output y, input u over time [s]",
+            "tune=relay_run:",
+        ),
+        (
+            "v1;tune;tune.step=ultimate",
+            "imaginary part over real part",
+            "tune=ultimate:",
+        ),
+        (
+            "v1;backlash;backlash.paused=1",
+            "position [mrad] over time [s]",
+            "backlash=positions:",
+        ),
+        (
+            "v1;compare;compare.file=drive-02",
+            "v1 [rad/s] over time [s]",
+            "compare=time:",
+        ),
+        (
+            "v1;compare;compare.file=drive-02;compare.look=places",
+            "rms over velocity [rad/s]",
+            "compare=atlas_",
+        ),
+    ] {
+        let mut here = app("start", TALL);
+        show(&mut here, place);
+        let link = zoom_in(&mut here, axes);
+        let copied = link.as_str().expect("a link");
+        assert!(
+            copied.contains(&format!("zoom.{plot}")),
+            "{place}: {copied}"
+        );
+        assert!(copied.len() < place.len() + 80, "{copied}");
+        let seen = written(&mut here);
+
+        let mut there = app("lessons", TALL);
+        show(&mut there, copied);
+        assert_eq!(state(&there)["link"], link, "{place}");
+        assert_eq!(written(&mut there), seen, "{place}");
+        // A link without it shows all, also where one has zoomed.
+        let mut whole = app("lessons", TALL);
+        show(&mut whole, place);
+        show(&mut there, place);
+        assert_eq!(state(&there)["link"], place);
+        assert_eq!(written(&mut there), written(&mut whole), "{place}");
+        assert_ne!(written(&mut there), seen, "{place}");
+    }
+}
+
+#[test]
+fn a_zoom_is_taken_back_and_is_not_of_the_next_record() {
+    let mut harness = app("start", TALL);
+    show(&mut harness, "v1;compare;compare.file=drive-02");
+    let axes = "v1 [rad/s] over time [s]";
+    let zoomed = zoom_in(&mut harness, axes);
+    assert!(zoomed.as_str().is_some_and(|l| l.contains("zoom")));
+    // Long enough for undo to take it for a step.
+    harness.run_steps(12);
+    click(&mut harness, "Undo");
+    assert_eq!(state(&harness)["link"], "v1;compare;compare.file=drive-02");
+    click(&mut harness, "Redo");
+    assert_eq!(state(&harness)["link"], zoomed);
+    click(&mut harness, "Open another");
+    assert_eq!(state(&harness)["link"], "v1;compare");
+}
+
+#[test]
+fn what_compare_shows_comes_back_in_another_window() {
+    let mut here = app("compare", TALL);
+    show(
+        &mut here,
+        "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02",
+    );
+    for (label, parts) in [
+        ("Where it fails", &["compare.look=places"][..]),
+        (
+            "Beside the step before",
+            &["compare.before=true", "compare.look=places"],
+        ),
+        (
+            "Fingerprints",
+            &["compare.before=true", "compare.look=fingerprint"],
+        ),
+    ] {
+        here.get_by_label(label).click_accesskit();
+        finish(&mut here);
+        comes_back(&here, parts);
+    }
+    // Another fingerprint than the one that is shown by itself.
+    assert_eq!(state(&here)["fingerprint"], "constant_load");
+    here.get_by_label_contains("Sensor lag 0").click_accesskit();
+    finish(&mut here);
+    comes_back(&here, &["compare.fingerprint=sensor_lag"]);
+}
+
+/// Whether the link to what is here has these settings, and shows them in another window.
+fn comes_back(here: &App, parts: &[&str]) {
+    let link = state(here)["link"].as_str().expect("a link").to_owned();
+    for part in parts {
+        assert!(link.split(';').any(|p| p == *part), "{part}: {link}");
+    }
+    let mut there = app("explore", TALL);
+    show(&mut there, &link);
+    for key in ["link", "effects", "error", "fingerprint", "plots"] {
+        assert_eq!(state(&there)[key], state(here)[key], "{key} of {link}");
+    }
+}
+
 #[test]
 fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
     let mut harness = app("explore", WIDE);
@@ -128,6 +268,11 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
             "v1;compare;compare.mystery=AQ;compare.file=drive-02",
             "not both",
         ),
+        ("v1;explore;zoom.explore=time:0,nan", "cannot be"),
+        ("v1;explore;zoom.explore=time:5,2", "cannot be"),
+        ("v1;explore;zoom.explore=7", "cannot be"),
+        ("v1;explore;zoom=7", "cannot be"),
+        ("v1;explore;zoom.nowhere=time:0,1", "zoom.nowhere"),
         ("v1;tune;tune.rule=luck", "rule"),
         ("v1;maps;maps.across.from=9", "must be the larger"),
     ] {

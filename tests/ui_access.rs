@@ -136,6 +136,26 @@ fn ask(harness: &mut App, menu: &str, item: &str) -> GivenFile {
     files.try_recv().expect("a file")
 }
 
+/// Width and height of a picture, and how many colours it has.
+fn png(bytes: &[u8]) -> ([usize; 2], usize) {
+    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+    let number = |at: usize| {
+        let four = bytes[at..at + 4].try_into().expect("four bytes");
+        u32::from_be_bytes(four) as usize
+    };
+    let size = [number(16), number(20)];
+    // Behind the signature and the head stand the pixels, row by row, each row behind a byte.
+    let (head, data) = (8 + 25, number(8 + 25));
+    assert_eq!(&bytes[head + 4..head + 8], b"IDAT");
+    let pixels = &bytes[head + 8..head + 8 + data];
+    let rows = miniz_oxide::inflate::decompress_to_vec_zlib(pixels).expect("pixels");
+    assert_eq!(rows.len(), (1 + 3 * size[0]) * size[1]);
+    let colours = rows
+        .chunks(1 + 3 * size[0])
+        .flat_map(|row| row[1..].chunks(3));
+    (size, colours.collect::<BTreeSet<_>>().len())
+}
+
 #[test]
 fn every_plot_gives_its_picture_and_its_numbers() {
     let mut harness = app("explore", WIDE);
@@ -168,6 +188,14 @@ fn every_plot_gives_its_picture_and_its_numbers() {
     for elsewhere in ["real part", "Relay", "thresholds"] {
         assert!(!svg.contains(elsewhere), "{elsewhere}");
     }
+    let (name, bytes) = ask(&mut harness, menu, "Picture of this plot (PNG)");
+    assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.png");
+    let (size, colours) = png(&bytes);
+    // A part of the page, and not a blank one.
+    assert!(size[0] > 300 && size[0] < 1000, "{size:?}");
+    assert!(size[1] > 150 && size[1] < 500, "{size:?}");
+    assert!(colours > 24, "{colours} colours");
+
     show(&mut harness, "v1;maps");
     let menu = "Menu of the plot: relay gain k over hysteresis ε";
     let (name, bytes) = ask(&mut harness, menu, "Data of this plot (CSV)");

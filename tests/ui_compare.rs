@@ -102,3 +102,41 @@ fn a_narrow_window_shows_the_next_experiment_too() {
     finish(&mut harness);
     picture(&mut harness, "compare_next_experiment_narrow");
 }
+
+#[test]
+fn the_hint_follows_what_is_open_and_what_was_found() {
+    let hint = |harness: &App| state(harness)["hint"].as_str().map(str::to_owned);
+    let says = |harness: &App, part: &str| {
+        let hint = hint(harness).expect("a hint");
+        assert!(hint.contains(part), "{hint}");
+        assert!(hint.len() < 80, "{hint}");
+    };
+    let mut harness = app("compare", WIDE);
+    says(&harness, "Begin with a drive");
+    // Pressed again and again, it leads through a diagnosis and on to another record.
+    click(&mut harness, "Try it");
+    assert_eq!(state(&harness)["file"], "drive-02");
+    says(&harness, "Coulomb friction helps most");
+    click(&mut harness, "Try it");
+    assert!(state(&harness)["error"].as_f64().is_some_and(|e| e < 1.2));
+    says(&harness, "Nothing more is missing: see beside it");
+    click(&mut harness, "Try it");
+    let link = state(&harness)["link"].clone();
+    assert!(
+        link.as_str()
+            .is_some_and(|l| l.contains("compare.before=true"))
+    );
+    says(&harness, "A drive that answers late");
+    click(&mut harness, "Try it");
+    assert_eq!(state(&harness)["file"], "drive-12");
+    says(&harness, "helps most: add it");
+    // What no data of it can decide.
+    let mut harness = opened("drive-05", WIDE);
+    press(&mut harness, "Add Gain asymmetry");
+    says(&harness, "Only another experiment");
+    press(&mut harness, "Try it");
+    assert_eq!(state(&harness)["page"], "explore");
+    // Nothing to find, but elsewhere.
+    let harness = opened("drive-01", WIDE);
+    says(&harness, "A drive that answers late");
+}

@@ -120,7 +120,8 @@ const NOT_DRAWN: [&str; 28] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 24] = [
+const NO_TEXTS: [&str; 25] = [
+    "Crew",
     "hysteron files",
     "hysteron motion",
     "reduced motion",

@@ -8,10 +8,9 @@ mod ui;
 use std::collections::BTreeSet;
 use std::sync::mpsc::channel;
 
-use egui::epaint::{ClippedShape, Shape};
 use egui::{Event, Modifiers, PointerButton, Pos2, Rect, Role, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use ui::{App, PLACES, TALL, app, finish, show, state};
+use ui::{App, PLACES, TALL, app, finish, show, state, texts};
 
 /// A phone's window, points.
 const PHONE: [f32; 2] = [390.0, 844.0];
@@ -35,21 +34,6 @@ const PLOTS: [&str; 13] = [
     "v1;compare;compare.file=drive-02;compare.look=fingerprint",
     "v1;compare;compare.file=process-02",
 ];
-
-fn texts(harness: &App) -> Vec<String> {
-    fn collect(shape: &Shape, texts: &mut Vec<String>) {
-        match shape {
-            Shape::Text(text) => texts.push(text.galley.job.text.clone()),
-            Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, texts)),
-            _ => {}
-        }
-    }
-    let mut texts = Vec::new();
-    for ClippedShape { shape, .. } in &harness.output().shapes {
-        collect(shape, &mut texts);
-    }
-    texts
-}
 
 /// Names and places of the controls of some roles.
 fn controls(harness: &App, roles: &[Role]) -> Vec<(String, Rect)> {
@@ -272,6 +256,7 @@ fn every_plot_gives_its_picture_and_its_numbers() {
             let menu = format!("Menu of the plot: {y} over {x}");
             for (item, ending) in [
                 ("Picture of this plot (SVG)", "svg"),
+                ("Picture of this plot (PNG)", "png"),
                 ("Data of this plot (CSV)", "csv"),
             ] {
                 let mut menus = harness.query_all_by_label(&menu);
@@ -283,6 +268,10 @@ fn every_plot_gives_its_picture_and_its_numbers() {
                 finish(&mut harness);
                 let (name, bytes) = files.try_recv().expect("a file");
                 assert!(name.ends_with(ending), "{name}");
+                if ending == "png" {
+                    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{place}: {menu}");
+                    continue;
+                }
                 let text = String::from_utf8(bytes).expect("text");
                 let first = text.lines().next().unwrap_or_default();
                 if ending == "svg" {

@@ -14,7 +14,7 @@ use crate::document::Document;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
-use crate::pages::{Command, Desk, View, chart_menu, registry};
+use crate::pages::{Command, Desk, Hint, View, chart_menu, chart_zoom, registry};
 use crate::shortcuts;
 use crate::theme::{self, Look};
 use crate::{lessons, link};
@@ -175,13 +175,16 @@ impl HysteronApp {
         let desk = &mut self.desk;
         desk.study.ui(ui, &mut desk.targets, &mut desk.commands);
         let hint = self.pages.get(self.front).and_then(|p| p.hint());
-        if let Some((sentence, link)) = hint
+        if let Some(hint) = hint
             && desk.study.lesson.is_none()
         {
-            egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, sentence, link, desk));
+            egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, hint, desk));
         }
         if let Some(page) = self.pages.get_mut(self.front) {
+            desk.zooms.follow(page.id(), &present.settings[page.id()]);
+            chart_zoom::begin(ui.ctx(), desk.zooms.of(page.id()));
             page.ui(ui, desk);
+            desk.zooms.note(page.id(), chart_zoom::end(ui.ctx()));
         }
         self.give_plots(ui);
         self.plots = chart_menu::axes(ui.ctx());
@@ -336,6 +339,7 @@ impl HysteronApp {
             state[page.id()] = own;
         }
         state["ready"] = true.into();
+        state["hint"] = front.and_then(|p| p.hint()).map(|h| h.sentence).into();
         state["busy"] = busy.into();
         state["page"] = front.map(|p| p.id()).into();
         state["frame"] = self.frame.into();
@@ -419,13 +423,16 @@ impl HysteronApp {
 }
 
 /// What to try next.
-fn hint_ui(ui: &mut egui::Ui, sentence: &str, link: &str, desk: &mut Desk) {
+fn hint_ui(ui: &mut egui::Ui, hint: Hint, desk: &mut Desk) {
     theme::running_text(ui, |ui| {
-        ui.label(tr(sentence));
+        ui.label(tr(hint.sentence));
+        if hint.commands.is_empty() {
+            return;
+        }
         let button = ui.button(tr("Try it"));
         desk.targets.note("try", ui, &button);
         if button.clicked() {
-            desk.commands.push(Command::OpenLink(link.to_owned()));
+            desk.commands.extend(hint.commands);
         }
     });
 }

@@ -7,11 +7,14 @@ use serde_json::{Value, json};
 use crate::lessons::find;
 use crate::link;
 use crate::pages::{Desk, View};
+use crate::zoom::Zooms;
 
 /// Key of the loop that several pages share.
 const LOOP: &str = "loop";
 /// Key of the lesson that is open.
 const LESSON: &str = "lesson";
+/// Key of what of the plots is in view, page by page.
+const ZOOM: &str = "zoom";
 
 /// The page in front and what is set on every page.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,9 +28,12 @@ pub struct Document {
 impl Document {
     /// What is set now.
     pub fn of(pages: &[Box<dyn View>], front: usize, desk: &Desk) -> Self {
+        let ids = pages.iter().map(|p| p.id());
+        let zooms = ids.map(|id| (id.to_owned(), json!(desk.zooms.of(id).text())));
         let shared = [
             (LOOP.to_owned(), json!(desk.relay_loop)),
             (LESSON.to_owned(), json!(desk.study.lesson)),
+            (ZOOM.to_owned(), link::object(zooms)),
         ];
         let own = pages.iter().map(|p| (p.id().to_owned(), p.settings()));
         Self {
@@ -42,6 +48,7 @@ impl Document {
         for key in [LOOP, LESSON, &self.page] {
             shown[key] = self.settings[key].clone();
         }
+        shown[ZOOM][&self.page] = self.settings[ZOOM][&self.page].clone();
         link::write(&self.page, &shown, &defaults.settings)
     }
 
@@ -71,6 +78,7 @@ impl Document {
         for key in [LOOP, LESSON, &self.page] {
             settings[key] = self.settings[key].take();
         }
+        settings[ZOOM][&self.page] = self.settings[ZOOM][&self.page].clone();
         self.settings = settings;
         self
     }
@@ -99,6 +107,10 @@ impl Document {
         if lesson.as_deref().is_some_and(|id| find(id).is_none()) {
             return Err("This link is about a lesson that does not exist.".to_owned());
         }
+        let zooms = pages
+            .iter()
+            .map(|p| Zooms::read(&self.settings[ZOOM][p.id()]));
+        let zooms: Vec<Zooms> = zooms.collect::<Result<_, _>>()?;
         desk.relay_loop = relay_loop;
         desk.study.lesson = lesson;
         for page in pages.iter_mut() {
@@ -106,6 +118,9 @@ impl Document {
             if page.settings() != *settings {
                 page.set(ctx, settings, desk)?;
             }
+        }
+        for (page, zooms) in pages.iter().zip(zooms) {
+            desk.zooms.set(page.id(), zooms, &page.settings());
         }
         *front = index;
         Ok(())
@@ -129,6 +144,8 @@ impl Document {
         for page in pages.iter_mut() {
             // A page whose settings are of another day begins anew.
             let _ = page.set(ctx, &self.settings[page.id()], desk);
+            let zooms = Zooms::read(&self.settings[ZOOM][page.id()]).unwrap_or_default();
+            desk.zooms.set(page.id(), zooms, &page.settings());
         }
         if let Some(index) = pages.iter().position(|p| p.id() == self.page) {
             *front = index;

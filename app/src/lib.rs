@@ -29,6 +29,7 @@ mod tasks;
 mod theme;
 #[cfg(not(target_arch = "wasm32"))]
 mod work;
+mod zoom;
 
 pub use app::{GivenFile, HysteronApp};
 #[cfg(not(target_arch = "wasm32"))]

@@ -213,7 +213,7 @@ fn unescape(text: &str) -> Option<String> {
 }
 
 /// As much of a strange text as a sentence can carry.
-fn shortened(text: &str) -> String {
+pub fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     let text: String = text
         .chars()

@@ -4,6 +4,7 @@
 
 use std::time::Duration;
 
+use egui::epaint::{ClippedShape, Shape};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
 use hysteron::HysteronApp;
@@ -86,6 +87,22 @@ pub fn answer(harness: &App) -> String {
         .as_str()
         .expect("an answer")
         .to_owned()
+}
+
+/// Every text of the last frame, as it was drawn.
+pub fn texts(harness: &App) -> Vec<String> {
+    fn collect(shape: &Shape, texts: &mut Vec<String>) {
+        match shape {
+            Shape::Text(text) => texts.push(text.galley.job.text.clone()),
+            Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, texts)),
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    for ClippedShape { shape, .. } in &harness.output().shapes {
+        collect(shape, &mut texts);
+    }
+    texts
 }
 
 /// Waits until nothing is computed any more and the result is on the screen.

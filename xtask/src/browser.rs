@@ -4,6 +4,7 @@ mod driver;
 mod export;
 mod mystery;
 mod phone;
+mod refused;
 mod same;
 mod speed;
 mod watch;
@@ -69,6 +70,7 @@ pub fn test() -> Result<(), String> {
     export::journey(&session, &folder.join("exports"), &page)?;
     mystery::journey(&session, &page)?;
     phone::journey(&session, &folder, port)?;
+    refused::journey(&folder.join("refused"), &page)?;
     speed::report(&session)?;
     println!("{interactive}\n{}", busy.report());
     session.quiet()

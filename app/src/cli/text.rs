@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hysteron_core::criticism::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
-use hysteron_core::effect::{EffectId, name_of};
+use hysteron_core::effect::{EffectId, name_of, shown_unit};
 use hysteron_core::measurement::Kind;
 
 const WIDTH: usize = 80;
@@ -126,7 +126,7 @@ fn names(ids: &[EffectId]) -> String {
 }
 
 fn parameters(out: &mut String, list: &[&Parameter]) {
-    let rows: Vec<(&str, &str, String, &str)> = list
+    let rows: Vec<(&str, &str, String, String)> = list
         .iter()
         .map(|p| {
             let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
@@ -134,11 +134,12 @@ fn parameters(out: &mut String, list: &[&Parameter]) {
                 p.name.as_str(),
                 p.label.as_str(),
                 with_uncertainty(p.value, p.std_error),
-                unit,
+                shown_unit(unit),
             )
         })
         .collect();
-    let width = |f: fn(&(&str, &str, String, &str)) -> usize| rows.iter().map(f).max().unwrap_or(0);
+    let width =
+        |f: fn(&(&str, &str, String, String)) -> usize| rows.iter().map(f).max().unwrap_or(0);
     let (name, label, value) = (
         width(|r| r.0.chars().count()),
         width(|r| r.1.chars().count()),

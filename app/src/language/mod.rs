@@ -136,6 +136,20 @@ pub fn tr(text: impl AsRef<str>) -> String {
     SPEAKER.with_borrow_mut(|speaker| speaker.say(language, text))
 }
 
+/// A text of the interface as a sentence of its own: on a terminal it goes on behind the name of a file.
+pub fn tr_sentence(text: impl AsRef<str>) -> String {
+    let text = tr(text);
+    let mut rest = text.chars();
+    let initial = rest.next().map(char::to_uppercase);
+    let end = if text.ends_with(['.', '?', '!']) {
+        ""
+    } else {
+        "."
+    };
+    let initial: String = initial.into_iter().flatten().collect();
+    format!("{initial}{}{end}", rest.as_str())
+}
+
 /// Numbers of the interface, with a decimal comma where the language has one; names stay as they are.
 pub fn tr_number(text: impl AsRef<str>) -> String {
     match spoken() {

@@ -2,15 +2,16 @@
 
 use std::ops::{Deref, DerefMut, RangeInclusive};
 
-use egui::{AsIdSalt, IdSalt};
+use egui::IdSalt;
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory,
     PlotPoint, PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
 };
 
+pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_menu;
+use super::chart_zoom::Zoomed;
 use crate::export::Table;
-
 use crate::language::{tr, tr_number};
 use crate::theme;
 
@@ -83,6 +84,8 @@ pub fn sparse(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 pub struct Chart<'a> {
     plot: Plot<'a>,
     salt: IdSalt,
+    /// What its zoom is called in links, and which of its axes have one.
+    zoom: (String, [bool; 2]),
     /// Names of the axes with their units, in English.
     axes: [String; 2],
     /// The x of what is drawn are logarithms to base 10.
@@ -93,13 +96,15 @@ pub struct Chart<'a> {
 
 impl<'a> Chart<'a> {
     /// A plot of this height; the labels of y are at least `width` wide, so that plots above each other line up.
+    /// No other of its page has its name.
     pub fn new(
-        salt: impl AsIdSalt,
+        name: impl Into<String>,
         [x, y]: [impl Into<String>; 2],
         height: f32,
         width: f32,
     ) -> Self {
-        let salt = IdSalt::new(salt);
+        let name = name.into();
+        let salt = IdSalt::new(&name);
         let axes = [x.into(), y.into()];
         let axis = |hints: AxisHints<'static>, i: usize| {
             hints.label_spacing(shown_from(LABELS[i])).formatter(label)
@@ -119,6 +124,7 @@ impl<'a> Chart<'a> {
         Self {
             plot,
             salt,
+            zoom: (name, [true; 2]),
             axes,
             decades: false,
             drag_zoomed: false,
@@ -155,10 +161,18 @@ impl<'a> Chart<'a> {
         self.with(|plot| plot.allow_axis_zoom_drag(false))
     }
 
+    /// Is zoomed in x alone, together with those of the same group, which moves them.
+    #[must_use]
+    pub fn zoomed_as(mut self, group: &str) -> Self {
+        self.zoom = (group.to_owned(), [true, false]);
+        self
+    }
+
     /// Stays where it is.
     #[must_use]
     pub fn fixed(mut self) -> Self {
         self.drag_zoomed = false;
+        self.zoom.1 = [false; 2];
         self.with(|plot| {
             plot.allow_zoom(false)
                 .allow_boxed_zoom(false)
@@ -176,20 +190,31 @@ impl<'a> Chart<'a> {
         let Self {
             mut plot,
             salt,
+            zoom,
             axes,
             decades,
             drag_zoomed,
         } = self;
         let id = ui.scope_id().with(salt);
+        plot = plot.id(id);
         if drag_zoomed {
             let memory = PlotMemory::load(ui.ctx(), id);
             let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
-            plot = plot.id(id).allow_drag(zoomed);
+            plot = plot.allow_drag(zoomed);
+        }
+        let zoom = Zoomed::new(id, &zoom.0, zoom.1);
+        let change = zoom.change(ui.ctx());
+        if change.is_some() {
+            // What is drawn may depend on what was in view before.
+            ui.ctx().request_repaint();
         }
         let start = ui.cursor().min;
         let table = chart_menu::wants_numbers(ui.ctx(), id).then(|| Table::new("plot"));
         let titles = axes.clone();
         let shown = plot.show(ui, move |plot| {
+            if let Some(change) = change {
+                change.make(plot);
+            }
             let mut pen = Pen {
                 plot,
                 axes: titles,
@@ -198,6 +223,7 @@ impl<'a> Chart<'a> {
             };
             (draw(&mut pen), pen.table)
         });
+        zoom.note(ui.ctx());
         let (inner, table) = shown.inner;
         chart_menu::ui(ui, id, &axes, start, shown.response.rect, table);
         PlotResponse {
@@ -396,99 +422,6 @@ fn read_out(value: f64, digits: i32) -> String {
         format!("{value:.3e}")
     };
     tr_number(text)
-}
-
-/// How a curve is drawn: its shape tells it where colours cannot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    Line,
-    Dashes,
-    Diamond,
-    Square,
-    Circle,
-    Cross,
-    Area,
-}
-
-/// A curve in the caption of a plot.
-pub type Key<'a> = (&'a str, egui::Color32, Shape);
-
-/// Size of a sample in a caption, points.
-const SAMPLE: egui::Vec2 = egui::vec2(18.0, 10.0);
-
-/// Names of the curves in their colours and shapes, above a plot: they hide nothing.
-pub fn caption_ui(ui: &mut egui::Ui, title: &str, curves: &[Key<'_>]) {
-    theme::running_text(ui, |ui| {
-        if !title.is_empty() {
-            ui.strong(tr(title));
-        }
-        for key in curves {
-            let text = egui::RichText::new(tr(key.0));
-            // A sample never stands at the end of a line without its name.
-            let job = ui.painter().layout_no_wrap(
-                text.text().to_owned(),
-                egui::TextStyle::Body.resolve(ui.style()),
-                egui::Color32::PLACEHOLDER,
-            );
-            let width = SAMPLE.x + ui.spacing().item_spacing.x + job.size().x;
-            if width > ui.available_size_before_wrap().x && width < ui.max_rect().width() {
-                ui.end_row();
-            }
-            sample_ui(ui, key);
-            ui.label(text);
-        }
-    });
-}
-
-fn sample_ui(ui: &mut egui::Ui, (_, color, shape): &Key<'_>) {
-    // As high as its name, so that all stand on one line.
-    let height = ui.text_style_height(&egui::TextStyle::Body);
-    let (place, _) = ui.allocate_exact_size(egui::vec2(SAMPLE.x, height), egui::Sense::hover());
-    let rect = egui::Rect::from_center_size(place.center(), SAMPLE);
-    let painter = ui.painter();
-    let middle = rect.center();
-    let bar = |from: f32, to: f32| {
-        let x = |share: f32| rect.left() + share * rect.width();
-        let half = egui::vec2(0.0, 2.0);
-        let ends = [egui::pos2(x(from), middle.y), egui::pos2(x(to), middle.y)];
-        painter.rect_filled(
-            egui::Rect::from_min_max(ends[0] - half, ends[1] + half),
-            1.0,
-            *color,
-        );
-    };
-    match shape {
-        Shape::Line => bar(0.0, 1.0),
-        Shape::Dashes => {
-            bar(0.0, 0.4);
-            bar(0.6, 1.0);
-        }
-        Shape::Area => {
-            painter.rect_filled(rect, 1.0, color.gamma_multiply(0.5));
-        }
-        Shape::Diamond => {
-            let corners = [(-5.0, 0.0), (0.0, -5.0), (5.0, 0.0), (0.0, 5.0)];
-            let points = corners.map(|(x, y)| middle + egui::vec2(x, y)).to_vec();
-            painter.add(egui::Shape::convex_polygon(
-                points,
-                *color,
-                egui::Stroke::NONE,
-            ));
-        }
-        Shape::Square => {
-            let square = egui::Rect::from_center_size(middle, egui::Vec2::splat(8.0));
-            painter.rect_filled(square, 0.0, *color);
-        }
-        Shape::Circle => {
-            painter.circle_filled(middle, 4.5, *color);
-        }
-        Shape::Cross => {
-            for side in [-4.0, 4.0] {
-                let half = egui::vec2(4.0, side);
-                painter.line_segment([middle - half, middle + half], (1.5, *color));
-            }
-        }
-    }
 }
 
 /// The place that the playback has reached.

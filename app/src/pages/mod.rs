@@ -3,7 +3,9 @@
 
 mod backlash;
 mod chart;
+mod chart_caption;
 pub mod chart_menu;
+pub mod chart_zoom;
 mod compare;
 mod controls;
 mod explore;
@@ -23,6 +25,7 @@ use crate::lessons::Study;
 use crate::recent::{Recent, Recents};
 use crate::save::Document;
 use crate::theme::Look;
+use crate::zoom::AllZooms;
 
 /// A page.
 pub trait View {
@@ -53,8 +56,8 @@ pub trait View {
     fn table_names(&self) -> Vec<&'static str> {
         Vec::new()
     }
-    /// What to try next on it: a sentence, and the link that shows it.
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
+    /// What to try next on it.
+    fn hint(&self) -> Option<Hint> {
         None
     }
     /// Plays or pauses, if something moves on it.
@@ -101,10 +104,36 @@ pub struct Desk {
     pub study: Study,
     /// Files that were opened before.
     pub recent: Recents,
+    /// What of the plots is in view.
+    pub zooms: AllZooms,
     /// Where the buttons are.
     pub targets: Targets,
     /// What is to be done after this frame.
     pub commands: Vec<Command>,
+}
+
+/// What to try next: a sentence, and what does it at a press; some things only the user can do.
+pub struct Hint {
+    pub sentence: String,
+    pub commands: Vec<Command>,
+}
+
+impl Hint {
+    /// One that a link shows.
+    pub fn open(sentence: &str, link: &str) -> Self {
+        Self {
+            sentence: sentence.to_owned(),
+            commands: vec![Command::OpenLink(link.to_owned())],
+        }
+    }
+
+    /// One that the app cannot do.
+    pub fn say(sentence: impl Into<String>) -> Self {
+        Self {
+            sentence: sentence.into(),
+            commands: Vec::new(),
+        }
+    }
 }
 
 /// What a page asks of the app; carried out once, after drawing.

@@ -6,7 +6,7 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::Scored;
 use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
-use crate::effect::{self, Effect, EffectId, name_of};
+use crate::effect::{self, Effect, EffectId, name_of, shown_unit};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -70,13 +70,13 @@ fn contradiction(
     error: f64,
 ) -> Verdict {
     for c in &contradicted {
-        let unit = if c.unit == "1" { "" } else { &c.unit };
+        let unit = shown_unit(if c.unit == "1" { "" } else { &c.unit });
         let _ = write!(
             text,
             "The model holds {} = {:.4e} {unit}, but these data want {}. ",
             c.name,
             c.held,
-            with_error(c.wanted, c.std_error, unit)
+            with_error(c.wanted, c.std_error, &unit)
         );
     }
     let released = contradicted.first().map_or(error, |c| c.error);
@@ -231,7 +231,7 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     let unit = if unit == "1" {
         String::new()
     } else {
-        format!(" {unit}")
+        format!(" {}", shown_unit(unit))
     };
     if !error.is_finite() || error <= 0.0 {
         return format!("{value:.4e}{unit}");
@@ -272,5 +272,6 @@ mod tests {
         );
         assert_eq!(with_error(29.87, 0.43, "s"), "29.87 ± 0.43 s");
         assert_eq!(with_error(1.28e-5, 2.1e-7, "rad"), "(1.280 ± 0.021)e-5 rad");
+        assert_eq!(with_error(2.0, 0.1, "kg m^2"), "2.00 ± 0.10 kg m²");
     }
 }

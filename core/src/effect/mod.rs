@@ -26,7 +26,7 @@ pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub use id::{EffectId, VISCOUS_FRICTION};
 pub use probe::{GapLoad, Place, SeenGap, StepPart, Steps};
 pub use probe::{Probe, ProbeInput, ProbeOutput, Regression};
-pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales};
+pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales, shown_unit};
 
 use crate::measurement::Kind;
 use crate::model::Model;

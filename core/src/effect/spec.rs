@@ -61,7 +61,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// SI unit as written on screen.
+    /// SI unit as files have it; [`shown_unit`] for a reader.
     pub const fn unit(self, motion: Motion) -> &'static str {
         match (self, motion) {
             (Self::Time, _) => "s",
@@ -88,6 +88,11 @@ impl Dimension {
             (Self::Ratio | Self::PerOutput, _) | (_, Motion::None) => "1",
         }
     }
+}
+
+/// A unit as it is shown: files and JSON have `kg m^2`, which is easier to type than `kg m²`.
+pub fn shown_unit(unit: &str) -> String {
+    unit.replace("^2", "²")
 }
 
 /// Values that a parameter may take.

@@ -13,7 +13,7 @@ mod words;
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 
 use super::playback::Playback;
-use super::{Desk, View};
+use super::{Desk, Hint, View};
 pub use settings::is_built_in;
 
 use crate::document::parsed;
@@ -359,8 +359,8 @@ impl View for Backlash {
         self.playback.toggle(ctx);
     }
 
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
-        Some((
+    fn hint(&self) -> Option<Hint> {
+        Some(Hint::open(
             "Take friction and delay away: then no asymmetry makes it drift.",
             "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
         ))

@@ -8,7 +8,7 @@ use super::built_in::BUILT_IN;
 use super::scene::MILLI;
 use crate::files::MEASUREMENT;
 use crate::hook::Targets;
-use crate::language::{tr, tr_number};
+use crate::language::{tr, tr_number, tr_sentence};
 use crate::motion;
 use crate::recent::{Recents, measurement};
 
@@ -39,7 +39,7 @@ impl Backlash {
         let name = self.scene.as_ref().and_then(|s| s.file());
         ui.strong(tr(name.unwrap_or("Reading ...")));
         if let Some(verdict) = self.scene.as_ref().and_then(|s| s.verdict()) {
-            ui.label(tr(verdict));
+            ui.label(tr_sentence(verdict));
         }
         if self.estimation.is_some() {
             motion::busy_ui(ui);

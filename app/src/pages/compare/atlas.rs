@@ -150,7 +150,7 @@ pub(super) fn points(profile: &Profile, value: impl Fn(&ProfileBin) -> f64) -> V
 }
 
 /// A small plot that stays where it is.
-pub(super) fn small(id: impl egui::AsIdSalt, x: String, y: &'static str) -> Chart<'static> {
+pub(super) fn small(id: String, x: String, y: &'static str) -> Chart<'static> {
     Chart::new(id, [x, y.to_owned()], HEIGHT, AXIS_WIDTH).still()
 }
 
@@ -160,7 +160,7 @@ fn picture_ui(
     finding: Option<&Finding>,
     ui: &mut egui::Ui,
 ) {
-    let id = ("atlas", profile.output, profile.axis.clone());
+    let id = format!("atlas {} {}", profile.output, profile.axis);
     let region = finding
         .filter(|f| f.axis == profile.axis && f.from < f.to)
         .map(|f| {

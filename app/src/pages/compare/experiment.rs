@@ -42,6 +42,40 @@ pub(super) fn ui(
     });
 }
 
+/// What shows the experiment with the first model at its largest gain.
+pub(super) fn preview(proposal: &NextExperiment) -> Option<Vec<pages::Command>> {
+    let Program::Relay { gains, .. } = &proposal.program else {
+        return None;
+    };
+    let (model, gain) = (proposal.models.first()?, gains.last()?);
+    let opening = proposal.opening(model, *gain);
+    let opening = opening.filter(|_| proposal.sufficient)?;
+    Some(opened(opening).1)
+}
+
+/// The page that shows a loop, and what opens it there.
+fn opened(opening: Opening) -> (&'static str, Vec<pages::Command>) {
+    match opening {
+        Opening::Loop(input) => (
+            "Explore",
+            vec![
+                pages::Command::SetLoop(input),
+                pages::Command::Go("explore"),
+            ],
+        ),
+        Opening::Drive(run) => {
+            let run = serde_json::to_value(*run).unwrap_or_default();
+            (
+                "Backlash",
+                vec![
+                    pages::Command::Set("backlash", "run", run),
+                    pages::Command::Go("backlash"),
+                ],
+            )
+        }
+    }
+}
+
 /// One row for each model: its loop under the relay at each gain.
 fn opening_ui(
     index: usize,
@@ -70,25 +104,7 @@ fn opening_ui(
                 let Some(opening) = proposal.opening(model, *gain) else {
                     continue;
                 };
-                let (place, command) = match opening {
-                    Opening::Loop(input) => (
-                        "Explore",
-                        vec![
-                            pages::Command::SetLoop(input),
-                            pages::Command::Go("explore"),
-                        ],
-                    ),
-                    Opening::Drive(run) => {
-                        let run = serde_json::to_value(*run).unwrap_or_default();
-                        (
-                            "Backlash",
-                            vec![
-                                pages::Command::Set("backlash", "run", run),
-                                pages::Command::Go("backlash"),
-                            ],
-                        )
-                    }
-                };
+                let (place, command) = opened(opening);
                 let unit = if proposal.input_unit == "1" {
                     String::new()
                 } else {

@@ -113,7 +113,7 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
         } else {
             format!("{} [{}]", output.name, output.unit)
         };
-        let id = ("fingerprint", print.effect.as_str(), index);
+        let id = format!("fingerprint {} {index}", print.effect);
         let axes = ["time [s]".to_owned(), label];
         let linked = egui::Id::unique("fingerprint");
         let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH)
@@ -137,7 +137,7 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
 fn profile_ui(report: &StepReport, profile: &Profile, ui: &mut egui::Ui) {
     let mut all = report.atlas.iter();
     let left = all.find(|p| p.output == profile.output && p.axis == profile.axis);
-    let id = ("print", profile.output, profile.axis.clone());
+    let id = format!("print {} {}", profile.output, profile.axis);
     small(id, axis_label(profile), "mean").show(ui, |plot| {
         if let Some(left) = left {
             let line = Line::new(tr("what is left"), points(left, |b| b.mean));

@@ -39,8 +39,46 @@ impl Compare {
 
     /// The step before the one on screen.
     pub(super) fn report_before(&self) -> Option<&StepReport> {
+        self.reports.get(self.effects_before()?)
+    }
+
+    /// Its effects; the first step has none before it.
+    pub(super) fn effects_before(&self) -> Option<&[EffectId]> {
         let (_, before) = self.shown.as_ref()?.split_last()?;
-        self.reports.get(before)
+        Some(before)
+    }
+
+    /// Has the step before computed where it is to stand beside, and takes what has been found.
+    pub(super) fn take_earlier(&mut self, ctx: &egui::Context) {
+        if let Some((effects, job)) = &mut self.earlier {
+            let effects = effects.clone();
+            for news in job.news() {
+                match news {
+                    News::Report(report) => {
+                        self.reports.insert(effects.clone(), *report);
+                        self.earlier = None;
+                        return;
+                    }
+                    News::Failed(text) => {
+                        self.message = Some(text);
+                        self.before = false;
+                        self.earlier = None;
+                        return;
+                    }
+                    News::Progress(..) => {}
+                }
+            }
+            return;
+        }
+        let wanted = self.before && self.job.is_none();
+        if let (true, Some(before), Some(measurement)) =
+            (wanted, self.effects_before(), &self.measurement)
+            && !self.reports.contains_key(before)
+        {
+            let model = self.model.as_ref();
+            let job = Job::start(ctx, measurement, before, model);
+            self.earlier = Some((before.to_vec(), job));
+        }
     }
 
     /// The effect whose fingerprint is shown.

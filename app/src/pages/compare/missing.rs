@@ -44,7 +44,7 @@ fn plot_ui(part: &MissingPart, ui: &mut egui::Ui) {
         label(&part.axis, &part.axis_unit),
         label(&part.what, &part.unit),
     );
-    let id = ("missing", &part.what, &part.axis);
+    let id = format!("missing {} {}", part.what, part.axis);
     let chart = Chart::new(id, [x, y], HEIGHT, AXIS_WIDTH).still();
     chart.show(ui, |plot| {
         for p in &part.parts {

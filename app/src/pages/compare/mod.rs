@@ -5,6 +5,7 @@ mod atlas;
 mod experiment;
 mod export;
 mod fingerprint;
+mod hint;
 mod history;
 mod missing;
 mod open;
@@ -27,7 +28,7 @@ use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
 use serde::{Deserialize, Serialize};
 
-use super::{Desk, View};
+use super::{Desk, Hint, View};
 pub use settings::is_built_in;
 
 use crate::document::parsed;
@@ -41,6 +42,9 @@ use crate::save::save;
 use crate::tasks::ExperimentTask;
 use answer::times_noise;
 use welcome::BUILT_IN;
+
+/// Height of the plots over time in a narrow window, points.
+const NARROW_PLOTS: f32 = 220.0;
 
 /// Longest time without a new frame while a job runs.
 const ALIVE: std::time::Duration = std::time::Duration::from_millis(100);
@@ -77,6 +81,8 @@ pub struct Compare {
     limits: Option<Limits>,
     /// A search within other limits: for which model, and the number of the proposal.
     search: Option<(Vec<EffectId>, usize, Job<ExperimentTask>)>,
+    /// The step before the one on screen, where it is not known: a link brings the last one alone.
+    earlier: Option<(Vec<EffectId>, Job)>,
     /// The finding that is shaded.
     finding: usize,
     /// The truth that came with the measurement, sealed.
@@ -107,6 +113,7 @@ impl Default for Compare {
             fingerprint: None,
             limits: None,
             search: None,
+            earlier: None,
             finding: 0,
             sealed: None,
             files: Files::default(),
@@ -201,6 +208,7 @@ impl Compare {
             }
         }
         self.take_search();
+        self.take_earlier(ctx);
         if let Some(sealed) = &mut self.sealed {
             sealed.update(self.shown.as_deref().unwrap_or_default());
         }
@@ -220,16 +228,23 @@ impl Compare {
             if narrow {
                 egui::CentralPanel::default().show(ui, |ui| {
                     egui::ScrollArea::vertical().show(ui, |ui| {
+                        // What is seen first, then what could be done: the list of effects is long.
                         self.answer_ui(ui);
-                        // What was asked for stands where it was asked.
-                        let reveals = self.look == Look::Reveal;
-                        if reveals {
-                            reveal::ui(self, ui, targets, &mut commands);
-                        }
-                        side::ui(self, ui, targets, &mut commands);
+                        self.message_ui(ui, &mut commands);
+                        side::progress_ui(self, ui, &mut commands);
+                        let top = ui.cursor().min;
                         self.looks_ui(ui, targets, &mut commands);
-                        if !reveals {
-                            self.evidence_ui(ui, 220.0, targets, &mut commands);
+                        self.evidence_ui(ui, NARROW_PLOTS, targets, &mut commands);
+                        let asked = commands.len();
+                        ui.separator();
+                        side::file_ui(self, ui, targets, &mut commands);
+                        side::findings_ui(self, ui, targets, &mut commands);
+                        // What is asked for below stands above.
+                        let shows =
+                            |c: &Command| matches!(c, Command::Look(_) | Command::Fingerprint(_));
+                        if commands.iter().skip(asked).any(shows) {
+                            let place = egui::Rect::from_min_size(top, egui::Vec2::ZERO);
+                            ui.scroll_to_rect(place, Some(egui::Align::TOP));
                         }
                     });
                 });
@@ -285,7 +300,7 @@ impl Compare {
             }
             let mut before = self.before;
             let can =
-                self.report_before().is_some() && matches!(self.look, Look::Time | Look::Places);
+                self.effects_before().is_some() && matches!(self.look, Look::Time | Look::Places);
             let toggle = ui.add_enabled(
                 can,
                 egui::Checkbox::new(&mut before, tr("Beside the step before")),
@@ -390,7 +405,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.job.is_some() || self.search.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
+            "busy": self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
             "progress": self.progress.0,
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
             "effects": report.map(|r| r.step.effects.clone()),
@@ -428,11 +443,8 @@ impl View for Compare {
         Self::ui(self, ui, desk);
     }
 
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
-        Some((
-            "A drive that answers late: there one effect is not enough.",
-            "v1;compare;compare.file=drive-12",
-        ))
+    fn hint(&self) -> Option<Hint> {
+        Some(self.next())
     }
 
     fn table_names(&self) -> Vec<&'static str> {

@@ -1,7 +1,7 @@
 //! Every parameter of the model with its uncertainty.
 
 use hysteron_core::criticism::{Parameter, StepReport, with_error};
-use hysteron_core::effect::name_of;
+use hysteron_core::effect::{name_of, shown_unit};
 
 use crate::language::tr;
 use crate::theme;
@@ -63,6 +63,6 @@ fn interval_ui(p: &Parameter, ui: &mut egui::Ui) {
         "95 % interval: {:.4e} to {:.4e} {}",
         p.value - INTERVAL * p.std_error,
         p.value + INTERVAL * p.std_error,
-        if p.unit == "1" { "" } else { &p.unit }
+        shown_unit(if p.unit == "1" { "" } else { &p.unit })
     )));
 }

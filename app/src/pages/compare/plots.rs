@@ -72,7 +72,8 @@ fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32)
     let group = egui::Id::unique(("compare", &measurement.name));
     let (start, end) = first_view(measurement);
     let axes = ["time [s]".to_owned(), y_label];
-    Chart::new(id, axes, height, AXIS_WIDTH).with(|plot| {
+    let chart = Chart::new(id, axes, height, AXIS_WIDTH).zoomed_as("time");
+    chart.with(|plot| {
         plot.default_x_bounds(start, end)
             .allow_drag([true, false])
             .allow_zoom([true, false])

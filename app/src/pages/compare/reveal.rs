@@ -2,7 +2,7 @@
 
 use egui::RichText;
 use hysteron_core::criticism::with_error;
-use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
+use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of, shown_unit};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 
 use super::{Command, Compare};
@@ -149,13 +149,9 @@ pub(super) fn ui(
             "They are for the model that was on screen then; the model is another one now.",
         ));
     }
-    egui::ScrollArea::vertical()
-        .id_salt("truth")
-        .show(ui, |ui| {
-            effects_ui(reveal, ui);
-            numbers_ui(reveal, ui);
-            rule_ui(reveal, ui);
-        });
+    effects_ui(reveal, ui);
+    numbers_ui(reveal, ui);
+    rule_ui(reveal, ui);
 }
 
 fn effects_ui(reveal: &Reveal, ui: &mut egui::Ui) {
@@ -250,7 +246,7 @@ fn with_unit(value: f64, unit: &str) -> String {
     if unit.is_empty() || unit == "1" {
         text
     } else {
-        format!("{text} {unit}")
+        format!("{text} {}", shown_unit(unit))
     }
 }
 

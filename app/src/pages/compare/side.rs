@@ -19,6 +19,16 @@ pub(super) fn ui(
 ) {
     file_ui(page, ui, targets, commands);
     progress_ui(page, ui, commands);
+    findings_ui(page, ui, targets, commands);
+}
+
+/// What was found, and what could be added.
+pub(super) fn findings_ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
     let Some(report) = page.report() else {
         return;
     };
@@ -46,7 +56,12 @@ pub(super) fn ui(
     parameters::ui(report, ui);
 }
 
-fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+pub(super) fn file_ui(
+    page: &Compare,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal_wrapped(|ui| {
         if let Some(m) = &page.measurement {
             ui.strong(tr(&m.name));
@@ -100,7 +115,7 @@ fn file_ui(page: &Compare, ui: &mut egui::Ui, targets: &mut Targets, commands: &
     });
 }
 
-fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+pub(super) fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if page.job.is_some() {
         ui.horizontal(|ui| {
             let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(230.0);

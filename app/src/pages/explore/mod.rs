@@ -13,7 +13,7 @@ use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks, figures};
 
 use super::playback::Playback;
-use super::{Desk, View};
+use super::{Desk, Hint, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::language::tr;
@@ -85,8 +85,8 @@ impl View for Explore {
         self.playback.toggle(ctx);
     }
 
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
-        Some((
+    fn hint(&self) -> Option<Hint> {
+        Some(Hint::open(
             "Let the relay wait longer: at ε = 0.5 the describing function misses the amplitude by 5 %.",
             "v1;explore;loop.relay.hysteresis=0.5",
         ))

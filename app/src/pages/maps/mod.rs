@@ -7,7 +7,7 @@ mod side;
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
 
-use super::{Command, Desk, View};
+use super::{Command, Desk, Hint, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
@@ -213,8 +213,8 @@ impl View for Maps {
         });
     }
 
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
-        Some((
+    fn hint(&self) -> Option<Hint> {
+        Some(Hint::open(
             "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
             "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
         ))

@@ -10,7 +10,7 @@ use hysteron_core::report::sha256;
 use serde::{Deserialize, Serialize};
 use web_time::SystemTime;
 
-use super::{Command, Desk, View};
+use super::{Command, Desk, Hint, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
@@ -199,8 +199,8 @@ impl View for Bench {
         });
     }
 
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
-        Some((
+    fn hint(&self) -> Option<Hint> {
+        Some(Hint::open(
             "Never looked for a hidden effect? Begin with a drive that loses its swing.",
             "v1;compare;compare.file=drive-02",
         ))

@@ -13,7 +13,7 @@ mod ultimate;
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{TuningInput, TuningReport};
 
-use super::{Desk, View};
+use super::{Desk, Hint, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
@@ -136,8 +136,8 @@ impl View for Tune {
         });
     }
 
-    fn hint(&self) -> Option<(&'static str, &'static str)> {
-        Some((
+    fn hint(&self) -> Option<Hint> {
+        Some(Hint::open(
             "Ask for a phase margin of 60° and watch the relay of step 3 find the gain.",
             "v1;tune;tune.step=adaptation;tune.phase_margin=1.0471975511965976",
         ))

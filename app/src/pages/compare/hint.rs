@@ -1,0 +1,99 @@
+//! What to try next: it follows from what is open, and from what was found.
+
+use hysteron_core::criticism::{StepReport, Verdict};
+use hysteron_core::effect::{EffectId, name_of};
+
+use super::{Compare, Look, experiment};
+use crate::pages::{Command, Hint};
+
+impl Compare {
+    pub(super) fn next(&self) -> Hint {
+        if self.measurement.is_none() {
+            let sentence = "Begin with a drive that loses its swing: one effect is missing.";
+            return Hint::open(sentence, "v1;compare;compare.file=drive-02");
+        }
+        let report = self.report().filter(|_| self.job.is_none());
+        let Some(report) = report else {
+            return Hint::say("Every effect of the library is tried now.");
+        };
+        if let Some(effect) = report.suggestion {
+            let with = [self.effects.as_slice(), &[effect]].concat();
+            let name = name_of(effect);
+            return set_effects(format!("{name} helps most: add it."), &with);
+        }
+        if let Some(effect) = report.needless.first() {
+            let mut without = self.effects.clone();
+            without.retain(|e| e != effect);
+            let name = name_of(*effect);
+            return set_effects(format!("{name} is not needed: leave it out."), &without);
+        }
+        match &report.verdict {
+            Some(verdict) => self.after(verdict, report),
+            None => self.where_it_fails(),
+        }
+    }
+
+    /// Where nothing is to be added.
+    fn after(&self, verdict: &Verdict, report: &StepReport) -> Hint {
+        if let Some(known) = verdict.contradicted.first() {
+            let name = &known.name;
+            return Hint::say(format!("Correct the known {name} in your model."));
+        }
+        if verdict.missing.iter().any(|class| class.len() > 1) {
+            let preview = verdict.experiments.iter().find_map(experiment::preview);
+            return match preview {
+                Some(commands) => Hint {
+                    sentence:
+                        "Only another experiment can tell them apart: see what it would show."
+                            .to_owned(),
+                    commands,
+                },
+                None => Hint::say("Only another experiment can tell them apart."),
+            };
+        }
+        if !verdict.complete {
+            return self.where_it_fails();
+        }
+        if self.sealed.is_some() && self.look != Look::Reveal {
+            let sentence = "The model is complete: now see what was hidden.";
+            return set(sentence, "look", serde_json::json!(Look::Reveal));
+        }
+        if report.step.effects.is_empty() || self.effects_before().is_none() || self.before {
+            return self.another();
+        }
+        let sentence = "Nothing more is missing: see beside it what the step before left.";
+        set(sentence, "before", true.into())
+    }
+
+    /// Where structure is left that no effect explains.
+    fn where_it_fails(&self) -> Hint {
+        if self.look == Look::Places {
+            return Hint::say("No effect explains the rest: write one of your own.");
+        }
+        let sentence = "No effect explains the rest: see where it lies.";
+        set(sentence, "look", serde_json::json!(Look::Places))
+    }
+
+    /// Another record than the one that is open.
+    fn another(&self) -> Hint {
+        let late = "drive-12";
+        if self.measurement.as_ref().is_some_and(|m| m.name == late) {
+            let sentence = "A slow heating process: find out why it overshoots.";
+            return Hint::open(sentence, "v1;compare;compare.file=process-02");
+        }
+        let sentence = "A drive that answers late: there one effect is not enough.";
+        Hint::open(sentence, "v1;compare;compare.file=drive-12")
+    }
+}
+
+fn set_effects(sentence: String, effects: &[EffectId]) -> Hint {
+    let ids: Vec<&str> = effects.iter().map(|e| e.as_str()).collect();
+    set(sentence, "effects", serde_json::json!(ids))
+}
+
+fn set(sentence: impl Into<String>, field: &'static str, value: serde_json::Value) -> Hint {
+    Hint {
+        sentence: sentence.into(),
+        commands: vec![Command::Set("compare", field, value)],
+    }
+}
