@@ -4,7 +4,7 @@
 mod ui;
 
 use egui_kittest::kittest::Queryable as _;
-use ui::{App, NARROW, WIDE, answer, app, click, finish, picture, state};
+use ui::{App, NARROW, WIDE, answer, app, click, finish, picture, show, state, texts};
 
 /// The page, standing still.
 fn page(size: [f32; 2]) -> App {
@@ -114,4 +114,15 @@ fn a_narrow_window_shows_the_same_drive() {
     assert_eq!(state(&harness)["direction"], "against");
     click(&mut harness, "From the start");
     picture(&mut harness, "backlash_narrow");
+}
+
+#[test]
+fn the_verdict_on_a_measured_gap_is_a_sentence() {
+    let mut harness = app("start", WIDE);
+    show(&mut harness, "v1;backlash;backlash.file=drive-10");
+    let texts = texts(&harness);
+    let verdict = texts.iter().find(|t| t.contains("traverses agree"));
+    let verdict = verdict.expect("a verdict on the gap");
+    assert!(verdict.starts_with("The gap is 0.0"), "{verdict}");
+    assert!(verdict.ends_with(" %."), "{verdict}");
 }

@@ -179,6 +179,18 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
     harness.get_by_label("What is missing, estimated without a model");
     harness.get_by_label_contains("A force that depends on the velocity alone");
     picture(&mut harness, "compare_missing_force");
+    let hint = |harness: &App| state(harness)["hint"].clone();
+    assert_eq!(
+        hint(&harness),
+        "No effect explains the rest: see where it lies."
+    );
+    harness.get_by_label("Try it").click();
+    finish(&mut harness);
+    assert_eq!(
+        hint(&harness),
+        "No effect explains the rest: write one of your own."
+    );
+    assert!(harness.query_by_label("Try it").is_none());
 }
 
 #[test]
