@@ -32,9 +32,6 @@ const PROMISING: f64 = 0.995;
 /// to where that was may still have some way to go.
 const WITHIN_REACH: f64 = 30.0;
 
-/// An effect that costs this many times the best on the scout is not followed on the whole record.
-const LEFT_BEHIND: f64 = 10.0;
-
 /// What the effects in a race are added to.
 struct Track {
     fit: Fit,
@@ -65,8 +62,6 @@ struct Contender {
     /// It is fitted to the end while it may come this close to the best cost.
     close: f64,
     stage: Stage,
-    /// Another one is so far ahead on the scout that it is not followed.
-    behind: bool,
     /// What it came to.
     result: Option<Fit>,
     /// That leaves nothing but noise.
@@ -114,12 +109,6 @@ impl Contender {
         matches!(self.stage, Stage::Over | Stage::Closed)
     }
 
-    /// Least cost on the scout.
-    fn scouted(&self) -> f64 {
-        let search = self.search.as_ref();
-        search.and_then(Search::scouted).unwrap_or(f64::INFINITY)
-    }
-
     /// Least cost so far.
     fn cost(&self) -> f64 {
         self.search.as_ref().map_or(f64::INFINITY, Search::cost)
@@ -159,10 +148,6 @@ fn contains_effect(whole: &dyn Effect, part: &dyn Effect) -> bool {
 pub(super) struct Race {
     track: Track,
     contenders: Vec<Contender>,
-    /// Least cost on the scout, also of what they stand in for.
-    scouted: f64,
-    /// Times that cost from which an effect is left behind.
-    patience: f64,
     /// Cost to come close to; infinite where the best of the race sets it.
     target: f64,
     /// Cost above which it is not worth going on.
@@ -211,13 +196,10 @@ impl Race {
                         _ => CLOSE,
                     },
                     stage: Stage::Scan,
-                    behind: false,
                     result: None,
                     explains: false,
                 })
                 .collect(),
-            scouted,
-            patience: LEFT_BEHIND,
             target: instead.map_or(f64::INFINITY, |(whole, _)| whole.cost),
             ceiling: match instead {
                 Some(_) => f64::INFINITY,
@@ -226,19 +208,6 @@ impl Race {
             parts_known: false,
             run: false,
         }
-    }
-
-    /// The same with none left behind.
-    #[must_use]
-    pub fn patient(self) -> Self {
-        let patience = f64::INFINITY;
-        Self { patience, ..self }
-    }
-
-    /// Effects that were left behind.
-    pub fn left_behind(&self) -> Vec<&'static dyn Effect> {
-        let behind = self.contenders.iter().filter(|c| c.behind);
-        behind.map(|c| c.effect).collect()
     }
 
     /// Share done, 0 to 1, roughly, and the name of the effect that is tried.
@@ -312,25 +281,9 @@ impl Race {
         contender.stage == Stage::Scan && !self.waits(contender)
     }
 
-    /// Once all are tried on the scout: those that are far behind there are not followed.
-    fn leave_behind(&mut self) {
-        let costs = self.contenders.iter().map(Contender::scouted);
-        self.scouted = costs.fold(self.scouted, f64::min);
-        for contender in &mut self.contenders {
-            let far = contender.scouted() > self.patience * self.scouted;
-            if contender.stage == Stage::Heat(0) && far {
-                contender.behind = true;
-                contender.search.iter_mut().for_each(Search::fall_behind);
-            }
-        }
-    }
-
     /// Some work; false when the race is over.
     pub fn advance(&mut self, session: &Session) -> bool {
         let scanning = self.contenders.iter().any(|c| self.scans(c));
-        if !scanning {
-            self.leave_behind();
-        }
         let ready = |c: &Contender| {
             if scanning {
                 self.scans(c)

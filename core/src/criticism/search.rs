@@ -384,19 +384,6 @@ impl Search {
         }
     }
 
-    /// Least cost on the scout, once all points are tried.
-    pub fn scouted(&self) -> Option<f64> {
-        let all = self.pending.is_empty() && self.shortlist.is_empty();
-        let best = self.scanned.first().filter(|_| all);
-        best.map(|(fit, _)| fit.cost)
-    }
-
-    /// Is not followed, for another one is far ahead on the scout: all that is left to see is where its best point leads.
-    pub fn fall_behind(&mut self) {
-        self.given_up = true;
-        self.scanned.truncate(1);
-    }
-
     /// Goes on with the best of the scanned points on the whole record.
     fn choose_finalists(&mut self, data: &Data, scales: &Scales) {
         let mut scanned = std::mem::take(&mut self.scanned).into_iter();
@@ -406,10 +393,7 @@ impl Search {
         let hopeless = HOPELESS * self.present * self.share;
         let near = (NEAR * best.cost).min(self.limit);
         let mut first = Fit::new(data, best.structure, best.values, starts, scales);
-        if self.given_up {
-            first.take_measured_starts(data);
-        }
-        self.given_up |= best.cost > hopeless.min(self.limit);
+        self.given_up = best.cost > hopeless.min(self.limit);
         first.done |= self.given_up;
         settle(&mut first, best.cost / self.share, data, scales);
         self.finalists.push(first);

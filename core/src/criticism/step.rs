@@ -1,7 +1,6 @@
 //! One step of a diagnosis: fits one model and tries every effect on top of it.
 
 use super::fingerprint::fingerprints;
-use super::fit::Fit;
 use super::judge::{
     alike, helps_clearly, is_certain, may_hide, nested, part_does, same_body, tied,
 };
@@ -269,18 +268,13 @@ impl StepJob {
                 }
             }
             Stage::Try(race) => {
-                let behind = race.left_behind();
-                self.take_tried(race.finish());
+                let fits = race.finish();
+                self.tried = fits
+                    .into_iter()
+                    .map(|(effect, fit)| (effect, self.session.scored(fit)))
+                    .collect();
                 self.contradicted = self.contradictions();
-                match &self.model {
-                    // What was ahead does not stand up to the whole record, or leaves more to be found: then it may have
-                    // led astray, and the way may be another one.
-                    Some(model) if !behind.is_empty() && !self.comes_to_noise(model) => {
-                        let race = Race::new(&self.session, &model.fit, behind, None);
-                        Stage::Try(race.patient())
-                    }
-                    _ => self.revisit_stage(),
-                }
+                self.revisit_stage()
             }
             Stage::Revisit(search) => {
                 let again = self.finished(&search);
@@ -289,7 +283,6 @@ impl StepJob {
                         if again.fit.cost < BETTER_VALLEY * model.fit.cost =>
                     {
                         self.model = Some(again);
-                        self.tried.clear();
                         self.try_stage()
                     }
                     _ => self.remove_stage(0),
@@ -317,17 +310,6 @@ impl StepJob {
             }
             Stage::Report => Stage::Report,
         }
-    }
-
-    /// Takes what effects on top of the model came to, in place of what they came to before.
-    fn take_tried(&mut self, fits: Vec<(&'static dyn Effect, Fit)>) {
-        for (effect, fit) in fits {
-            self.tried.retain(|(e, _)| e.id() != effect.id());
-            self.tried.push((effect, self.session.scored(fit)));
-        }
-        let order: Vec<EffectId> = self.session.library().map(Effect::id).collect();
-        let place = |e: &dyn Effect| order.iter().position(|id| *id == e.id());
-        self.tried.sort_by_key(|(e, _)| place(*e));
     }
 
     /// A part of an effect that leaves nothing but noise is not widened to the whole.
@@ -492,13 +474,6 @@ impl StepJob {
             })
             .min_by_key(|(_, s)| s.fit.values.len())
             .or(Some(best))
-    }
-
-    /// Whether the effect to add next leaves nothing but noise.
-    fn comes_to_noise(&self, model: &Scored) -> bool {
-        let first = self.session.first(model);
-        let next = self.suggestion(model);
-        next.is_some_and(|(_, with)| is_noise(&with.score, first))
     }
 
     /// Effects without which the held-back error does not rise; those of the user's model stay.
