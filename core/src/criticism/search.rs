@@ -36,7 +36,7 @@ const COMING_ON: f64 = 0.5;
 const FINALISTS: usize = 3;
 
 /// A fit that costs this many times the best one of its effect is not followed.
-const NEAR: f64 = 1.5;
+const NEAR: f64 = 2.0;
 
 /// A fit on the whole record that costs this many times what it did on a part has unsuited states.
 const UNSETTLED: f64 = 1.5;
