@@ -63,8 +63,8 @@ impl Bent<'_> {
         steady + (self.z - steady) * short::exp(-moved.abs() * self.acting.inverse)
     }
 
-    /// Size of the change of deflection per displacement over `moved`, and by how much its mean over the displacement lies above the middle of
-    /// its ends; `None` where it does not move.
+    /// Size of the change of deflection per displacement over `moved`, and by how much its mean over the displacement lies
+    /// above the middle of its ends; `None` where it does not move.
     fn chord(&self, moved: f64) -> Option<(f64, f64)> {
         let way = moved.abs() * self.acting.inverse;
         if way <= f64::MIN_POSITIVE {
