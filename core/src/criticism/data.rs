@@ -199,8 +199,17 @@ impl Data {
         let velocity = self.velocity_estimate();
         let turns = |k: &usize| velocity[*k] * velocity[k + 1] <= 0.0;
         let count = (0..self.len() - 1).filter(turns).count();
+        let swing = self.len() / count.max(1);
         let swings = MOST_SWINGS * self.len() / count.max(1);
         let usual = (self.len() / self.windows.len().max(1)).min(swings.max(MIN_WINDOW));
+        // Whether a contact that began a swing or less before is still on.
+        let touches = |sample: usize| {
+            let before = self
+                .felt
+                .partition_point(|felt| *felt <= sample)
+                .checked_sub(1);
+            before.is_some_and(|k| sample < self.felt[k] + swing)
+        };
         let begin = |place: usize| {
             let felt = self.felt[place];
             let before = place.checked_sub(1).map_or(0, |k| self.felt[k]);
@@ -208,14 +217,20 @@ impl Data {
             let mut turns = (half_way..felt).rev().filter(turns);
             turns.nth(SWINGS_BEFORE).unwrap_or(half_way)
         };
-        let mut begins = (0..self.felt.len()).map(begin).peekable();
+        // What follows within a swing is the same contact once more.
+        let apart = |place: &usize| *place == 0 || self.felt[*place] - self.felt[place - 1] > swing;
+        let begins = (0..self.felt.len()).filter(apart).map(begin);
+        let mut begins = begins.peekable();
         let mut windows = vec![0];
         let mut from = 0;
         loop {
             while begins.next_if(|b| *b < from + MIN_WINDOW).is_some() {}
             // A rest shorter than half a window joins the one before.
             let next = begins.peek().filter(|b| **b < from + usual + usual / 2);
-            from = next.copied().unwrap_or(from + usual);
+            from = next.copied().unwrap_or_else(|| {
+                let cut = from + usual;
+                (cut..).find(|sample| !touches(*sample)).unwrap_or(cut)
+            });
             if from + MIN_WINDOW >= self.len() {
                 break;
             }

@@ -351,13 +351,13 @@ impl<'s> Tracker<'s> {
         let a = flight.way_by_velocity;
         let place = contact.load_at(self.play.half_gap);
         let surprise = place - x - flight.way;
-        let variance = xx + a * (2.0 * xv + a * vv) + self.seen.sharpness.place.powi(2);
+        let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+        let variance = xx + a * (2.0 * xv + a * vv);
         let moved = [
-            (xx + a * xv) / variance * surprise,
-            (xv + a * vv) / variance * surprise,
+            share(xx + a * xv, variance) * surprise,
+            share(xv + a * vv, variance) * surprise,
         ];
         let [l, slope, rest] = root([xx, xv, vv]);
-        let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         let first = share(moved[0], l);
         Some([first, share(moved[1] - slope * first, rest)])
     }
@@ -455,10 +455,9 @@ mod tests {
         };
         let reached = x + dx + SLOWING.flight(v + dv, 0.1).way;
         let asked = seen.contacts[1].load_at(wrong.half_gap);
-        // Of the surprise of 0.4 mm as much stays as the place of a contact, 10 um, is uncertain beside that of the
-        // flight: 1 % and 1e-4 of the speed 0.04 over 0.164 s, and 10 um at its begin, make 68 um; 2.1 % of the squares.
+        // A wider gap is met later, by 0.4 mm here; the flight is not quite linear in the velocity.
         let left = (asked - reached) / 0.0004;
-        assert!((left - 0.021).abs() < 0.001, "{left}");
+        assert!(left.abs() < 1e-3, "{left}");
     }
 
     #[test]
