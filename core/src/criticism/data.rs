@@ -229,7 +229,8 @@ impl Data {
             let next = begins.peek().filter(|b| **b < from + usual + usual / 2);
             from = next.copied().unwrap_or_else(|| {
                 let cut = from + usual;
-                (cut..).find(|sample| !touches(*sample)).unwrap_or(cut)
+                let mut later = cut..cut + usual / 2;
+                later.find(|sample| !touches(*sample)).unwrap_or(cut)
             });
             if from + MIN_WINDOW >= self.len() {
                 break;
@@ -505,4 +506,26 @@ pub(super) fn spread(values: &[f64]) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::DriveRig;
+
+    /// The load is met every 37 ms, and once more 1 ms later, as the contact presses and lets go.
+    #[test]
+    fn no_window_begins_inside_a_contact() {
+        let data = Data::new(&DriveRig::default().measure()).unwrap();
+        let first: Vec<f64> = (1..50).map(|k| 0.037 * f64::from(k)).collect();
+        let times: Vec<f64> = first.iter().flat_map(|t| [*t, t + 0.001]).collect();
+        let data = data.with_contacts(&times).cut_at_contacts();
+        let starts: Vec<f64> = data.windows.iter().map(|w| data.time[*w]).collect();
+        assert!(starts.len() > first.len(), "{}", starts.len());
+        for start in starts {
+            let since = first.iter().map(|t| start - t);
+            let inside = since.filter(|since| (0.0..0.0015).contains(since)).count();
+            assert_eq!(inside, 0, "a window begins at {start} s");
+        }
+    }
 }
