@@ -272,6 +272,43 @@ fn a_load_that_is_pushed_along_now_and_then_has_its_gap() {
     }
 }
 
+/// A load with much dry friction is met in every second cycle for as long as the motor drifts one way: the mean of two
+/// is then what shows how the pattern differs from that of the free motor, which crosses the gap once in each phase.
+/// Where no run shows the free motor nothing may be stated; what is stated must be right.
+#[test]
+fn a_load_that_is_met_in_every_second_cycle_has_its_gap() {
+    let mut stated = 0;
+    for seed in 500..508 {
+        let mut random = Random::new(seed);
+        let half_gap = random.between(0.002, 0.004);
+        let load = Load {
+            half_gap,
+            stiffness: 800.0,
+            damping: 0.15,
+            inertia: 8.8e-4,
+            viscous: 2e-3,
+            coulomb: 0.03,
+        };
+        let rig = DriveRig {
+            seed: random.seed(),
+            inertia: 8.8e-4 * random.between(0.9, 1.1),
+            viscous: 2e-3 * random.between(0.8, 1.2),
+            load: Some(load),
+            samples: 25_000,
+            ..DriveRig::default()
+        };
+        let estimate = estimate(&drifting(rig, 3.0 * half_gap, 2.0).measure());
+        let Some(gap) = estimate.gap else { continue };
+        assert!(
+            (gap / (2.0 * half_gap) - 1.0).abs() < 0.1,
+            "{seed}: {}",
+            estimate.text
+        );
+        stated += 1;
+    }
+    assert!(stated >= 5, "{stated}");
+}
+
 /// Such a load may rattle to and fro faster than the motor drifts. Gap and speed of the load can then be
 /// scaled together nearly as one likes: the estimate is less good, and its interval must say so.
 #[test]

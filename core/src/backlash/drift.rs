@@ -15,6 +15,9 @@ const LEAST_SHARE: f64 = 5e-3;
 /// Deviation of a single engaged cycle, in standard deviations of the free ones.
 const SINGLE: f64 = 6.0;
 
+/// Cycles alternate where those two apart differ by less than this share of what neighbours do.
+const ALTERNATES: f64 = 0.5;
+
 /// Standard deviation of normal values over the median of how far they are off.
 const DEVIATIONS_IN_MEDIAN: f64 = 1.4826;
 
@@ -52,9 +55,16 @@ impl Drift {
         let least = LEAST_SHARE * 2.0 * cycles.speed;
         for (from, to) in cycles.phases() {
             let part = &change[from..to];
-            let sigma = spread(part).max(noise);
+            let (next, second) = (spread(part, 1), spread(part, 2));
+            // A load that is met in every second cycle makes a pattern of two.
+            let alternates = second < ALTERNATES * next;
+            let sigma = if alternates { second } else { next }.max(noise);
             let way = position[cycles.starts[to]] - position[cycles.starts[from]];
-            let segments = pelt(part, sigma, penalty);
+            let segments = if alternates {
+                pelt(&without_alternation(part), sigma, penalty)
+            } else {
+                pelt(part, sigma, penalty)
+            };
             let free = free_level(&segments, way.signum(), part.len(), least);
             base[from..to].fill(free);
             let unlike = |s: &&Segment| {
@@ -81,9 +91,18 @@ impl Drift {
     }
 }
 
-/// Standard deviation by the median difference of neighbours, which changes of the mean leave alone.
-fn spread(values: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+/// Means over two cycles about each cycle.
+fn without_alternation(values: &[f64]) -> Vec<f64> {
+    let at = |k: usize| values[k.min(values.len() - 1)];
+    (0..values.len())
+        .map(|k| 0.25 * (at(k.saturating_sub(1)) + 2.0 * at(k) + at(k + 1)))
+        .collect()
+}
+
+/// Standard deviation by the median difference of values so many cycles apart, which changes of the mean leave alone.
+fn spread(values: &[f64], apart: usize) -> f64 {
+    let pairs = values.iter().zip(values.iter().skip(apart));
+    let mut steps: Vec<f64> = pairs.map(|(a, b)| (b - a).abs()).collect();
     DEVIATIONS_IN_MEDIAN * median(&mut steps) / std::f64::consts::SQRT_2
 }
 
