@@ -236,6 +236,18 @@ fn the_interval_holds_the_truth_over_seeds() {
     assert!(covered(&rigs) >= 10);
 }
 
+/// A load as heavy as the motor behind a soft contact, with this dry friction.
+fn soft_load(half_gap: f64, coulomb: f64) -> Load {
+    Load {
+        half_gap,
+        stiffness: 800.0,
+        damping: 0.15,
+        inertia: 8.8e-4,
+        viscous: 2e-3,
+        coulomb,
+    }
+}
+
 /// A load with dry friction that the motor pushes along in some cycles and misses in others, behind a motor that rubs
 /// itself: no run of cycles shows a drift of its own, and single ones must do.
 #[test]
@@ -243,19 +255,11 @@ fn a_load_that_is_pushed_along_now_and_then_has_its_gap() {
     let rigs: Vec<(f64, DriveRig)> = (400..406)
         .map(|seed| {
             let mut random = Random::new(seed);
-            let load = Load {
-                half_gap: 0.003,
-                stiffness: 800.0,
-                damping: 0.15,
-                inertia: 8.8e-4,
-                viscous: 2e-3,
-                coulomb: 0.01,
-            };
             let rig = DriveRig {
                 seed: random.seed(),
                 inertia: 8.8e-4 * random.between(0.9, 1.1),
                 friction: Friction::dry(random.between(0.03, 0.05)),
-                load: Some(load),
+                load: Some(soft_load(0.003, 0.01)),
                 load_recorded: true,
                 samples: 25_000,
                 ..DriveRig::default()
@@ -281,19 +285,11 @@ fn a_load_that_is_met_in_every_second_cycle_has_its_gap() {
     for seed in 500..508 {
         let mut random = Random::new(seed);
         let half_gap = random.between(0.002, 0.004);
-        let load = Load {
-            half_gap,
-            stiffness: 800.0,
-            damping: 0.15,
-            inertia: 8.8e-4,
-            viscous: 2e-3,
-            coulomb: 0.03,
-        };
         let rig = DriveRig {
             seed: random.seed(),
             inertia: 8.8e-4 * random.between(0.9, 1.1),
             viscous: 2e-3 * random.between(0.8, 1.2),
-            load: Some(load),
+            load: Some(soft_load(half_gap, 0.03)),
             samples: 25_000,
             ..DriveRig::default()
         };
