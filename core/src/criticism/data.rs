@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::CriticismError;
+use super::cut::{self, Block, MIN_WINDOW};
 use super::noise::{Noise, noise};
 use super::window::drive_window;
 use crate::crew::Crew;
@@ -13,9 +14,6 @@ use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start};
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
-
-/// Fewest samples in a window.
-const MIN_WINDOW: usize = 10;
 
 /// Most samples that a self-regulating process runs without a restart.
 const PROCESS_WINDOW: usize = 20_000;
@@ -28,12 +26,6 @@ const SCOUT_PART: usize = 5;
 
 /// ... and on at least this many samples.
 const SCOUT_SAMPLES: usize = 2500;
-
-/// Swings of the motor before a contact in its window.
-const SWINGS_BEFORE: usize = 4;
-
-/// Swings of the motor in a window without a contact that was felt.
-const MOST_SWINGS: usize = 6;
 
 /// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -49,17 +41,6 @@ pub(super) struct Output {
     pub noise: f64,
     /// The noise is that of counting alone.
     pub counted: bool,
-}
-
-/// A run of samples that is used as a whole, either for fitting or for judging.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Block {
-    pub from: usize,
-    pub to: usize,
-    /// Index of the window in which it lies.
-    pub window: usize,
-    /// It judges; what is not held back is fitted.
-    pub held_back: bool,
 }
 
 /// A measurement made ready for fitting.
@@ -116,19 +97,22 @@ impl Data {
                 name: c.name.clone(),
             });
         }
-        let (window, block) = match measurement.kind {
+        let (windows, blocks) = match measurement.kind {
             Kind::Drive => {
                 let longest = (n / MIN_BLOCKS).max(MIN_WINDOW);
-                let w = drive_window(&outputs, longest);
-                (w, w)
+                let length = drive_window(&outputs, longest);
+                let velocity = velocity_estimate(&measurement.time, &outputs);
+                let windows = cut::in_motion(&velocity, length);
+                let blocks = cut::one_each(&windows, n);
+                (windows, blocks)
             }
-            Kind::Process => (
-                PROCESS_WINDOW,
-                (n / MIN_BLOCKS).clamp(MIN_WINDOW, PROCESS_BLOCK),
-            ),
+            Kind::Process => {
+                let block = (n / MIN_BLOCKS).clamp(MIN_WINDOW, PROCESS_BLOCK);
+                let windows = cut::evenly(n, PROCESS_WINDOW);
+                let blocks = cut::blocks(n, block, &windows);
+                (windows, blocks)
+            }
         };
-        let windows = split(n, window);
-        let blocks = blocks(n, block, &windows);
         let before = if starts_at_rest(&outputs) {
             0.0
         } else {
@@ -188,66 +172,17 @@ impl Data {
         }
     }
 
-    /// The same in windows each with one of the contacts that were felt: every contact multiplies what was wrong before it,
-    /// and from far away a load may be met one swing of the motor too early or too late. They begin some swings before the
-    /// contact, which tell the motion without it, at most half way from the contact before. Without one, they are so short
-    /// that a contact too weak to be felt does not go on to another.
+    /// The same in windows each with one of the contacts that were felt.
     pub fn cut_at_contacts(self) -> Self {
         if self.felt.is_empty() {
             return self;
         }
-        let velocity = self.velocity_estimate();
-        let turns = |k: &usize| velocity[*k] * velocity[k + 1] <= 0.0;
-        let count = (0..self.len() - 1).filter(turns).count();
-        let swing = self.len() / count.max(1);
-        let swings = MOST_SWINGS * self.len() / count.max(1);
-        let usual = (self.len() / self.windows.len().max(1)).min(swings.max(MIN_WINDOW));
-        // Whether a contact that began a swing or less before is still on.
-        let touches = |sample: usize| {
-            let before = self
-                .felt
-                .partition_point(|felt| *felt <= sample)
-                .checked_sub(1);
-            before.is_some_and(|k| sample < self.felt[k] + swing)
-        };
-        let begin = |place: usize| {
-            let felt = self.felt[place];
-            let before = place.checked_sub(1).map_or(0, |k| self.felt[k]);
-            let half_way = usize::midpoint(before, felt);
-            let mut turns = (half_way..felt).rev().filter(turns);
-            turns.nth(SWINGS_BEFORE).unwrap_or(half_way)
-        };
-        // What follows within a swing is the same contact once more.
-        let apart = |place: &usize| *place == 0 || self.felt[*place] - self.felt[place - 1] > swing;
-        let begins = (0..self.felt.len()).filter(apart).map(begin);
-        let mut begins = begins.peekable();
-        let mut windows = vec![0];
-        let mut from = 0;
-        loop {
-            while begins.next_if(|b| *b < from + MIN_WINDOW).is_some() {}
-            // A rest shorter than half a window joins the one before.
-            let next = begins.peek().filter(|b| **b < from + usual + usual / 2);
-            from = next.copied().unwrap_or_else(|| {
-                let cut = from + usual;
-                let mut later = cut..cut + usual / 2;
-                later.find(|sample| !touches(*sample)).unwrap_or(cut)
-            });
-            if from + MIN_WINDOW >= self.len() {
-                break;
-            }
-            windows.push(from);
-        }
-        let ends = windows.iter().skip(1).copied().chain([self.len()]);
-        let blocks = windows.iter().zip(ends).enumerate();
-        let blocks = blocks.map(|(window, (from, to))| Block {
-            from: *from,
-            to,
-            window,
-            held_back: window % 2 == 1,
-        });
+        let usual = self.len() / self.windows.len().max(1);
+        let windows = cut::at_contacts(&self.felt, &self.velocity_estimate(), usual);
+        let blocks = cut::one_each(&windows, self.len());
         Self {
-            blocks: blocks.collect(),
             windows,
+            blocks,
             ..self
         }
     }
@@ -381,19 +316,12 @@ impl Data {
                 sample,
                 position: position.map_or(0.0, |p| p.values[sample]),
                 velocity: velocity.map_or_else(
-                    || position.map_or(0.0, |p| self.slope(&p.values, sample)),
+                    || position.map_or(0.0, |p| slope(&self.time, &p.values, sample)),
                     |v| v.values[sample],
                 ),
                 load: [0.0; 2],
             })
             .collect()
-    }
-
-    /// Slope of `values` near a sample, per second.
-    fn slope(&self, values: &[f64], sample: usize) -> f64 {
-        let from = sample.saturating_sub(GUESS_SAMPLES / 2);
-        let to = (from + GUESS_SAMPLES).min(self.len()) - 1;
-        (values[to] - values[from]) / (self.time[to] - self.time[from])
     }
 
     /// Typical sizes, given a baseline body.
@@ -434,18 +362,30 @@ impl Data {
 
     /// Measured velocity, or slopes of the measured position.
     pub fn velocity_estimate(&self) -> Vec<f64> {
-        if let Some(v) = self.outputs.iter().find(|o| o.is_velocity) {
-            return v.values.clone();
-        }
-        self.outputs.first().map_or_else(Vec::new, |x| {
-            (0..self.len()).map(|i| self.slope(&x.values, i)).collect()
-        })
+        velocity_estimate(&self.time, &self.outputs)
     }
 
     /// Measured position, or the integral of the measured velocity from 0.
     pub fn position_estimate(&self) -> Vec<f64> {
         position_estimate(&self.time, &self.outputs)
     }
+}
+
+/// Slope of `values` near a sample, per second.
+fn slope(time: &[f64], values: &[f64], sample: usize) -> f64 {
+    let from = sample.saturating_sub(GUESS_SAMPLES / 2);
+    let to = (from + GUESS_SAMPLES).min(values.len()) - 1;
+    (values[to] - values[from]) / (time[to] - time[from])
+}
+
+/// Measured velocity, or slopes of the measured position.
+fn velocity_estimate(time: &[f64], outputs: &[Output]) -> Vec<f64> {
+    if let Some(v) = outputs.iter().find(|o| o.is_velocity) {
+        return v.values.clone();
+    }
+    outputs.first().map_or_else(Vec::new, |x| {
+        (0..time.len()).map(|i| slope(time, &x.values, i)).collect()
+    })
 }
 
 /// Measured position, or the integral of the measured velocity from 0.
@@ -466,33 +406,6 @@ fn position_estimate(time: &[f64], outputs: &[Output]) -> Vec<f64> {
     })
 }
 
-/// First samples of runs of `length` samples; a short rest joins the last run.
-fn split(n: usize, length: usize) -> Vec<usize> {
-    (0..(n / length).max(1)).map(|k| k * length).collect()
-}
-
-/// Blocks of this length in these windows, every other one held back.
-fn blocks(n: usize, length: usize, windows: &[usize]) -> Vec<Block> {
-    split(n, length)
-        .iter()
-        .enumerate()
-        .map(|(k, from)| Block {
-            from: *from,
-            to: split_end(n, length, k),
-            window: windows.partition_point(|w| w <= from) - 1,
-            held_back: k % 2 == 1,
-        })
-        .collect()
-}
-
-fn split_end(n: usize, length: usize, k: usize) -> usize {
-    if k + 1 >= (n / length).max(1) {
-        n
-    } else {
-        (k + 1) * length
-    }
-}
-
 /// Whether nothing moves at the first sample, so that the input was off before.
 fn starts_at_rest(outputs: &[Output]) -> bool {
     outputs
@@ -506,26 +419,4 @@ pub(super) fn spread(values: &[f64]) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rig::DriveRig;
-
-    /// The load is met every 37 ms, and once more 1 ms later, as the contact presses and lets go.
-    #[test]
-    fn no_window_begins_inside_a_contact() {
-        let data = Data::new(&DriveRig::default().measure()).unwrap();
-        let first: Vec<f64> = (1..50).map(|k| 0.037 * f64::from(k)).collect();
-        let times: Vec<f64> = first.iter().flat_map(|t| [*t, t + 0.001]).collect();
-        let data = data.with_contacts(&times).cut_at_contacts();
-        let starts: Vec<f64> = data.windows.iter().map(|w| data.time[*w]).collect();
-        assert!(starts.len() > first.len(), "{}", starts.len());
-        for start in starts {
-            let since = first.iter().map(|t| start - t);
-            let inside = since.filter(|since| (0.0..0.0015).contains(since)).count();
-            assert_eq!(inside, 0, "a window begins at {start} s");
-        }
-    }
 }

@@ -5,6 +5,7 @@ mod axes;
 mod baseline;
 mod correlation;
 mod cost;
+mod cut;
 mod data;
 mod fingerprint;
 mod fit;
