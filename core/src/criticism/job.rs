@@ -42,6 +42,9 @@ const LARGE_GAIN: f64 = 0.2;
 /// Share of the error that the same effects left before which is no better.
 const AS_BEFORE: f64 = 0.97;
 
+/// Share of its error that a model may leave to be gone on with when enough was tried.
+const LATE_GAIN: f64 = 0.5;
+
 /// How far a job has come.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress<T> {
@@ -240,8 +243,12 @@ impl DiagnosisJob {
         let unknown = report.verdict.as_ref().filter(|v| v.unknown);
         let imitation = unknown.and_then(|_| job.imitation(report.step.error));
         let (session, next) = job.successor();
-        let ended =
-            self.diagnosis.steps.len() >= MAX_STEPS || effects > MAX_EFFECTS || exhausted(&session);
+        let worthwhile = next
+            .as_ref()
+            .is_some_and(|model| model.score.error < LATE_GAIN * report.step.error);
+        let ended = self.diagnosis.steps.len() >= MAX_STEPS
+            || effects > MAX_EFFECTS
+            || (exhausted(&session) && !worthwhile);
         let verdict = report.verdict.clone();
         if verdict.as_ref().is_some_and(|v| !v.contradicted.is_empty()) {
             // Wrong values are to be put right; no other way round them is looked for.
