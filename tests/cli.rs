@@ -448,7 +448,7 @@ fn the_gap_in_words() {
     let output = gap(&asset("drive-03.csv"), &[]);
     assert!(output.status.success() && output.stderr.is_empty());
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.starts_with("drive-03.csv: the gap is 0.019"), "{text}");
+    assert!(text.starts_with("drive-03.csv: the gap is 19."), "{text}");
     for part in [
         "if the motor stood in its middle at the start",
         "95 % interval",

@@ -123,6 +123,7 @@ fn the_verdict_on_a_measured_gap_is_a_sentence() {
     let texts = texts(&harness);
     let verdict = texts.iter().find(|t| t.contains("traverses agree"));
     let verdict = verdict.expect("a verdict on the gap");
-    assert!(verdict.starts_with("The gap is 0.0"), "{verdict}");
+    assert!(verdict.starts_with("The gap is 11.9"), "{verdict}");
+    assert!(verdict.contains(" mrad: "), "{verdict}");
     assert!(verdict.ends_with(" %."), "{verdict}");
 }

@@ -70,25 +70,34 @@ fn json(estimate: &GapEstimate) -> serde_json::Value {
 }
 
 fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[String]) -> String {
-    let unit = &estimate.unit;
+    let (scale, unit) = estimate.written_in();
+    let scaled = |length: f64| length * scale;
     let mut out = format!(
         "{}: {}\n",
         name.replace(char::is_control, " "),
         estimate.text
     );
-    if let Some([low, high]) = estimate.interval {
-        let _ = writeln!(out, "95 % interval {low:.6} to {high:.6} {unit}");
+    if let Some(interval) = estimate.interval {
+        let [low, high] = interval.map(scaled);
+        let _ = writeln!(out, "95 % interval {low:.3} to {high:.3} {unit}");
     }
     if !estimate.traverses.is_empty() && estimate.gap.is_some() {
+        let (at, gap) = (format!("at [{unit}]"), format!("gap [{unit}]"));
         let _ = writeln!(
             out,
-            "\n  left [s]   at [{unit}]  reached [s]   at [{unit}]    gap [{unit}]"
+            "\n{:>10} {at:>11} {:>12} {at:>11} {gap:>12}",
+            "left [s]", "reached [s]"
         );
         for t in estimate.traverses.iter().take(LISTED) {
             let _ = writeln!(
                 out,
-                "{:10.4} {:10.6} {:12.4} {:10.6} {:12.6} ± {:.6}",
-                t.from.time, t.from.position, t.to.time, t.to.position, t.gap, t.std_error
+                "{:10.4} {:11.3} {:12.4} {:11.3} {:12.3} ± {:.3}",
+                t.from.time,
+                scaled(t.from.position),
+                t.to.time,
+                scaled(t.to.position),
+                scaled(t.gap),
+                scaled(t.std_error)
             );
         }
         if estimate.traverses.len() > LISTED {
@@ -98,10 +107,11 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
     if let Some(map) = map {
         match (map.gap, map.asymmetry) {
             (Some(gap), Some(asymmetry)) => {
+                let [gap, asymmetry] = [gap, asymmetry].map(scaled);
                 let _ = writeln!(
                     out,
-                    "\nBy the backlash map with the measured load, for reference: gap {gap:.6} {unit}, its middle at \
-                     {asymmetry:.6} {unit}"
+                    "\nBy the backlash map with the measured load, for reference: gap {gap:.3} {unit}, its middle at \
+                     {asymmetry:.3} {unit}"
                 );
             }
             _ => {

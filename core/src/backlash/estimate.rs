@@ -172,6 +172,21 @@ pub struct GapEstimate {
     pub text: String,
 }
 
+/// Length below which it reads better in thousandths of its unit.
+const SHORT: f64 = 0.1;
+
+impl GapEstimate {
+    /// The unit in which its lengths read well (`mrad` or `mm`, if they are short), and how many of that are in one of
+    /// `unit`.
+    pub fn written_in(&self) -> (f64, String) {
+        if self.gap.unwrap_or(self.travel).abs() < SHORT {
+            (1e3, format!("m{}", self.unit))
+        } else {
+            (1.0, self.unit.clone())
+        }
+    }
+}
+
 /// Why a measurement cannot be looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum GapError {

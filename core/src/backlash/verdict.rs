@@ -7,8 +7,8 @@ const FEW: usize = 10;
 
 /// One or two sentences about `estimate`; `flips`: whether the asymmetry of the relay changed its sign.
 pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
-    let unit = &estimate.unit;
-    let travel = number(estimate.travel);
+    let (scale, unit) = estimate.written_in();
+    let travel = number(estimate.travel * scale);
     match estimate.quality {
         Quality::NoDriftingTest => {
             "no drifting test: expected a limit cycle under a velocity relay whose asymmetry \
@@ -49,16 +49,15 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
 
 /// The gap with its standard error.
 fn value(estimate: &GapEstimate) -> String {
-    let (gap, error) = (
-        estimate.gap.unwrap_or(0.0),
-        estimate.std_error.unwrap_or(0.0),
-    );
+    let gap = estimate.gap.unwrap_or(0.0);
+    let (scale, unit) = estimate.written_in();
+    let (gap, error) = (gap * scale, estimate.std_error.unwrap_or(0.0) * scale);
     let digits = if error > 0.0 {
         (1 - libm::log10(error).floor() as i32).clamp(0, 12) as usize
     } else {
         6
     };
-    format!("{gap:.digits$} ± {error:.digits$} {}", estimate.unit)
+    format!("{gap:.digits$} ± {error:.digits$} {unit}")
 }
 
 fn agreement(estimate: &GapEstimate) -> String {
