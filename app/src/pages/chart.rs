@@ -23,8 +23,8 @@ const LABELS: [f32; 2] = [40.0, 24.0];
 const READ_X: i32 = 6;
 const READ_Y: i32 = 5;
 
-/// Decimals of a label; smaller numbers have an exponent, so that they need no more room.
-const MOST_DECIMALS: usize = 4;
+/// The labels of an axis that ends below this have an exponent, so that they need no more room.
+const LEAST_PLAIN: f64 = 1e-3;
 
 pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
@@ -304,7 +304,7 @@ fn shown_from(points: f32) -> egui::Rangef {
 }
 
 /// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
-fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
+fn label(mark: GridMark, range: &RangeInclusive<f64>) -> String {
     let step = mark.step_size.abs();
     let first = step.log10().floor();
     let lead = step / 10_f64.powf(first);
@@ -319,8 +319,10 @@ fn label(mark: GridMark, _range: &RangeInclusive<f64>) -> String {
     if value.abs() < 1e-9 * step {
         return "0".to_owned();
     }
-    if decimals > MOST_DECIMALS {
-        let exponent = 3.0 * (first / 3.0).floor();
+    // Of the range: all labels of an axis have the same.
+    let largest = range.start().abs().max(range.end().abs());
+    if largest < LEAST_PLAIN {
+        let exponent = 3.0 * (largest.max(step).log10() / 3.0).floor();
         let decimals = (more - first + exponent).max(0.0) as usize;
         let value = value / 10_f64.powf(exponent);
         return tr_number(format!("{value:.decimals$}e{exponent}"));
@@ -429,4 +431,28 @@ pub fn dot(name: &'static str, at: [f64; 2]) -> Points<'static> {
     Points::new(tr(name), vec![at])
         .color(theme::MODEL)
         .radius(6.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(range: RangeInclusive<f64>, marks: &[(f64, f64)]) -> Vec<String> {
+        let mark = |&(value, step_size)| GridMark { value, step_size };
+        let marks = marks.iter().map(mark);
+        marks.map(|mark| label(mark, &range)).collect()
+    }
+
+    #[test]
+    fn the_labels_of_an_axis_are_written_alike() {
+        let fine = [(0.0005, 0.0005), (0.00075, 0.00025), (0.0, 0.0005)];
+        assert_eq!(labels(0.0..=0.0009, &fine), ["500e-6", "750e-6", "0"]);
+        assert_eq!(labels(0.0..=0.002, &fine), ["0.0005", "0.00075", "0"]);
+        assert_eq!(labels(-4e-6..=4e-6, &[(-2e-6, 2e-6)]), ["-2e-6"]);
+        assert_eq!(
+            labels(5.374..=5.375, &[(5.3742, 2e-4), (5.37425, 5e-5)]),
+            ["5.3742", "5.37425"]
+        );
+        assert_eq!(labels(0.0..=3000.0, &[(2500.0, 500.0)]), ["2500"]);
+    }
 }
