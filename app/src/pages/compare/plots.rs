@@ -24,6 +24,9 @@ const LEAST_VIEW: f64 = 0.01;
 /// Room above and below what is in view, as a share of it.
 const ROOM: f64 = 0.08;
 
+/// How much the ground of words hides of the curves under it.
+const GROUND: f32 = 0.75;
+
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
 
@@ -126,6 +129,7 @@ fn signal_plot(
 ) {
     let label = unit_label(&output.name, &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
+    let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let shown = plot(
         measurement,
         format!("signal {}", output.name),
@@ -135,8 +139,6 @@ fn signal_plot(
     .show(ui, |plot| {
         fit(plot, &measurement.time, &[&output.values, model], &[]);
         shade(plot, finding);
-        let alone = measurement.outputs.len() == 1;
-        mark(plot, finding.filter(|f| alone || is_about(f, output)));
         let drawn = drawn(plot, &measurement.time);
         let measured = points(&measurement.time, &output.values, &drawn);
         plot.line(
@@ -152,6 +154,12 @@ fn signal_plot(
                     .style(LineStyle::dashed_loose()),
             );
         }
+        let alone = measurement.outputs.len() == 1;
+        mark(
+            plot,
+            finding.filter(|f| alone || is_about(f, output)),
+            ground,
+        );
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
@@ -229,8 +237,9 @@ fn is_about(finding: &Finding, output: &Channel) -> bool {
     finding.text.contains(&format!("squared {word} error"))
 }
 
-/// Says at the first of its stretches on screen how much of the error is in the selected finding.
-fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
+/// Says at the first of its stretches on screen how much of the error is in the selected finding; on a `ground` that
+/// lets it be read over a curve.
+fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>, ground: egui::Color32) {
     let Some(finding) = finding else {
         return;
     };
@@ -240,10 +249,9 @@ fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
     if let Some(span) = finding.spans.iter().find(seen) {
         let text = format!("{:.0} % of the error", 100.0 * finding.share_of_error);
         let at = PlotPoint::new(span.0.max(low[0]), high[1]);
-        plot.text(
-            Text::new("", at, egui::RichText::new(tr(text)).strong())
-                .anchor(egui::Align2::LEFT_TOP),
-        );
+        let words = egui::RichText::new(tr(text));
+        let words = words.strong().background_color(ground);
+        plot.text(Text::new("", at, words).anchor(egui::Align2::LEFT_TOP));
     }
 }
 
