@@ -103,14 +103,16 @@ fn a_narrow_window_shows_the_next_experiment_too() {
     picture(&mut harness, "compare_next_experiment_narrow");
 }
 
+/// What the page says to try next: short, and about this.
+fn says(harness: &App, part: &str) {
+    let state = state(harness);
+    let hint = state["hint"].as_str().expect("a hint");
+    assert!(hint.contains(part), "{hint}");
+    assert!(hint.len() < 80, "{hint}");
+}
+
 #[test]
 fn the_hint_follows_what_is_open_and_what_was_found() {
-    let hint = |harness: &App| state(harness)["hint"].as_str().map(str::to_owned);
-    let says = |harness: &App, part: &str| {
-        let hint = hint(harness).expect("a hint");
-        assert!(hint.contains(part), "{hint}");
-        assert!(hint.len() < 80, "{hint}");
-    };
     let mut harness = app("compare", WIDE);
     says(&harness, "Begin with a drive");
     // Pressed again and again, it leads through a diagnosis and on to another record.
@@ -139,4 +141,26 @@ fn the_hint_follows_what_is_open_and_what_was_found() {
     // Nothing to find, but elsewhere.
     let harness = opened("drive-01", WIDE);
     says(&harness, "A drive that answers late");
+}
+
+#[test]
+fn the_hint_says_what_is_under_way_needless_or_contradicted() {
+    let mut harness = app("compare", WIDE);
+    let text = "v1;compare;compare.effects=%5B%22coulomb_friction%22%2C%22quadratic_drag%22%5D;compare.file=drive-02";
+    let ctx = harness.ctx.clone();
+    assert_eq!(harness.state_mut().open_link(&ctx, text), Ok(()));
+    harness.step();
+    says(&harness, "Every effect of the library is tried now");
+    finish(&mut harness);
+    says(&harness, "Quadratic drag is not needed: leave it out");
+    press(&mut harness, "Try it");
+    assert!(state(&harness)["error"].as_f64().is_some_and(|e| e < 1.2));
+    says(&harness, "Nothing more is missing");
+    // A motor of which the model says that it has twice its inertia, for certain.
+    let known = "kind = \"drive\"\n[parameters]\nJ1 = { value = 1.8e-3, unit = \"kg m^2\", status = \"fixed\" }\n";
+    harness
+        .state_mut()
+        .open(&ctx, "wrong.toml", known.as_bytes());
+    finish(&mut harness);
+    says(&harness, "Correct the known J1 in your model");
 }

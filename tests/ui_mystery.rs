@@ -91,6 +91,10 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
         .click_accesskit();
     finish(&mut student);
     assert!(state(&student)["error"].as_f64().expect("an error") < 1.3);
+    assert_eq!(
+        state(&student)["hint"],
+        "The model is complete: now see what was hidden."
+    );
     click(&mut student, "Reveal ...");
     type_over(&mut student, "Word", WORD);
     click(&mut student, "Reveal the truth");
