@@ -29,6 +29,12 @@ fn asymmetry(a: f64) -> Truth {
 fn load(torque: f64) -> Truth {
     Truth::new("constant_load", &["F0"], torque)
 }
+/// What a load may be under a relay of two levels of which the positive one is larger: where it pulls that one down, an
+/// actuator that clips it does the same. One that it pushes up, nothing clips.
+fn clipped(torque: f64) -> &'static [&'static str] {
+    if torque < 0.0 { &["saturation"] } else { &[] }
+}
+
 fn cogging(amplitude: f64) -> Truth {
     Truth::new("cogging", &["A", "a", "F_c", "amplitude"], amplitude)
 }
@@ -255,7 +261,7 @@ fn input_path(r: &mut Random) -> Vec<Case> {
     };
     cases.push(Case::drive(
         "load, relay",
-        vec![load(torque).same(OFFSET)],
+        vec![load(torque).same(OFFSET).alike(clipped(torque))],
         rig,
     ));
     let limit = r.between(0.22, 0.27);
