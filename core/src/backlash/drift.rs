@@ -15,6 +15,9 @@ const LEAST_SHARE: f64 = 5e-3;
 /// Deviation of a single engaged cycle, in standard deviations of the free ones.
 const SINGLE: f64 = 6.0;
 
+/// Times the spread of the changes in the calmest phase that it may be in any other while the motor is free.
+const RESTLESS: f64 = 2.0;
+
 /// Cycles alternate where those two apart differ by less than this share of what neighbours do.
 const ALTERNATES: f64 = 0.5;
 
@@ -53,12 +56,23 @@ impl Drift {
         let mut engaged = vec![false; change.len()];
         let penalty = PENALTY * libm::log(cycles.count() as f64);
         let least = LEAST_SHARE * 2.0 * cycles.speed;
-        for (from, to) in cycles.phases() {
-            let part = &change[from..to];
+        let spreads = |part: &[f64]| {
             let (next, second) = (spread(part, 1), spread(part, 2));
             // A load that is met in every second cycle makes a pattern of two.
             let alternates = second < ALTERNATES * next;
-            let sigma = if alternates { second } else { next }.max(noise);
+            (if alternates { second } else { next }, alternates)
+        };
+        let phases = cycles.phases();
+        let calmest = phases
+            .iter()
+            .filter(|(from, to)| to - from >= 2 * FREE)
+            .map(|(from, to)| spreads(&change[*from..*to]).0)
+            .fold(f64::INFINITY, f64::min);
+        for (from, to) in phases {
+            let part = &change[from..to];
+            let (own, alternates) = spreads(part);
+            // The free motor is as restless in every phase; what is more is the load.
+            let sigma = own.min(RESTLESS * calmest).max(noise);
             let way = position[cycles.starts[to]] - position[cycles.starts[from]];
             let segments = if alternates {
                 pelt(&without_alternation(part), sigma, penalty)
