@@ -32,6 +32,14 @@ const PROMISING: f64 = 0.995;
 /// to where that was may still have some way to go.
 const WITHIN_REACH: f64 = 30.0;
 
+/// A point from which the first iteration does not lead to within this many times the cost that it must come
+/// to is not followed where the model leaves nothing but noise: what is missing there must be faint.
+const FAR_OFF: f64 = 2.0;
+
+/// What stands in for another effect does at least this share of what that does, in squared residuals, after the first
+/// iteration: where it begins is regressed.
+const FIRST_SHARE: f64 = 0.75;
+
 /// What the effects in a race are added to.
 struct Track {
     fit: Fit,
@@ -169,15 +177,29 @@ impl Race {
         instead: Option<(&Fit, usize)>,
     ) -> Self {
         let scouted = instead.map_or(f64::INFINITY, |(whole, _)| session.scouted(whole));
+        let present = session.scouted(fit);
         let ground = match instead {
-            None => Ground {
-                limit: PROMISING * session.scouted(fit),
-                settled: is_plain_noise(&score(&session.data, fit)),
-            },
-            Some(_) => Ground {
-                limit: WITHIN_REACH * scouted,
-                settled: false,
-            },
+            None => {
+                let settled = is_plain_noise(&score(&session.data, fit));
+                let limit = PROMISING * present;
+                Ground {
+                    limit,
+                    reach: if settled {
+                        FAR_OFF * limit
+                    } else {
+                        f64::INFINITY
+                    },
+                    settled,
+                }
+            }
+            Some(_) => {
+                let limit = WITHIN_REACH * scouted;
+                Ground {
+                    limit,
+                    reach: limit.max((1.0 - FIRST_SHARE) * present),
+                    settled: false,
+                }
+            }
         };
         Self {
             track: Track {

@@ -25,10 +25,6 @@ const WORTH_A_START: f64 = 0.2;
 /// Effects with at most this many starting values have one valley.
 const FEW_STARTS: usize = 1;
 
-/// A point from which the first iteration does not lead to within this many times the cost that it must come
-/// to is not followed where the model leaves nothing but noise: what is missing there must be faint.
-const FAR_OFF: f64 = 2.0;
-
 /// The best starting point is not given up while an iteration brings its cost below this share.
 const COMING_ON: f64 = 0.5;
 
@@ -49,6 +45,8 @@ const HOPE: f64 = 3.0;
 pub(super) struct Ground {
     /// Cost on the scout below which a starting point must come to be followed.
     pub limit: f64,
+    /// The same after its first iteration.
+    pub reach: f64,
     /// The model leaves nothing but noise: its body and its effects are not led astray by a missing one, so that
     /// no other values of theirs are tried with a new effect.
     pub settled: bool,
@@ -76,6 +74,8 @@ pub(super) struct Search {
     present: f64,
     /// Cost on the scout below which a starting point must come to be followed.
     limit: f64,
+    /// The same after its first iteration.
+    reach: f64,
     /// The model to which an effect is added leaves nothing but noise.
     settled: bool,
     /// Whether a point that does not come to be followed is tried again with another body.
@@ -177,6 +177,7 @@ impl Search {
         }
         Self {
             limit: ground.map_or(f64::INFINITY, |g| g.limit),
+            reach: ground.map_or(f64::INFINITY, |g| g.reach),
             settled,
             retries: ground.is_some() && instead.is_none() && !settled,
             ..Self::from_points(structure, points, fit.cost)
@@ -296,6 +297,7 @@ impl Search {
             given_up: false,
             present,
             limit: f64::INFINITY,
+            reach: f64::INFINITY,
             settled: false,
             retries: false,
             optimism: f64::INFINITY,
@@ -319,8 +321,11 @@ impl Search {
             self.tried.push((fit.cost, point));
             if self.pending.is_empty() {
                 self.tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-                let best = std::mem::take(&mut self.tried).into_iter().take(SHORTLIST);
-                self.shortlist = best.map(|(_, point)| point).collect();
+                let best = std::mem::take(&mut self.tried).into_iter().enumerate();
+                self.shortlist = best
+                    .take_while(|(k, (cost, _))| *k == 0 || (*k < SHORTLIST && *cost <= self.reach))
+                    .map(|(_, (_, point))| point)
+                    .collect();
                 self.shortlist.reverse();
             }
             return true;
@@ -329,12 +334,10 @@ impl Search {
             return false;
         };
         let mut fit = self.begun(&point, scout, scales);
-        if self.settled {
-            fit.iterate(scout, scales);
-            fit.done |= fit.cost > FAR_OFF * self.limit;
-        }
         let retry = self.retries.then(|| fit.clone());
-        for _ in usize::from(self.settled)..SCAN_ITERATIONS {
+        fit.iterate(scout, scales);
+        fit.done |= fit.cost > self.reach;
+        for _ in 1..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
         if let Some(mut other) = retry.filter(|_| fit.cost > self.limit) {
