@@ -105,6 +105,20 @@ fn a_tachometer_at_100_hz_gives_away_friction() {
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
+/// A force that depends on the position, where that is the integral of a noisy velocity.
+#[test]
+fn a_tachometer_gives_away_cogging() {
+    let rig = DriveRig {
+        cogging: (0.04, 6.0, 0.4),
+        excitation: Excitation::Multisine { amplitude: 0.08 },
+        recorded: Recorded::VelocityOnly,
+        ..DriveRig::default()
+    };
+    let d = diagnose(&rig);
+    check(&d, &["cogging"], &[("a", 0.04), ("n", 6.0)]);
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+}
+
 #[test]
 fn nothing_is_missing_where_nothing_is() {
     for (rate, samples, excitation) in [
