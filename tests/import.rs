@@ -264,6 +264,22 @@ fn a_decimal_comma_that_comes_late_is_still_one() {
 }
 
 #[test]
+fn a_process_needs_no_units_but_that_of_time() {
+    let rows: String = (0..40).map(|k| format!("{k},{},{k}\n", k % 2)).collect();
+    let import = |head: &str| import_csv("process.csv", format!("{head}\n{rows}").as_bytes(), None);
+    let process = import("t [s],u,y").unwrap();
+    let units = [&process.input.unit, &process.outputs[0].unit];
+    assert_eq!(units, ["1", "1"]);
+    assert_eq!(
+        process.warnings,
+        ["No unit is given for u, y: taken as plain numbers."]
+    );
+    assert!(import("t [s],u [V],y [K]").unwrap().warnings.is_empty());
+    let error = import("t,u,y").unwrap_err().to_string();
+    assert!(error.contains("such as t [s]"), "{error}");
+}
+
+#[test]
 fn a_missing_header_or_unit_is_named_with_what_is_accepted() {
     refused(
         "0,1,2\n1,2,3\n",
@@ -271,11 +287,11 @@ fn a_missing_header_or_unit_is_named_with_what_is_accepted() {
     );
     refused(
         &file("t [s],u,x1 [rad],v1 [rad/s]", 30),
-        &["line 1", "column 2 (u)", "no unit", "N m"],
+        &["line 1", "column 2 (u)", "such as u [N m]"],
     );
     refused(
         &file("t [s],u [N m],x1 []", 30),
-        &["column 3 (x1)", "no unit"],
+        &["column 3 (x1)", "no unit", "such as x1 [rad]"],
     );
     refused(
         &file("t [s],u [N m],x1 [furlong]", 30),

@@ -41,9 +41,9 @@ pub enum Problem {
     )]
     NoHeader { found: String },
     #[error(
-        "no unit; write it in brackets after the name, such as {name} [s]; accepted: {ACCEPTED}"
+        "no unit; write it in brackets after the name, such as {name} [{example}]; accepted: {ACCEPTED}"
     )]
-    NoUnit { name: String },
+    NoUnit { name: String, example: &'static str },
     #[error("the unit '{unit}' does not fit; expected {expected}")]
     WrongUnit { unit: String, expected: String },
     #[error(

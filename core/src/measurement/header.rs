@@ -142,6 +142,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
     );
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
+    let mut plain = Vec::new();
     for (index, field) in fields.into_iter().enumerate() {
         let Field {
             name,
@@ -159,8 +160,16 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
         if columns.iter().any(|c| c.role == role) {
             return Err((here(), Problem::Twice { name }));
         }
-        let Some(unit) = unit else {
-            return Err((here(), Problem::NoUnit { name }));
+        let unit = match unit {
+            Some(unit) => unit,
+            None if kind == Kind::Process && role != Role::Time => {
+                plain.push(name.clone());
+                "1".to_owned()
+            }
+            None => {
+                let example = example(role);
+                return Err((here(), Problem::NoUnit { name, example }));
+            }
         };
         let (measures, factor, unit) =
             convert(role, kind, &name, &unit).map_err(|p| (here(), p))?;
@@ -180,9 +189,25 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
         notes: Vec::new(),
         width,
     };
+    if !plain.is_empty() {
+        let plain = plain.join(", ");
+        let note = format!("No unit is given for {plain}: taken as plain numbers.");
+        header.notes.push(note);
+    }
     make_torque(&mut header, options)?;
     complete(&header)?;
     Ok(header)
+}
+
+/// A unit that a column in this role may have.
+fn example(role: Role) -> &'static str {
+    match role {
+        Role::Time => "s",
+        Role::Measured(Quantity::Input) => "N m",
+        Role::Measured(Quantity::Position | Quantity::LoadPosition) => "rad",
+        Role::Measured(Quantity::Velocity | Quantity::LoadVelocity) => "rad/s",
+        Role::Measured(Quantity::Output) => "1",
+    }
 }
 
 fn belongs(role: Role, kind: Kind) -> bool {
