@@ -265,7 +265,8 @@ fn a_decimal_comma_that_comes_late_is_still_one() {
 
 #[test]
 fn a_process_needs_no_units_but_that_of_time() {
-    let rows: String = (0..40).map(|k| format!("{k},{},{k}\n", k % 2)).collect();
+    let rows: Vec<String> = (0..40).map(|k| format!("{k},{},{k}", k % 2)).collect();
+    let rows = rows.join("\n");
     let import = |head: &str| import_csv("process.csv", format!("{head}\n{rows}").as_bytes(), None);
     let process = import("t [s],u,y").unwrap();
     let units = [&process.input.unit, &process.outputs[0].unit];

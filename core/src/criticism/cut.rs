@@ -128,7 +128,7 @@ mod tests {
 
     /// A saw-tooth: it turns every `swing` samples.
     fn swinging(n: usize, swing: usize) -> Vec<f64> {
-        let way = |k: usize| if (k / swing) % 2 == 0 { 1.0 } else { -1.0 };
+        let way = |k: usize| [1.0, -1.0][k / swing % 2];
         (0..n)
             .map(|k| way(k) * (0.5 - (k % swing) as f64 / swing as f64))
             .collect()

@@ -11,7 +11,7 @@ use crate::measurement::Kind;
 
 /// Whether two effects are the same or one contains the other.
 pub(super) fn nested(a: &dyn Effect, b: &dyn Effect) -> bool {
-    a.id() == b.id() || a.contains().contains(&b.id()) || b.contains().contains(&a.id())
+    a.id() == b.id() || a.has_part(b.id()) || b.has_part(a.id())
 }
 
 /// Whether a part of an effect does in place of the whole: as well, or so that noise alone is left.
@@ -112,9 +112,7 @@ fn stands_out(model: &Scored, with: &Scored, place: usize, clear: f64) -> bool {
 /// `model`, the first that the part has not, or not so large. A level of friction that both have tells nothing.
 fn telling(model: &Scored, effect: &dyn Effect) -> usize {
     let effects = model.fit.structure.effects.iter();
-    let part = effects
-        .copied()
-        .find(|e| effect.contains().contains(&e.id()));
+    let part = effects.copied().find(|e| effect.has_part(e.id()));
     part.and_then(|part| {
         effect.parameters().iter().position(|own| {
             let mut others = part.parameters().iter();

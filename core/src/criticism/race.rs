@@ -145,11 +145,7 @@ impl Contender {
 /// Whether the effect at this place of a fit contains `part`.
 fn contains(whole: &Fit, place: usize, part: &dyn Effect) -> bool {
     let effect = whole.structure.effects.get(place);
-    effect.is_some_and(|e| contains_effect(*e, part))
-}
-
-fn contains_effect(whole: &dyn Effect, part: &dyn Effect) -> bool {
-    whole.contains().contains(&part.id())
+    effect.is_some_and(|e| e.has_part(part.id()))
 }
 
 /// A race that goes on piece by piece.
@@ -178,27 +174,24 @@ impl Race {
     ) -> Self {
         let scouted = instead.map_or(f64::INFINITY, |(whole, _)| session.scouted(whole));
         let present = session.scouted(fit);
-        let ground = match instead {
-            None => {
-                let settled = is_plain_noise(&score(&session.data, fit));
-                let limit = PROMISING * present;
-                Ground {
-                    limit,
-                    reach: if settled {
-                        FAR_OFF * limit
-                    } else {
-                        f64::INFINITY
-                    },
-                    settled,
-                }
+        let ground = if instead.is_some() {
+            let limit = WITHIN_REACH * scouted;
+            Ground {
+                limit,
+                reach: limit.max((1.0 - FIRST_SHARE) * present),
+                settled: false,
             }
-            Some(_) => {
-                let limit = WITHIN_REACH * scouted;
-                Ground {
-                    limit,
-                    reach: limit.max((1.0 - FIRST_SHARE) * present),
-                    settled: false,
-                }
+        } else {
+            let settled = is_plain_noise(&score(&session.data, fit));
+            let limit = PROMISING * present;
+            Ground {
+                limit,
+                reach: if settled {
+                    FAR_OFF * limit
+                } else {
+                    f64::INFINITY
+                },
+                settled,
             }
         };
         Self {
@@ -262,7 +255,7 @@ impl Race {
     /// Parts of an effect in the race that it needs to come to something.
     fn parts_of<'a>(&'a self, whole: &'a Contender) -> impl Iterator<Item = &'a Contender> {
         let needs = whole.effect.needs_its_parts();
-        let is_part = move |c: &&Contender| needs && contains_effect(whole.effect, c.effect);
+        let is_part = move |c: &&Contender| needs && whole.effect.has_part(c.effect.id());
         self.contenders.iter().filter(is_part)
     }
 

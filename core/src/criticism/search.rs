@@ -115,11 +115,10 @@ impl Search {
         let structure = rest.with(effect);
         let own = effect.starts(probe);
         let mut points = Vec::new();
-        let related = |other: &dyn Effect| {
-            other.contains().contains(&effect.id()) || same_dimensions(effect, other)
-        };
+        let related =
+            |other: &dyn Effect| other.has_part(effect.id()) || same_dimensions(effect, other);
         let contained = (0..fit.structure.effects.len())
-            .filter(|i| effect.contains().contains(&fit.structure.effects[*i].id()))
+            .filter(|i| effect.has_part(fit.structure.effects[*i].id()))
             .map(|index| (fit, index));
         let replaced = instead.filter(|(from, index)| related(from.structure.effects[*index]));
         let relatives = contained.chain(replaced);
@@ -269,7 +268,7 @@ impl Search {
                 let lent = &from.values[from.structure.range(place)];
                 if other.id() == effect.id() {
                     own.copy_from_slice(lent);
-                } else if other.contains().contains(&effect.id()) {
+                } else if other.has_part(effect.id()) {
                     lend(*effect, own, *other, lent);
                 }
             }

@@ -189,7 +189,7 @@ impl StepJob {
             .filter(|e| {
                 self.wanted
                     .iter()
-                    .all(|w| w.id() != e.id() && !w.contains().contains(&e.id()))
+                    .all(|w| w.id() != e.id() && !w.has_part(e.id()))
             })
             .collect()
     }
@@ -201,7 +201,7 @@ impl StepJob {
         self.session
             .library()
             .filter(|e| {
-                own.is_some_and(|own| !nested(*own, *e) || own.contains().contains(&e.id()))
+                own.is_some_and(|own| !nested(*own, *e) || own.has_part(e.id()))
                     && self
                         .wanted
                         .iter()
@@ -417,7 +417,7 @@ impl StepJob {
         let mut class = Class::default();
         for (effect, fit) in fits {
             let swapped = self.session.scored(fit);
-            if own.contains().contains(&effect.id()) {
+            if own.has_part(effect.id()) {
                 let fewer = |s: &Scored| s.fit.values.len() > swapped.fit.values.len();
                 if part_does(model, &swapped, place, self.session.first(model))
                     && self.simpler.as_ref().is_none_or(fewer)
@@ -464,7 +464,7 @@ impl StepJob {
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
         helping()
             .filter(|(e, s)| {
-                if best.0.contains().contains(&e.id()) {
+                if best.0.has_part(e.id()) {
                     let place = best.1.fit.structure.effects.len() - 1;
                     part_does(&best.1, s, place, first)
                 } else {
@@ -751,7 +751,7 @@ fn as_its_best_part(
     };
     let part = candidates
         .iter()
-        .filter(|c| c.effects.iter().all(|id| effect.contains().contains(id)))
+        .filter(|c| c.effects.iter().all(|id| effect.has_part(*id)))
         .min_by(|a, b| a.error.total_cmp(&b.error));
     Candidate {
         effects: vec![effect.id()],

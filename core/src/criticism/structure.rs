@@ -45,7 +45,7 @@ impl Structure {
     pub fn without_contained(&self, effect: &dyn Effect, values: &[f64]) -> (Self, Vec<f64>) {
         let (mut rest, mut kept) = (self.clone(), values.to_vec());
         for index in (0..self.effects.len()).rev() {
-            if effect.contains().contains(&self.effects[index].id()) {
+            if effect.has_part(self.effects[index].id()) {
                 kept.drain(rest.range(index));
                 rest = rest.without(index);
             }

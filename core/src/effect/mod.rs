@@ -64,6 +64,11 @@ pub trait Effect: Sync {
         &[]
     }
 
+    /// Whether the effect of this id is this one with some values at 0.
+    fn has_part(&self, id: EffectId) -> bool {
+        self.contains().contains(&id)
+    }
+
     /// Whether it is worth a try only where one of the effects that it contains comes to something: what it adds to
     /// them does not hide them.
     fn needs_its_parts(&self) -> bool {
