@@ -1,22 +1,16 @@
 //! One step of a diagnosis: fits one model and tries every effect on top of it.
 
-use super::fingerprint::fingerprints;
-use super::judge::{
-    alike, helps_clearly, is_certain, may_hide, nested, part_does, same_body, tied,
-};
-use super::knowledge::contradictions;
-use super::missing::missing_parts;
+mod choice;
+mod report;
+
+use super::judge::{alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
-use super::residual_test::residual_tests;
-use super::score::Score;
 use super::search::Search;
-use super::select::{delta_bic, helps, is_noise, is_plain_noise, outweighs};
+use super::select::{is_noise, is_plain_noise};
 use super::session::{Scored, Session};
-use super::verdict::{Class, add_experiments, add_idle, add_imitations, add_rest, verdict};
-use super::{
-    Candidate, Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport,
-};
+use super::verdict::Class;
+use super::{Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport};
 use crate::crew::Crew;
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::Measurement;
@@ -24,9 +18,6 @@ use crate::user_model::UserModel;
 
 /// Error of a perfect model in noise units.
 pub(super) const NOISE_FLOOR: f64 = 1.0;
-
-/// The effect that is tried together with others where nothing helps by itself.
-const COMPANION: EffectId = EffectId::new("constant_load");
 
 /// Times that a model is fitted once more from where an effect on top of it led, and the share of its cost below
 /// which that is another valley.
@@ -437,71 +428,6 @@ impl StepJob {
         self.classes.push(class);
     }
 
-    /// Known values that the data contradict more than they want any effect.
-    fn contradictions(&self) -> Vec<Contradiction> {
-        let Some(model) = &self.model else {
-            return Vec::new();
-        };
-        let best = self
-            .suggestion(model)
-            .map_or(f64::INFINITY, |(_, s)| s.score.error);
-        contradictions(&self.session, model, best)
-    }
-
-    /// The effect to add next: the best that helps; of equals the one with fewer parameters, or that stands
-    /// first in the registry.
-    fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
-        if !self.contradicted.is_empty() {
-            return None;
-        }
-        let first = self.session.first(model);
-        let helping = || {
-            self.tried
-                .iter()
-                .filter(|(e, _)| !self.barred.contains(&e.id()))
-                .filter(|(_, s)| helps_clearly(model, s, first))
-        };
-        let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
-        helping()
-            .filter(|(e, s)| {
-                if best.0.has_part(e.id()) {
-                    let place = best.1.fit.structure.effects.len() - 1;
-                    part_does(&best.1, s, place, first)
-                } else {
-                    let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
-                    alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
-                }
-            })
-            .min_by_key(|(_, s)| s.fit.values.len())
-            .or(Some(best))
-    }
-
-    /// Effects without which the held-back error does not rise; those of the user's model stay.
-    fn needless(&self, model: &Scored) -> Vec<EffectId> {
-        if !self.contradicted.is_empty() {
-            return Vec::new();
-        }
-        let (_, own) = self.idle(model);
-        own
-    }
-
-    /// Effects without which the held-back error does not rise: of the user's model, and others.
-    fn idle(&self, model: &Scored) -> (Vec<EffectId>, Vec<EffectId>) {
-        // Where nothing but noise is left, and more without an effect, it is needed wherever it acts.
-        let explains = |without: &Score| {
-            is_plain_noise(&model.score)
-                && !is_plain_noise(without)
-                && outweighs(without.error, model.score.error)
-        };
-        let idle = |without: &Score| !helps(without, &model.score) && !explains(without);
-        self.wanted
-            .iter()
-            .zip(&self.without)
-            .filter(|(_, without)| idle(&without.score))
-            .map(|(e, _)| e.id())
-            .partition(|id| self.session.knowledge.has(*id))
-    }
-
     fn progress(&self) -> (f64, String) {
         let wanted = self.wanted.len().max(1) as f64;
         match &self.stage {
@@ -530,132 +456,6 @@ impl StepJob {
         }
     }
 
-    fn report(&self) -> Option<StepReport> {
-        let model = self.model.as_ref()?;
-        let suggestion = self.suggestion(model).map(|(e, _)| e.id());
-        let needless = self.needless(model);
-        let whole = self.session.completed(model);
-        let parameters = self.session.parameters(&whole);
-        let findings = self.session.findings(&whole);
-        let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
-            let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
-            let mut places: Vec<usize> = places.collect();
-            places.sort_by_key(|k| self.found(self.wanted[*k]));
-            let (added, classes): (Vec<_>, Vec<_>) = places
-                .into_iter()
-                .map(|k| {
-                    (
-                        self.wanted[k],
-                        self.classes.get(k).cloned().unwrap_or_default(),
-                    )
-                })
-                .unzip();
-            let mut verdict = verdict(
-                &added,
-                &classes,
-                &parameters,
-                &whole,
-                is_noise(&whole.score, self.session.first(&whole)),
-                self.contradicted.clone(),
-            );
-            let first = self.session.first(&whole).error;
-            add_rest(&mut verdict, &whole.score, first, &findings);
-            add_imitations(&mut verdict, &self.barred);
-            add_idle(&mut verdict, &self.idle(model).0);
-            add_experiments(&mut verdict, &self.experiments);
-            verdict
-        });
-        let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
-        let tried: Vec<(EffectId, &Scored)> = self.tried.iter().map(|(e, s)| (e.id(), s)).collect();
-        // Effects are compared on a part of a long record: their errors are put in proportion to all of it.
-        let share = whole.score.error / model.score.error;
-        let mut candidates = self.candidates(model, suggestion);
-        for candidate in candidates.iter_mut().filter(|_| share.is_finite()) {
-            candidate.error *= share;
-        }
-        Some(StepReport {
-            fingerprints: fingerprints(&self.session, model, &tried, &findings),
-            missing: if unknown {
-                missing_parts(&self.session, &whole)
-            } else {
-                Vec::new()
-            },
-            step: Step {
-                effects: self.session.effects(&model.fit),
-                error: whole.score.error,
-                error_fit: whole.score.error_fit,
-                parameters,
-                findings,
-                tests: residual_tests(self.session.whole(), &whole.fit.motion),
-                candidates,
-            },
-            noise_floor: NOISE_FLOOR,
-            replay: self.session.replay(&whole.fit),
-            atlas: self.session.atlas(&whole.fit),
-            suggestion,
-            needless,
-            verdict,
-        })
-    }
-
-    /// Every effect tried, best first; the suggested one leads.
-    fn candidates(&self, model: &Scored, suggestion: Option<EffectId>) -> Vec<Candidate> {
-        let length = model.fit.values.len();
-        let first = self.session.first(model);
-        let mut candidates: Vec<Candidate> = self
-            .tried
-            .iter()
-            .map(|(effect, scored)| {
-                let worse = scored.score.fit_cost > model.score.fit_cost;
-                let equivalent_to = self
-                    .tried
-                    .iter()
-                    .filter(|(other, o)| {
-                        !nested(*other, *effect)
-                            && helps_clearly(model, scored, first)
-                            && helps_clearly(model, o, first)
-                            && alike(scored, o)
-                    })
-                    .map(|(other, _)| other.id())
-                    .collect();
-                Candidate {
-                    effects: vec![effect.id()],
-                    // Every effect contains "none of it", so it never has to make things worse.
-                    error: if worse {
-                        model.score.error
-                    } else {
-                        scored.score.error
-                    },
-                    delta_bic: if worse {
-                        effect.parameters().len() as f64 * libm::log(model.score.fit_count)
-                    } else {
-                        delta_bic(&model.score, length, &scored.score, scored.fit.values.len())
-                    },
-                    significant: helps_clearly(model, scored, first),
-                    parameters: self
-                        .session
-                        .parameters(scored)
-                        .into_iter()
-                        .filter(|p| p.effect == Some(effect.id()))
-                        .collect(),
-                    equivalent_to,
-                }
-            })
-            .collect();
-        let untried: Vec<Candidate> = self
-            .others()
-            .into_iter()
-            .filter(|e| self.tried.iter().all(|(tried, _)| tried.id() != e.id()))
-            .map(|e| as_its_best_part(e, &candidates, model))
-            .collect();
-        candidates.extend(untried);
-        candidates.sort_by(|a, b| {
-            let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
-            first(a).cmp(&first(b)).then(a.error.total_cmp(&b.error))
-        });
-        candidates
-    }
-
     /// The model to go on from: with the suggestion, without the first needless effect, or with a part of
     /// one; and the session.
     pub(super) fn successor(self) -> (Session, Option<Scored>) {
@@ -673,92 +473,5 @@ impl StepJob {
             suggested.or_else(|| self.simpler.clone())
         });
         (self.session, next)
-    }
-
-    /// In a last model that leaves more than noise, this `error` on the whole record, the effect that explains
-    /// least, if that is less than what is left or its size is not known to differ from 0, and the model without it:
-    /// it may as well imitate a part of what no effect explains.
-    pub(super) fn imitation(&self, error: f64) -> Option<(EffectId, Scored)> {
-        self.wanted
-            .iter()
-            .zip(&self.without)
-            .enumerate()
-            .filter(|(_, (e, _))| !self.session.knowledge.has(e.id()))
-            // Where a long record was thinned, all of it decides.
-            .map(|(place, (e, without))| {
-                let completed = self.session.completed(without).score.error;
-                (place, e.id(), without, completed)
-            })
-            .filter(|(place, _, without, completed)| {
-                let certain = |model| is_certain(without, model, *place);
-                !outweighs(*completed, error) || !self.model.as_ref().is_none_or(certain)
-            })
-            .min_by(|a, b| a.3.total_cmp(&b.3))
-            .map(|(_, id, without, _)| (id, without.clone()))
-    }
-
-    /// Models with an effect that lowers the error much, though not beyond chance while the rest is as
-    /// correlated as it is: the best first. Two missing effects may hide each other so.
-    pub(super) fn faint(&self, count: usize) -> Vec<Scored> {
-        let Some(model) = self.model.as_ref().filter(|_| self.contradicted.is_empty()) else {
-            return Vec::new();
-        };
-        let mut seen: Vec<&Scored> = self
-            .tried
-            .iter()
-            .map(|(_, s)| s)
-            .filter(|s| may_hide(model, s))
-            .collect();
-        seen.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
-        seen.truncate(count);
-        // A constant load hides behind almost anything that repeats.
-        let loaded = self.tried.iter().find(|(e, _)| e.id() == COMPANION);
-        seen.extend(loaded.map(|(_, s)| s));
-        seen.into_iter().cloned().collect()
-    }
-
-    /// Models with another effect that would help too, the best first: where the suggestion may turn
-    /// out to lead astray.
-    pub(super) fn alternatives(&self, count: usize) -> Vec<Scored> {
-        let Some(model) = &self.model else {
-            return Vec::new();
-        };
-        let Some((suggested, _)) = self.suggestion(model) else {
-            return Vec::new();
-        };
-        let first = self.session.first(model);
-        let mut others: Vec<&Scored> = self
-            .tried
-            .iter()
-            .filter(|(e, s)| !nested(*e, *suggested) && helps_clearly(model, s, first))
-            .map(|(_, s)| s)
-            .collect();
-        others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
-        others.into_iter().take(count).cloned().collect()
-    }
-}
-
-/// An effect that was not worth a fit, among the `candidates` that were: it does at least what the best of its parts
-/// does, and was not seen to do more.
-fn as_its_best_part(
-    effect: &'static dyn Effect,
-    candidates: &[Candidate],
-    model: &Scored,
-) -> Candidate {
-    let more = |from: usize| {
-        let values = effect.parameters().len().saturating_sub(from);
-        values as f64 * libm::log(model.score.fit_count)
-    };
-    let part = candidates
-        .iter()
-        .filter(|c| c.effects.iter().all(|id| effect.has_part(*id)))
-        .min_by(|a, b| a.error.total_cmp(&b.error));
-    Candidate {
-        effects: vec![effect.id()],
-        error: part.map_or(model.score.error, |p| p.error),
-        delta_bic: part.map_or(more(0), |p| p.delta_bic + more(p.parameters.len())),
-        significant: part.is_some_and(|p| p.significant),
-        parameters: Vec::new(),
-        equivalent_to: Vec::new(),
     }
 }

@@ -1,0 +1,144 @@
+//! What to add, to leave out, or to follow on trial, of what a step has fitted.
+
+use super::StepJob;
+use crate::criticism::Contradiction;
+use crate::criticism::judge::{
+    alike, helps_clearly, is_certain, may_hide, nested, part_does, tied,
+};
+use crate::criticism::knowledge::contradictions;
+use crate::criticism::score::Score;
+use crate::criticism::select::{helps, is_plain_noise, outweighs};
+use crate::criticism::session::Scored;
+use crate::effect::{Effect, EffectId};
+
+/// The effect that is tried together with others where nothing helps by itself.
+const COMPANION: EffectId = EffectId::new("constant_load");
+
+impl StepJob {
+    /// Known values that the data contradict more than they want any effect.
+    pub(super) fn contradictions(&self) -> Vec<Contradiction> {
+        let Some(model) = &self.model else {
+            return Vec::new();
+        };
+        let best = self
+            .suggestion(model)
+            .map_or(f64::INFINITY, |(_, s)| s.score.error);
+        contradictions(&self.session, model, best)
+    }
+
+    /// The effect to add next: the best that helps; of equals the one with fewer parameters, or that stands
+    /// first in the registry.
+    pub(super) fn suggestion(&self, model: &Scored) -> Option<&(&'static dyn Effect, Scored)> {
+        if !self.contradicted.is_empty() {
+            return None;
+        }
+        let first = self.session.first(model);
+        let helping = || {
+            self.tried
+                .iter()
+                .filter(|(e, _)| !self.barred.contains(&e.id()))
+                .filter(|(_, s)| helps_clearly(model, s, first))
+        };
+        let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
+        helping()
+            .filter(|(e, s)| {
+                if best.0.has_part(e.id()) {
+                    let place = best.1.fit.structure.effects.len() - 1;
+                    part_does(&best.1, s, place, first)
+                } else {
+                    let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
+                    alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
+                }
+            })
+            .min_by_key(|(_, s)| s.fit.values.len())
+            .or(Some(best))
+    }
+
+    /// Effects without which the held-back error does not rise; those of the user's model stay.
+    pub(super) fn needless(&self, model: &Scored) -> Vec<EffectId> {
+        if !self.contradicted.is_empty() {
+            return Vec::new();
+        }
+        let (_, own) = self.idle(model);
+        own
+    }
+
+    /// Effects without which the held-back error does not rise: of the user's model, and others.
+    pub(super) fn idle(&self, model: &Scored) -> (Vec<EffectId>, Vec<EffectId>) {
+        // Where nothing but noise is left, and more without an effect, it is needed wherever it acts.
+        let explains = |without: &Score| {
+            is_plain_noise(&model.score)
+                && !is_plain_noise(without)
+                && outweighs(without.error, model.score.error)
+        };
+        let idle = |without: &Score| !helps(without, &model.score) && !explains(without);
+        self.wanted
+            .iter()
+            .zip(&self.without)
+            .filter(|(_, without)| idle(&without.score))
+            .map(|(e, _)| e.id())
+            .partition(|id| self.session.knowledge.has(*id))
+    }
+
+    /// In a last model that leaves more than noise, this `error` on the whole record, the effect that explains
+    /// least, if that is less than what is left or its size is not known to differ from 0, and the model without it:
+    /// it may as well imitate a part of what no effect explains.
+    pub(in crate::criticism) fn imitation(&self, error: f64) -> Option<(EffectId, Scored)> {
+        self.wanted
+            .iter()
+            .zip(&self.without)
+            .enumerate()
+            .filter(|(_, (e, _))| !self.session.knowledge.has(e.id()))
+            // Where a long record was thinned, all of it decides.
+            .map(|(place, (e, without))| {
+                let completed = self.session.completed(without).score.error;
+                (place, e.id(), without, completed)
+            })
+            .filter(|(place, _, without, completed)| {
+                let certain = |model| is_certain(without, model, *place);
+                !outweighs(*completed, error) || !self.model.as_ref().is_none_or(certain)
+            })
+            .min_by(|a, b| a.3.total_cmp(&b.3))
+            .map(|(_, id, without, _)| (id, without.clone()))
+    }
+
+    /// Models with an effect that lowers the error much, though not beyond chance while the rest is as
+    /// correlated as it is: the best first. Two missing effects may hide each other so.
+    pub(in crate::criticism) fn faint(&self, count: usize) -> Vec<Scored> {
+        let Some(model) = self.model.as_ref().filter(|_| self.contradicted.is_empty()) else {
+            return Vec::new();
+        };
+        let mut seen: Vec<&Scored> = self
+            .tried
+            .iter()
+            .map(|(_, s)| s)
+            .filter(|s| may_hide(model, s))
+            .collect();
+        seen.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
+        seen.truncate(count);
+        // A constant load hides behind almost anything that repeats.
+        let loaded = self.tried.iter().find(|(e, _)| e.id() == COMPANION);
+        seen.extend(loaded.map(|(_, s)| s));
+        seen.into_iter().cloned().collect()
+    }
+
+    /// Models with another effect that would help too, the best first: where the suggestion may turn
+    /// out to lead astray.
+    pub(in crate::criticism) fn alternatives(&self, count: usize) -> Vec<Scored> {
+        let Some(model) = &self.model else {
+            return Vec::new();
+        };
+        let Some((suggested, _)) = self.suggestion(model) else {
+            return Vec::new();
+        };
+        let first = self.session.first(model);
+        let mut others: Vec<&Scored> = self
+            .tried
+            .iter()
+            .filter(|(e, s)| !nested(*e, *suggested) && helps_clearly(model, s, first))
+            .map(|(_, s)| s)
+            .collect();
+        others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
+        others.into_iter().take(count).cloned().collect()
+    }
+}

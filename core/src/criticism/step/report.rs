@@ -1,0 +1,165 @@
+//! What a step tells: the model, what could be added, and the verdict where nothing is.
+
+use super::{NOISE_FLOOR, StepJob};
+use crate::criticism::fingerprint::fingerprints;
+use crate::criticism::judge::{alike, helps_clearly, nested};
+use crate::criticism::missing::missing_parts;
+use crate::criticism::residual_test::residual_tests;
+use crate::criticism::select::{delta_bic, is_noise};
+use crate::criticism::session::Scored;
+use crate::criticism::verdict::{add_experiments, add_idle, add_imitations, add_rest, verdict};
+use crate::criticism::{Candidate, Step, StepReport};
+use crate::effect::{Effect, EffectId};
+
+impl StepJob {
+    pub(super) fn report(&self) -> Option<StepReport> {
+        let model = self.model.as_ref()?;
+        let suggestion = self.suggestion(model).map(|(e, _)| e.id());
+        let needless = self.needless(model);
+        let whole = self.session.completed(model);
+        let parameters = self.session.parameters(&whole);
+        let findings = self.session.findings(&whole);
+        let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
+            let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
+            let mut places: Vec<usize> = places.collect();
+            places.sort_by_key(|k| self.found(self.wanted[*k]));
+            let (added, classes): (Vec<_>, Vec<_>) = places
+                .into_iter()
+                .map(|k| {
+                    (
+                        self.wanted[k],
+                        self.classes.get(k).cloned().unwrap_or_default(),
+                    )
+                })
+                .unzip();
+            let mut verdict = verdict(
+                &added,
+                &classes,
+                &parameters,
+                &whole,
+                is_noise(&whole.score, self.session.first(&whole)),
+                self.contradicted.clone(),
+            );
+            let first = self.session.first(&whole).error;
+            add_rest(&mut verdict, &whole.score, first, &findings);
+            add_imitations(&mut verdict, &self.barred);
+            add_idle(&mut verdict, &self.idle(model).0);
+            add_experiments(&mut verdict, &self.experiments);
+            verdict
+        });
+        let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
+        let tried: Vec<(EffectId, &Scored)> = self.tried.iter().map(|(e, s)| (e.id(), s)).collect();
+        // Effects are compared on a part of a long record: their errors are put in proportion to all of it.
+        let share = whole.score.error / model.score.error;
+        let mut candidates = self.candidates(model, suggestion);
+        for candidate in candidates.iter_mut().filter(|_| share.is_finite()) {
+            candidate.error *= share;
+        }
+        Some(StepReport {
+            fingerprints: fingerprints(&self.session, model, &tried, &findings),
+            missing: if unknown {
+                missing_parts(&self.session, &whole)
+            } else {
+                Vec::new()
+            },
+            step: Step {
+                effects: self.session.effects(&model.fit),
+                error: whole.score.error,
+                error_fit: whole.score.error_fit,
+                parameters,
+                findings,
+                tests: residual_tests(self.session.whole(), &whole.fit.motion),
+                candidates,
+            },
+            noise_floor: NOISE_FLOOR,
+            replay: self.session.replay(&whole.fit),
+            atlas: self.session.atlas(&whole.fit),
+            suggestion,
+            needless,
+            verdict,
+        })
+    }
+
+    /// Every effect tried, best first; the suggested one leads.
+    fn candidates(&self, model: &Scored, suggestion: Option<EffectId>) -> Vec<Candidate> {
+        let length = model.fit.values.len();
+        let first = self.session.first(model);
+        let mut candidates: Vec<Candidate> = self
+            .tried
+            .iter()
+            .map(|(effect, scored)| {
+                let worse = scored.score.fit_cost > model.score.fit_cost;
+                let equivalent_to = self
+                    .tried
+                    .iter()
+                    .filter(|(other, o)| {
+                        !nested(*other, *effect)
+                            && helps_clearly(model, scored, first)
+                            && helps_clearly(model, o, first)
+                            && alike(scored, o)
+                    })
+                    .map(|(other, _)| other.id())
+                    .collect();
+                Candidate {
+                    effects: vec![effect.id()],
+                    // Every effect contains "none of it", so it never has to make things worse.
+                    error: if worse {
+                        model.score.error
+                    } else {
+                        scored.score.error
+                    },
+                    delta_bic: if worse {
+                        effect.parameters().len() as f64 * libm::log(model.score.fit_count)
+                    } else {
+                        delta_bic(&model.score, length, &scored.score, scored.fit.values.len())
+                    },
+                    significant: helps_clearly(model, scored, first),
+                    parameters: self
+                        .session
+                        .parameters(scored)
+                        .into_iter()
+                        .filter(|p| p.effect == Some(effect.id()))
+                        .collect(),
+                    equivalent_to,
+                }
+            })
+            .collect();
+        let untried: Vec<Candidate> = self
+            .others()
+            .into_iter()
+            .filter(|e| self.tried.iter().all(|(tried, _)| tried.id() != e.id()))
+            .map(|e| as_its_best_part(e, &candidates, model))
+            .collect();
+        candidates.extend(untried);
+        candidates.sort_by(|a, b| {
+            let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
+            first(a).cmp(&first(b)).then(a.error.total_cmp(&b.error))
+        });
+        candidates
+    }
+}
+
+/// An effect that was not worth a fit, among the `candidates` that were: it does at least what the best of its parts
+/// does, and was not seen to do more.
+fn as_its_best_part(
+    effect: &'static dyn Effect,
+    candidates: &[Candidate],
+    model: &Scored,
+) -> Candidate {
+    let more = |from: usize| {
+        let values = effect.parameters().len().saturating_sub(from);
+        values as f64 * libm::log(model.score.fit_count)
+    };
+    let part = candidates
+        .iter()
+        .filter(|c| c.effects.iter().all(|id| effect.has_part(*id)))
+        .min_by(|a, b| a.error.total_cmp(&b.error));
+    Candidate {
+        effects: vec![effect.id()],
+        error: part.map_or(model.score.error, |p| p.error),
+        delta_bic: part.map_or(more(0), |p| p.delta_bic + more(p.parameters.len())),
+        significant: part.is_some_and(|p| p.significant),
+        parameters: Vec::new(),
+        equivalent_to: Vec::new(),
+    }
+}
