@@ -1,0 +1,324 @@
+//! Levenberg-Marquardt on the parameters, with the states at the window starts estimated alongside.
+//!
+//! The unknowns are the parameters `theta`, shared by all windows, and a state per window. The
+//! normal equations are block-arrow shaped: each window's state is eliminated (Schur complement)
+//! and found again by back-substitution, so that cost grows linearly with the record. Windows that
+//! are held back never inform `theta`; they estimate their own state only.
+
+mod equations;
+mod starts;
+
+use nalgebra::DMatrix;
+
+use super::cost::{ODD_MEAN_SQUARE, oddness, robust_cost, robust_share};
+use super::data::Data;
+use super::structure::Structure;
+use super::window_sums::reduced;
+use crate::effect::Scales;
+use crate::model::{FollowedLoad, Start};
+
+/// Iterations after which a fit ends in any case.
+const MAX_ITERATIONS: usize = 30;
+
+/// A relative fall of the cost below this ends a fit.
+const COST_TOLERANCE: f64 = 1e-6;
+
+/// Damping of the first step.
+const FIRST_DAMPING: f64 = 1e-3;
+
+/// Iterations of the baseline before an effect is fitted.
+const BODY_ITERATIONS: usize = 2;
+
+/// Iterations of a fit whose values were put in order.
+const ORDERED_ITERATIONS: usize = 4;
+
+/// Damping above which no step is tried any more.
+const MAX_DAMPING: f64 = 1e9;
+
+/// Growth of the damping after a step that did not lower the cost; it doubles with every further one.
+const DAMPING_GROWTH: f64 = 6.0;
+
+/// A fit ends when it stalls for the second time; damping with which it goes on after the first.
+const MAX_STALLS: usize = 2;
+const RESTART_DAMPING: f64 = 1e-3;
+
+/// Standard deviations by which a load on a joint may be off where it follows the body.
+const FARTHEST: f64 = 3.0;
+
+/// Position and velocity of the body at every sample.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Motion {
+    pub position: Vec<f64>,
+    pub velocity: Vec<f64>,
+    /// For each window, what its state costs by itself: how far a load is off where it is taken to be.
+    pub priors: Vec<f64>,
+    /// Where a load begins in the windows.
+    pub loads: FollowedLoad,
+}
+
+impl Motion {
+    /// No motion over `n` samples.
+    fn still(n: usize) -> Self {
+        Self {
+            position: vec![0.0; n],
+            velocity: vec![0.0; n],
+            ..Self::default()
+        }
+    }
+
+    /// The derivative of the motion with respect to where it starts, if that is all that changes.
+    fn shifted(data: &Data) -> Self {
+        let mut motion = Self::still(data.len());
+        for (from, to) in data.spans() {
+            motion.position[from..to].fill(1.0);
+        }
+        motion
+    }
+
+    /// Takes the motion of another one in a window.
+    fn take_window(&mut self, other: &Self, window: usize, (from, to): (usize, usize)) {
+        self.position[from..to].copy_from_slice(&other.position[from..to]);
+        self.velocity[from..to].copy_from_slice(&other.velocity[from..to]);
+        self.priors[window] = other.priors[window];
+    }
+
+    /// The part that an output shows.
+    pub fn of(&self, is_velocity: bool) -> &[f64] {
+        if is_velocity {
+            &self.velocity
+        } else {
+            &self.position
+        }
+    }
+}
+
+/// A fit that goes on iteration by iteration.
+#[derive(Clone)]
+pub(super) struct Fit {
+    pub structure: Structure,
+    pub values: Vec<f64>,
+    pub starts: Vec<Start>,
+    pub motion: Motion,
+    /// Squared residuals in noise units over the samples used for the fit; where windows differ widely,
+    /// by their usual size (see [`robust_cost`]).
+    pub cost: f64,
+    damping: f64,
+    /// Index of the first value that is held.
+    held: usize,
+    iterations: usize,
+    stalls: usize,
+    pub done: bool,
+    /// Inverse covariance of the values for unit noise, from the last iteration.
+    information: DMatrix<f64>,
+}
+
+impl Fit {
+    pub fn new(
+        data: &Data,
+        structure: Structure,
+        mut values: Vec<f64>,
+        starts: Vec<Start>,
+        scales: &Scales,
+    ) -> Self {
+        structure.clamp(&mut values, scales);
+        let unknown = FollowedLoad::default();
+        let motion = simulate(data, &structure, &values, &starts, &unknown);
+        let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE) + structure.prior_cost(&values);
+        let p = values.len();
+        let mut fit = Self {
+            structure,
+            values,
+            starts,
+            motion,
+            cost,
+            damping: FIRST_DAMPING,
+            held: usize::MAX,
+            iterations: 0,
+            stalls: 0,
+            done: !cost.is_finite(),
+            information: DMatrix::identity(p, p),
+        };
+        fit.take_felt_loads(data);
+        fit
+    }
+
+    /// One iteration: derivatives, then steps with growing damping until one lowers the cost.
+    pub fn iterate(&mut self, data: &Data, scales: &Scales) {
+        if self.done {
+            return;
+        }
+        self.iterations += 1;
+        let p = self.values.len();
+        let steps = self.difference_steps(data, scales);
+        let columns = self.columns(data, &steps, scales);
+        let scale = oddness(data, &self.motion);
+        let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns, p, scale);
+        let present = self.objective(data, &self.motion, &self.values, scale);
+        let priors = self.structure.priors();
+        // The equations of the data stand for their cost divided by this.
+        let share = robust_share(data, &self.motion, scale);
+        for (j, value, tolerance) in &priors {
+            let weight = 1.0 / (share * tolerance * tolerance);
+            matrix[(*j, *j)] += weight;
+            gradient[*j] += weight * (value - self.values[*j]);
+        }
+        let (mut lowered, mut shortened, mut growth) = (false, false, DAMPING_GROWTH);
+        while self.damping < MAX_DAMPING {
+            let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
+            else {
+                self.damping *= 10.0;
+                continue;
+            };
+            if shortened
+                && share * self.hoped_fall(data, &gradient, &windows, &values, &starts)
+                    < COST_TOLERANCE * present
+            {
+                break;
+            }
+            let (starts, motion) = self.motion_from(data, &values, starts, scale, present, scales);
+            let cost = self.objective(data, &motion, &values, scale);
+            if cost <= present {
+                let fall = (present - cost) / present.max(f64::MIN_POSITIVE);
+                self.cost = self.objective(data, &motion, &values, ODD_MEAN_SQUARE);
+                (self.values, self.starts, self.motion) = (values, starts, motion);
+                self.damping = (self.damping * 0.2).max(1e-9);
+                lowered = fall > COST_TOLERANCE;
+                break;
+            }
+            self.damping *= growth;
+            growth *= 2.0;
+            shortened = true;
+        }
+        self.information = reduced(&matrix, &gradient, &windows, data, p).0;
+        for (j, _, tolerance) in &priors {
+            self.information[(*j, *j)] += (1.0 - 1.0 / share) / (tolerance * tolerance);
+        }
+        if !lowered {
+            self.damping = RESTART_DAMPING;
+            if !self.mend_odd_windows(data, scales) {
+                // Once more with long difference steps, which see past the kinks around a stall.
+                self.stalls += 1;
+            }
+        }
+        self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
+    }
+
+    /// Motion with these values and starts; a load that they leave alone is not followed again.
+    fn simulate(&self, data: &Data, values: &[f64], starts: &[Start]) -> Motion {
+        simulate(data, &self.structure, values, starts, &self.motion.loads)
+    }
+
+    /// What a step must lower: the cost of the data and of what the user knows before.
+    fn objective(&self, data: &Data, motion: &Motion, values: &[f64], scale: f64) -> f64 {
+        robust_cost(data, motion, scale) + self.structure.prior_cost(values)
+    }
+
+    /// Fits the baseline alone, the effects as they are: with a wrong body the values of a new effect
+    /// would be led astray at once.
+    pub fn fit_body(&mut self, data: &Data, scales: &Scales) {
+        self.held = self.structure.baseline_len();
+        for _ in 0..BODY_ITERATIONS {
+            self.iterate(data, scales);
+        }
+        self.held = usize::MAX;
+        (self.iterations, self.stalls, self.damping) = (0, 0, FIRST_DAMPING);
+        self.done = !self.cost.is_finite();
+    }
+
+    /// Motion with new values; where it got worse than the `present` cost, each window starts from the better of its
+    /// new and its present state: near a kink a step in the state may lead anywhere. Where a body sticks that state is
+    /// then improved with the values kept: judged with wrong states, no step of the values along a valley would seem to
+    /// lower the cost.
+    fn motion_from(
+        &self,
+        data: &Data,
+        values: &[f64],
+        starts: Vec<Start>,
+        scale: f64,
+        present: f64,
+        scales: &Scales,
+    ) -> (Vec<Start>, Motion) {
+        let moved = self.simulate(data, values, &starts);
+        if self.objective(data, &moved, values, scale) <= present {
+            return (starts, moved);
+        }
+        let mut trial = Self {
+            values: values.to_vec(),
+            starts,
+            motion: moved,
+            ..self.clone()
+        };
+        trial.take_better(data, &self.starts);
+        let model = self.structure.model(values);
+        if data.excitation.sees_load_of(&model) {
+            trial.polish_until(present, data, scales);
+        } else if model.friction.breakaway() > 0.0 {
+            trial.polish_once(data, scales);
+        }
+        (trial.starts, trial.motion)
+    }
+
+    /// Puts values in order that only have each other's roles, and fits on from there; true if any were not.
+    pub fn put_in_order(&mut self, data: &Data, scales: &Scales) -> bool {
+        let mut values = self.values.clone();
+        if !self.structure.order(&mut values) {
+            return false;
+        }
+        let starts = self.starts.clone();
+        *self = Self::new(data, self.structure.clone(), values, starts, scales);
+        for _ in 0..ORDERED_ITERATIONS {
+            self.iterate(data, scales);
+        }
+        true
+    }
+}
+
+/// Standard deviations by which a load may be off at most. One that was seen by its contacts may have been met by
+/// chance, but if one on a joint is far off where it follows the body, the model is wrong.
+fn farthest(seen: bool) -> f64 {
+    if seen { f64::INFINITY } else { FARTHEST }
+}
+
+/// Runs the model through the whole record; what its load does may be known.
+fn simulate(
+    data: &Data,
+    structure: &Structure,
+    values: &[f64],
+    starts: &[Start],
+    known: &FollowedLoad,
+) -> Motion {
+    let mut motion = Motion::still(data.len());
+    let model = structure.model(values);
+    if model.load.is_some() {
+        data.count_load_replay();
+    }
+    motion.loads = data.excitation.follow(&model, starts, known);
+    let (position, velocity) = (&mut motion.position, &mut motion.velocity);
+    data.excitation
+        .replay(&model, starts, &motion.loads, position, velocity);
+    let doubts_load = data.excitation.doubts_load_of(&model);
+    let prior = |s: &Start| {
+        if doubts_load {
+            s.load[0].powi(2) + s.load[1].powi(2)
+        } else {
+            0.0
+        }
+    };
+    motion.priors = starts.iter().map(prior).collect();
+    motion
+}
+
+/// Residual in noise units.
+pub(super) fn residuals(data: &Data, motion: &Motion) -> Vec<Vec<f64>> {
+    data.outputs
+        .iter()
+        .map(|o| {
+            let modelled = motion.of(o.is_velocity);
+            o.values
+                .iter()
+                .zip(modelled)
+                .map(|(y, m)| (y - m) / o.noise)
+                .collect()
+        })
+        .collect()
+}

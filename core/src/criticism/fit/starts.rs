@@ -1,0 +1,116 @@
+//! The states from which windows start, improved with the values kept.
+
+use super::{Fit, farthest};
+use crate::criticism::cost::{ODD_MEAN_SQUARE, window_costs};
+use crate::criticism::data::Data;
+use crate::criticism::window_sums::{changed, inverse, kept_within};
+use crate::effect::Scales;
+use crate::model::Start;
+
+/// Times that the states of windows are improved: with a seen load as long as that lowers the cost below this share.
+const FEWEST_POLISHINGS: usize = 2;
+const POLISHINGS: usize = 6;
+const POLISHED_ENOUGH: f64 = 0.999;
+
+/// Shares of the step of a window's state that are tried where a contact bends the motion.
+const POLISHED: [f64; 3] = [1.0, 0.3, 0.1];
+
+impl Fit {
+    /// Takes for each window the state of a seen load in which it meets what was felt, where that is better; true if
+    /// there is a seen load.
+    pub(super) fn take_felt_loads(&mut self, data: &Data) -> bool {
+        let model = self.structure.model(&self.values);
+        if !data.excitation.sees_load_of(&model) {
+            return false;
+        }
+        let mut trial = self.starts.clone();
+        data.excitation.guess_loads(&model, &mut trial);
+        self.take_better(data, &trial);
+        true
+    }
+
+    /// Takes for each window the measured state where that suits the values better than the present one.
+    pub fn take_measured_starts(&mut self, data: &Data) {
+        let mut trial = data.guessed_starts();
+        for (guessed, present) in trial.iter_mut().zip(&self.starts) {
+            guessed.load = present.load;
+        }
+        self.take_better(data, &trial);
+        let model = self.structure.model(&self.values);
+        if data.excitation.sees_load_of(&model) {
+            data.excitation.guess_loads(&model, &mut trial);
+            self.take_better(data, &trial);
+        }
+    }
+
+    /// Improves the states of all windows with the values kept, window by window where it helps.
+    pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
+        self.polish_until(f64::NEG_INFINITY, data, scales);
+    }
+
+    /// The same until the cost is as low as that.
+    pub(super) fn polish_until(&mut self, enough: f64, data: &Data, scales: &Scales) {
+        let model = self.structure.model(&self.values);
+        if data.excitation.sees_load_of(&model) {
+            self.take_measured_starts(data);
+        }
+        for round in 0..POLISHINGS {
+            let before = self.cost;
+            let sees_load = self.polish_once(data, scales);
+            let worthwhile = sees_load && self.cost < POLISHED_ENOUGH * before;
+            if self.cost <= enough || (round + 1 >= FEWEST_POLISHINGS && !worthwhile) {
+                return;
+            }
+        }
+    }
+
+    /// One step of the states of all windows, taken where it helps; true if there is a seen load.
+    pub(in crate::criticism) fn polish_once(&mut self, data: &Data, scales: &Scales) -> bool {
+        let columns = self.columns(data, &[], scales);
+        let (_, _, windows) = self.normal_equations(data, &columns, 0, f64::INFINITY);
+        let sees_load = data
+            .excitation
+            .sees_load_of(&self.structure.model(&self.values));
+        let farthest = farthest(sees_load);
+        let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
+        for share in shares {
+            let changes = windows
+                .iter()
+                .map(|sums| inverse(&sums.state) * sums.gradient * *share);
+            let trial = self.starts.iter().zip(changes);
+            let trial: Vec<Start> = trial
+                .map(|(s, change)| kept_within(changed(s, &change), farthest))
+                .collect();
+            self.take_better(data, &trial);
+        }
+        sees_load
+    }
+
+    /// Takes up the motion from the present starts.
+    pub(in crate::criticism) fn follow_starts(&mut self, data: &Data) {
+        self.motion = self.simulate(data, &self.values, &self.starts);
+        self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
+    }
+
+    /// Takes for each window its state of `trial` where that fits better.
+    pub(in crate::criticism) fn take_better(&mut self, data: &Data, trial: &[Start]) {
+        let motion = self.simulate(data, &self.values, trial);
+        let before = window_costs(data, &self.motion);
+        let after = window_costs(data, &motion);
+        // A slow sensor carries over from window to window; apart from that each has its own motion.
+        let apart = self.structure.model(&self.values).sensor_lag.is_none();
+        let spans = data.spans();
+        let better = (0..trial.len()).filter(|k| after[*k] < before[*k]);
+        for k in better {
+            self.starts[k] = trial[k];
+            if apart {
+                self.motion.take_window(&motion, k, spans[k]);
+            }
+        }
+        if apart {
+            self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
+        } else {
+            self.follow_starts(data);
+        }
+    }
+}
