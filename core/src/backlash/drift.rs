@@ -56,21 +56,25 @@ impl Drift {
         let mut engaged = vec![false; change.len()];
         let penalty = PENALTY * libm::log(cycles.count() as f64);
         let least = LEAST_SHARE * 2.0 * cycles.speed;
-        let spreads = |part: &[f64]| {
-            let (next, second) = (spread(part, 1), spread(part, 2));
-            // A load that is met in every second cycle makes a pattern of two.
-            let alternates = second < ALTERNATES * next;
-            (if alternates { second } else { next }, alternates)
-        };
         let phases = cycles.phases();
+        let spreads: Vec<(f64, bool)> = phases
+            .iter()
+            .map(|(from, to)| {
+                let part = &change[*from..*to];
+                let (next, second) = (spread(part, 1), spread(part, 2));
+                // A load that is met in every second cycle makes a pattern of two.
+                let alternates = second < ALTERNATES * next;
+                (if alternates { second } else { next }, alternates)
+            })
+            .collect();
         let calmest = phases
             .iter()
-            .filter(|(from, to)| to - from >= 2 * FREE)
-            .map(|(from, to)| spreads(&change[*from..*to]).0)
+            .zip(&spreads)
+            .filter(|((from, to), _)| to - from >= 2 * FREE)
+            .map(|(_, (spread, _))| *spread)
             .fold(f64::INFINITY, f64::min);
-        for (from, to) in phases {
+        for ((from, to), (own, alternates)) in phases.into_iter().zip(spreads) {
             let part = &change[from..to];
-            let (own, alternates) = spreads(part);
             // The free motor is as restless in every phase; what is more is the load.
             let sigma = own.min(RESTLESS * calmest).max(noise);
             let way = position[cycles.starts[to]] - position[cycles.starts[from]];

@@ -320,11 +320,9 @@ impl Search {
             self.tried.push((fit.cost, point));
             if self.pending.is_empty() {
                 self.tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-                let best = std::mem::take(&mut self.tried).into_iter().enumerate();
-                self.shortlist = best
-                    .take_while(|(k, (cost, _))| *k == 0 || (*k < SHORTLIST && *cost <= self.reach))
-                    .map(|(_, (_, point))| point)
-                    .collect();
+                let near = self.tried.partition_point(|(cost, _)| *cost <= self.reach);
+                self.tried.truncate(near.clamp(1, SHORTLIST));
+                self.shortlist = self.tried.drain(..).map(|(_, point)| point).collect();
                 self.shortlist.reverse();
             }
             return true;
