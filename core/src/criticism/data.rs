@@ -311,16 +311,11 @@ impl Data {
     pub fn guessed_starts(&self) -> Vec<Start> {
         let position = self.outputs.iter().find(|o| !o.is_velocity);
         let velocity = self.outputs.iter().find(|o| o.is_velocity);
-        let way = match (self.kind, position) {
-            (Kind::Drive, None) => self.position_estimate(),
-            _ => Vec::new(),
-        };
-        let integral = |sample: usize| way.get(sample).copied().unwrap_or(0.0);
         self.windows
             .iter()
             .map(|&sample| Start {
                 sample,
-                position: position.map_or_else(|| integral(sample), |p| p.values[sample]),
+                position: self.excitation.position_at(sample),
                 velocity: velocity.map_or_else(
                     || position.map_or(0.0, |p| slope(&self.time, &p.values, sample)),
                     |v| v.values[sample],

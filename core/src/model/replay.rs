@@ -179,6 +179,11 @@ impl Excitation {
         }
     }
 
+    /// Measured or estimated position at a sample; 0 of a process.
+    pub(crate) fn position_at(&self, sample: usize) -> f64 {
+        self.position.get(sample).copied().unwrap_or(0.0)
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time.len()
