@@ -163,7 +163,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
         let unit = match unit {
             Some(unit) => unit,
             None if kind == Kind::Process && role != Role::Time => {
-                plain.push(name.clone());
+                plain.push(shorten(&name));
                 "1".to_owned()
             }
             None => {
