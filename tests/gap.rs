@@ -20,6 +20,7 @@ use hysteron_core::rig::{
     DriveRig, Excitation, Friction, Load, Recorded, SAMPLING, Stranger, carried_over,
 };
 use proptest::prelude::*;
+use support::drive_cases::play;
 
 /// What the issue of an estimate may be off by.
 const WITHIN: f64 = 0.05;
@@ -236,18 +237,6 @@ fn the_interval_holds_the_truth_over_seeds() {
     assert!(covered(&rigs) >= 10);
 }
 
-/// A load as heavy as the motor behind a soft contact, with this dry friction.
-fn soft_load(half_gap: f64, coulomb: f64) -> Load {
-    Load {
-        half_gap,
-        stiffness: 800.0,
-        damping: 0.15,
-        inertia: 8.8e-4,
-        viscous: 2e-3,
-        coulomb,
-    }
-}
-
 /// A load with dry friction that the motor pushes along in some cycles and misses in others, behind a motor that rubs
 /// itself: no run of cycles shows a drift of its own, and single ones must do.
 #[test]
@@ -259,7 +248,7 @@ fn a_load_that_is_pushed_along_now_and_then_has_its_gap() {
                 seed: random.seed(),
                 inertia: 8.8e-4 * random.between(0.9, 1.1),
                 friction: Friction::dry(random.between(0.03, 0.05)),
-                load: Some(soft_load(0.003, 0.01)),
+                load: Some(play(0.003, 0.01)),
                 load_recorded: true,
                 samples: 25_000,
                 ..DriveRig::default()
@@ -289,7 +278,7 @@ fn a_load_that_is_met_in_every_second_cycle_has_its_gap() {
             seed: random.seed(),
             inertia: 8.8e-4 * random.between(0.9, 1.1),
             viscous: 2e-3 * random.between(0.8, 1.2),
-            load: Some(soft_load(half_gap, 0.03)),
+            load: Some(play(half_gap, 0.03)),
             samples: 25_000,
             ..DriveRig::default()
         };

@@ -60,7 +60,7 @@ fn whole_steps(delay: f64) -> f64 {
 }
 
 /// A load like the motor behind a gap with the contact of hardened teeth.
-fn play(half_gap: f64, coulomb: f64) -> Load {
+pub fn play(half_gap: f64, coulomb: f64) -> Load {
     Load {
         half_gap,
         stiffness: 800.0,
