@@ -1,7 +1,9 @@
 //! Exact limit cycles, equation (3): the reference table, closed forms, asymmetry and stability.
 
 use hysteron_core::explore::{ExploreInput, compute};
-use hysteron_core::limit_cycle::{describing_function, exact_cycle, exact_cycles, exact_symmetric};
+use hysteron_core::limit_cycle::{
+    describing_function, exact_cycle, exact_cycles, exact_symmetric, predict,
+};
 use hysteron_core::plant::TransferFunction;
 use hysteron_core::relay::Relay;
 use hysteron_core::simulate::{Options, Trajectory, run, simulate};
@@ -193,6 +195,59 @@ fn asymmetric_and_biased_relays_agree_with_simulation() {
             exact.cycle.amplitude,
             1e-9,
         );
+    }
+}
+
+#[test]
+fn cycles_of_which_the_describing_function_sees_nothing_are_found_however_narrow_the_relay() {
+    let lag = TransferFunction::new(&[1.0], &[1.0, 1.0], 0.0);
+    let integrating = TransferFunction::new(&[1.0], &[1.0, 0.0], 0.0);
+    for eps in [1e-4, 1e-3, 0.01, 0.05, 0.1, 0.2, 0.5, 0.9, 0.99, 0.9999] {
+        let relay = Relay {
+            hysteresis: eps,
+            ..Relay::default()
+        };
+        for (plant, ([falling, rising], _)) in [
+            (&lag, first_order(1.0, 0.0, 1.0, &relay)),
+            (&integrating, integrator(0.0, &relay)),
+        ] {
+            let said = predict(plant, &relay).unwrap();
+            let [cycle] = said.exact.as_slice() else {
+                panic!("{plant:?} {eps}: {:?}", said.exact)
+            };
+            close(
+                "narrow relay",
+                "period",
+                cycle.cycle.period,
+                falling + rising,
+                1e-9,
+            );
+        }
+    }
+    // Fast at first, slow in the end, and a swing between.
+    for (numerator, denominator) in [
+        (vec![1.0, 3.0], vec![1.0, 3.0, 2.0]),
+        (vec![1.0, 0.01], vec![1.0, 0.2, 1e-4]),
+        (vec![5.0, 1.0], vec![1.0, 0.3, 4.0]),
+    ] {
+        let plant = TransferFunction::new(&numerator, &denominator, 0.0);
+        for eps in [0.003, 0.03, 0.1, 0.2] {
+            let relay = Relay {
+                hysteresis: eps,
+                ..Relay::default()
+            };
+            let data = compute(&ExploreInput {
+                plant: plant.clone(),
+                relay,
+                noise: None,
+            })
+            .unwrap();
+            let (exact, run) = (data.exact, data.simulated);
+            let name = format!("{plant:?} {eps}");
+            let exact = exact.unwrap_or_else(|| panic!("{name}: no cycle"));
+            let run = run.unwrap_or_else(|| panic!("{name}: does not settle"));
+            close(&name, "period", exact.period, run.period, 1e-3);
+        }
     }
 }
 

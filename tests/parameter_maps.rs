@@ -1,6 +1,8 @@
 //! Parameter maps: every cell is the exact cycle of its loop, whatever order the cells come in.
 
 use hysteron_core::maps::{Axis, Map, MapError, MapInput, MapJob, Outcome, Parameter, Quantity};
+use hysteron_core::plant::TransferFunction;
+use hysteron_core::relay::Relay;
 
 fn small() -> MapInput {
     MapInput {
@@ -55,6 +57,37 @@ fn no_cycle_where_the_hysteresis_exceeds_what_the_relay_can_reach() {
         }
     }
     assert!(map.known([0, 15]).unwrap().exact.is_some());
+}
+
+#[test]
+fn a_cycle_of_which_the_describing_function_sees_nothing_is_on_the_map() {
+    // One storage: T = 2 ln((k + eps)/(k - eps)).
+    let mut input = MapInput {
+        x: Axis {
+            parameter: Parameter::Hysteresis,
+            from: 0.0,
+            to: 0.8,
+        },
+        ..small()
+    };
+    input.base.plant = TransferFunction::new(&[1.0], &[1.0, 1.0], 0.0);
+    let map = finished(input.clone());
+    for y in 0..input.size {
+        for x in 0..input.size {
+            let Relay {
+                gain, hysteresis, ..
+            } = input.at([x, y]).relay;
+            let share: f64 = hysteresis / gain;
+            let period = map.known([x, y]).unwrap().exact.map(|c| c.period);
+            let exact = (share < 1.0).then(|| 4.0 * share.atanh());
+            match (period, exact) {
+                (Some(found), Some(exact)) => {
+                    assert!((found / exact - 1.0).abs() < 1e-9, "{gain} {hysteresis}");
+                }
+                (found, exact) => assert_eq!(found, exact, "{gain} {hysteresis}"),
+            }
+        }
+    }
 }
 
 #[test]

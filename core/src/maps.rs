@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use crate::explore::{ExploreError, ExploreInput};
-use crate::limit_cycle::{Cycle, describing_function, exact_symmetric, typical_frequency};
+use crate::limit_cycle::{
+    Cycle, describing_function, exact_symmetric, likely_half_periods, typical_frequency,
+};
 
 /// Most cells along one side.
 pub const MAX_SIZE: usize = 1024;
@@ -263,12 +265,16 @@ impl Outcome {
             .find(|i| i.cycle.stable == Some(true))
             .or(found.first())
             .map(|i| i.cycle);
-        let lag = input.plant.dead_time + input.relay.delay;
-        let period = describing
-            .map(|c| c.period)
-            .or(guess)
-            .unwrap_or_else(|| 10.0 / typical_frequency(&input.plant) + 2.0 * lag);
-        let exact = exact_symmetric(&input.plant.state_space(), &input.relay, lag, 0.5 * period);
+        let (plant, relay) = (&input.plant, &input.relay);
+        let (space, lag) = (plant.state_space(), plant.dead_time + relay.delay);
+        let near = describing.map(|c| c.period).or(guess).map(|t| 0.5 * t);
+        let near = near.and_then(|half| exact_symmetric(&space, relay, lag, half));
+        let exact = near.or_else(|| {
+            let likely = likely_half_periods(plant, relay).into_iter();
+            likely
+                .filter_map(|half| exact_symmetric(&space, relay, lag, half))
+                .next()
+        });
         Self {
             gain: input.relay.gain,
             exact,

@@ -90,6 +90,17 @@ pub fn exact_cycles(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) -> 
     found
 }
 
+/// The exact limit cycle into which a simulation from rest settles, if it does; `guess` in s is the half period by
+/// which the length of the run goes.
+pub(super) fn settled_cycle(
+    plant: &StateSpace,
+    relay: &Relay,
+    lag: f64,
+    guess: f64,
+) -> Option<ExactCycle> {
+    Search::new(plant, relay, lag, guess)?.simulated(relay)
+}
+
 /// The exact symmetric limit cycle, equation (3), near the half period `guess` in s; `None` where
 /// there is none with the relay's first crossing at its end.
 ///

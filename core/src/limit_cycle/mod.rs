@@ -12,10 +12,12 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use crate::plant::TransferFunction;
+use crate::relay::Relay;
 
 pub use describing_function::{
     Intersection, MAX_INTERSECTIONS, TRUSTED_DISTORTION, describing_function,
 };
+use exact::settled_cycle;
 pub use exact::{ExactCycle, exact_cycle, exact_cycles, exact_symmetric};
 pub use existence::{Existence, existence};
 pub use harmonics::{Harmonic, harmonics};
@@ -53,6 +55,31 @@ pub fn typical_frequency(plant: &TransferFunction) -> f64 {
     } else {
         size
     }
+}
+
+/// Half periods in s near which a loop may oscillate though its describing function sees nothing, each with the dead
+/// time and the relay's delay: that of the plant's typical frequency; that of a plant which answers a step at once with
+/// a slope, on which the output goes to and fro between the thresholds; and that of its slowest pole alone, for which
+/// it is exact.
+pub fn likely_half_periods(plant: &TransferFunction, relay: &Relay) -> Vec<f64> {
+    let lag = plant.dead_time + relay.delay;
+    let reach = |gain: f64| relay.hysteresis / (relay.gain * gain.abs());
+    let mut found = vec![0.5 * PI / typical_frequency(plant) + lag];
+    if let (1, Some(b), Some(a)) = (
+        plant.relative_degree(),
+        plant.numerator.iter().find(|b| **b != 0.0),
+        plant.denominator.first(),
+    ) {
+        found.push(2.0 * (reach(b / a) + lag));
+    }
+    let rates = plant.poles().into_iter().map(|p| -p.re);
+    let slowest = rates.filter(|rate| *rate > 0.0).reduce(f64::min);
+    if let Some(rate) = slowest {
+        // y = K k - (K k + eps) exp(-rate t) from -eps to eps
+        found.push(2.0 * libm::atanh(reach(plant.dc_gain())) / rate + lag);
+    }
+    found.retain(|h| h.is_finite() && *h > 0.0);
+    found
 }
 
 fn bisect(mut low: f64, mut high: f64, f_low: f64, f: impl Fn(f64) -> f64) -> f64 {

@@ -1,10 +1,8 @@
 //! Everything that can be said about the oscillation of a loop without simulating it.
 
-use std::f64::consts::PI;
-
 use super::{
     ExactCycle, Existence, Intersection, TRUSTED_DISTORTION, describing_function, exact_cycles,
-    existence, typical_frequency,
+    existence, likely_half_periods, settled_cycle,
 };
 use crate::plant::{PlantError, TransferFunction};
 use crate::relay::{Relay, RelayError};
@@ -64,7 +62,7 @@ pub fn predict(plant: &TransferFunction, relay: &Relay) -> Result<Prediction, Pr
     let describing = describing_function(plant, relay);
     let exact = all_exact(plant, relay, &describing);
     let existence = existence(plant, relay);
-    let trust = trust(&describing, &exact);
+    let trust = trust(&describing, &exact, existence.as_ref());
     let text = text(&exact, existence.as_ref(), &trust);
     Ok(Prediction {
         describing_function: describing,
@@ -89,13 +87,11 @@ fn all_exact(
     describing: &[Intersection],
 ) -> Vec<ExactCycle> {
     let lag = plant.dead_time + relay.delay;
-    let mut guesses: Vec<f64> = dominant(describing)
-        .into_iter()
-        .chain(describing)
-        .map(|i| 0.5 * i.cycle.period)
-        .collect();
+    let seen = dominant(describing).into_iter().chain(describing);
     // Where the describing function sees nothing there may still be a cycle.
-    guesses.push(0.5 * PI / typical_frequency(plant) + lag);
+    let guesses = seen
+        .map(|i| 0.5 * i.cycle.period)
+        .chain(likely_half_periods(plant, relay));
     let space = plant.state_space();
     let mut scanned: Vec<f64> = Vec::new();
     let mut found: Vec<ExactCycle> = Vec::new();
@@ -107,22 +103,34 @@ fn all_exact(
         scanned.push(guess);
         found.extend(exact_cycles(&space, relay, lag, guess));
     }
+    if found.is_empty() {
+        let longest = scanned.iter().copied().reduce(f64::max);
+        found.extend(longest.and_then(|guess| settled_cycle(&space, relay, lag, guess)));
+    }
     found.sort_by(|a, b| a.cycle.period.total_cmp(&b.cycle.period));
     found.dedup_by(|a, b| (a.cycle.period / b.cycle.period - 1.0).abs() < SAME_CYCLE);
     found
 }
 
-fn trust(describing: &[Intersection], exact: &[ExactCycle]) -> Trust {
+fn trust(
+    describing: &[Intersection],
+    exact: &[ExactCycle],
+    existence: Option<&Existence>,
+) -> Trust {
     let Some(main) = dominant(describing) else {
         let text = match exact.first() {
             Some(c) => format!(
                 "The describing function sees no oscillation; exactly there is one of period {:.4} s: do not trust it here.",
                 c.cycle.period
             ),
+            None if existence.is_some_and(|e| e.holds) => {
+                "The describing function sees no oscillation, though the relay cannot come to rest: do not trust it here."
+                    .to_owned()
+            }
             None => "The describing function sees no oscillation, and there is none.".to_owned(),
         };
         return Trust {
-            reliable: exact.is_empty(),
+            reliable: exact.is_empty() && existence.is_none_or(|e| !e.holds),
             text,
             ..Trust::default()
         };

@@ -9,7 +9,6 @@ use crate::theme;
 
 /// Describing function, exact and simulated values with their differences in per cent.
 pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
-    let reference = data.exact.or(data.simulated);
     egui::Grid::new("predictions")
         .num_columns(5)
         .striped(true)
@@ -29,7 +28,7 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
                 ("Simulated", data.simulated, theme::SIMULATED),
             ];
             for (name, cycle, color) in rows {
-                let reference = reference.filter(|_| name != "Exact");
+                let reference = data.exact.filter(|_| name != "Exact");
                 row_ui(ui, name, color, relay, cycle, reference);
             }
         });
