@@ -360,10 +360,26 @@ impl View for Backlash {
     }
 
     fn hint(&self) -> Option<Hint> {
-        Some(Hint::open(
-            "Take friction and delay away: then no asymmetry makes it drift.",
-            "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
-        ))
+        if self.measured() {
+            return Some(Hint {
+                sentence: "Is the gap all that is missing? Drop the file on Compare too."
+                    .to_owned(),
+                commands: vec![super::Command::Go("compare")],
+            });
+        }
+        let motor = &self.input.drive.motor;
+        let drifts = motor.coulomb > 0.0 || motor.viscous > 0.0;
+        Some(if drifts {
+            Hint::open(
+                "Take friction and delay away: then no asymmetry makes it drift.",
+                "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
+            )
+        } else {
+            Hint::open(
+                "Give friction and delay back: they make an uneven relay drift through the gap.",
+                "v1;backlash",
+            )
+        })
     }
 
     fn table_names(&self) -> Vec<&'static str> {

@@ -1,6 +1,7 @@
 //! A relay loop, live: what is predicted beside what happens.
 
 mod controls;
+mod hint;
 mod nyquist;
 mod plant_editor;
 pub mod plots;
@@ -86,10 +87,7 @@ impl View for Explore {
     }
 
     fn hint(&self) -> Option<Hint> {
-        Some(Hint::open(
-            "Let the relay wait longer: at ε = 0.5 the describing function misses the amplitude by 5 %.",
-            "v1;explore;loop.relay.hysteresis=0.5",
-        ))
+        self.data().map(|(data, _)| hint::hint(&self.input, data))
     }
 
     fn table_names(&self) -> Vec<&'static str> {

@@ -13,6 +13,7 @@ pub const STAGE: Stage = Stage {
     title: "Phase margin",
     question: "Which proportional gain gives the wanted phase margin?",
     answer,
+    next: "One test with an uneven relay tells a whole model: step 4.",
     ui,
 };
 

@@ -16,6 +16,7 @@ pub const STAGE: Stage = Stage {
     title: "Before and after",
     question: "Is the loop better now?",
     answer,
+    next: "Might the machine have play? Find its gap from the motor alone.",
     ui,
 };
 

@@ -13,7 +13,7 @@ mod ultimate;
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{TuningInput, TuningReport};
 
-use super::{Desk, Hint, View};
+use super::{Command, Desk, Hint, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
@@ -37,6 +37,8 @@ struct Stage {
     title: &'static str,
     question: &'static str,
     answer: fn(Seen<'_>) -> String,
+    /// What the next step does.
+    next: &'static str,
     /// Draws it in about this height; may choose another rule.
     ui: fn(&mut egui::Ui, Seen<'_>, f32, &mut String),
 }
@@ -137,10 +139,16 @@ impl View for Tune {
     }
 
     fn hint(&self) -> Option<Hint> {
-        Some(Hint::open(
-            "Ask for a phase margin of 60° and watch the relay of step 3 find the gain.",
-            "v1;tune;tune.step=adaptation;tune.phase_margin=1.0471975511965976",
-        ))
+        let stage = STAGES.get(self.stage)?;
+        let command = STAGES
+            .get(self.stage + 1)
+            .map_or(Command::Go("backlash"), |next| {
+                Command::Set("tune", "step", serde_json::json!(next.id))
+            });
+        Some(Hint {
+            sentence: stage.next.to_owned(),
+            commands: vec![command],
+        })
     }
 
     fn table_names(&self) -> Vec<&'static str> {

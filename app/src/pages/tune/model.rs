@@ -11,6 +11,7 @@ pub const STAGE: Stage = Stage {
     title: "Asymmetric test",
     question: "What does one test tell if the relay pushes harder one way?",
     answer,
+    next: "A rule makes a controller of it: step 5.",
     ui,
 };
 

@@ -11,6 +11,7 @@ pub const STAGE: Stage = Stage {
     title: "Rule",
     question: "Which controller follows from the experiment?",
     answer,
+    next: "Is the loop better with it? Step 6 compares.",
     ui,
 };
 

@@ -14,6 +14,7 @@ pub const STAGE: Stage = Stage {
     title: "Ultimate gain",
     question: "At which gain would the loop oscillate by itself?",
     answer,
+    next: "Ask the relay for a gain with a phase margin instead: step 3.",
     ui,
 };
 
