@@ -23,7 +23,7 @@ const SLIP_SHARE: f64 = 1e-3;
 const PIECE: f64 = 0.3;
 
 /// Longest piece in units of `s`, and in radians of the contact's oscillation.
-const LONGEST_PIECE: f64 = 1.0;
+const LONGEST_PIECE: f64 = 5.0;
 const PIECE_RADIANS: f64 = 0.35;
 
 /// Way in units of `s` below which the mean of an exponential over it is a short series.
