@@ -17,6 +17,7 @@ mod missing;
 mod next_experiment;
 mod noise;
 mod odd_windows;
+mod probes;
 mod race;
 mod report;
 mod residual_test;

@@ -1,14 +1,18 @@
 //! Many effects tried side by side on top of one model: only those that may win are fitted to the end.
 
+use std::sync::Arc;
+
 use super::fit::Fit;
+use super::probes::Probed;
 use super::score::score;
 use super::search::{Ground, Search};
 use super::select::is_plain_noise;
 use super::session::Session;
-use crate::effect::{Effect, Probe};
+use crate::effect::Effect;
 
-/// Iterations on the whole record that every effect gets.
-const HEAT: usize = 2;
+/// After its first iteration on the whole record, an effect gets another one if it is hoped to come within this many
+/// times the best cost.
+const IN_SIGHT: f64 = 6.0;
 
 /// An effect is fitted to the end while it may come this close to the best cost.
 const CLOSE: f64 = 1.03;
@@ -45,7 +49,7 @@ struct Track {
     fit: Fit,
     /// The fit whose effect at this place they stand in for.
     instead: Option<(Fit, usize)>,
-    probe: Probe,
+    probed: Arc<Probed>,
     ground: Ground,
 }
 
@@ -54,8 +58,12 @@ struct Track {
 enum Stage {
     /// Its starting points are tried on the scout.
     Scan,
-    /// It has had so many heats.
-    Heat(usize),
+    /// It is to get an iteration on the whole record.
+    FirstHeat,
+    /// It has had that, and is to be compared with the others.
+    Warm,
+    /// It is to get another one.
+    SecondHeat,
     /// It has had its heats; its result is not taken yet.
     Over,
     /// Nothing more is done.
@@ -88,22 +96,22 @@ impl Contender {
         if self.stage == Stage::Scan {
             let search = self.search.get_or_insert_with(|| {
                 let instead = track.instead.as_ref().map(|(fit, place)| (fit, *place));
-                let (fit, probe, ground) = (&track.fit, &track.probe, Some(track.ground));
-                Search::adding(data, fit, self.effect, probe, instead, ground)
+                let (fit, probed, ground) = (&track.fit, &track.probed, Some(track.ground));
+                Search::adding(data, fit, self.effect, probed, instead, ground)
             });
             if !search.scan(data, scout, scales) {
-                self.stage = Stage::Heat(0);
+                self.stage = Stage::FirstHeat;
             }
             return;
         }
         self.stage = match (self.stage, &mut self.search) {
-            (Stage::Heat(heats), Some(search)) => {
+            (Stage::FirstHeat | Stage::SecondHeat, Some(search)) => {
                 if !search.iterate(data, scales) {
                     self.take_result(session);
                     return;
                 }
-                if heats + 1 < HEAT {
-                    Stage::Heat(heats + 1)
+                if self.stage == Stage::FirstHeat {
+                    Stage::Warm
                 } else {
                     Stage::Over
                 }
@@ -115,6 +123,12 @@ impl Contender {
     /// Whether it has had its heats.
     fn over(&self) -> bool {
         matches!(self.stage, Stage::Over | Stage::Closed)
+    }
+
+    /// Cost that it could come to.
+    fn optimism(&self) -> f64 {
+        let search = self.search.as_ref();
+        search.map_or(f64::INFINITY, Search::optimism)
     }
 
     /// Least cost so far.
@@ -198,7 +212,7 @@ impl Race {
             track: Track {
                 fit: fit.clone(),
                 instead: instead.map(|(whole, place)| (whole.clone(), place)),
-                probe: session.probe(fit),
+                probed: session.probed(fit),
                 ground,
             },
             contenders: effects
@@ -291,22 +305,47 @@ impl Race {
         }
     }
 
-    /// Whether starting points of an effect are still to be tried.
-    fn scans(&self, contender: &Contender) -> bool {
-        contender.stage == Stage::Scan && !self.waits(contender)
+    /// What all do before any goes on: their scans, then a heat, then another.
+    fn together(&self) -> Option<Stage> {
+        [
+            Stage::Scan,
+            Stage::FirstHeat,
+            Stage::Warm,
+            Stage::SecondHeat,
+        ]
+        .into_iter()
+        .find(|stage| {
+            let mut there = self.contenders.iter().filter(|c| c.stage == *stage);
+            there.any(|c| !self.waits(c))
+        })
+    }
+
+    /// Those that are warm get another heat if they are in sight of the best.
+    fn compare_warm(&mut self) {
+        let best = self.best();
+        for c in self
+            .contenders
+            .iter_mut()
+            .filter(|c| c.stage == Stage::Warm)
+        {
+            c.stage = if c.optimism() <= IN_SIGHT * best {
+                Stage::SecondHeat
+            } else {
+                Stage::Over
+            };
+        }
     }
 
     /// Some work; false when the race is over.
     pub fn advance(&mut self, session: &Session) -> bool {
-        let scanning = self.contenders.iter().any(|c| self.scans(c));
-        let ready = |c: &Contender| {
-            if scanning {
-                self.scans(c)
-            } else if self.run {
-                c.stage != Stage::Closed
-            } else {
-                !c.over() && !self.waits(c)
-            }
+        let together = self.together();
+        if together == Some(Stage::Warm) {
+            self.compare_warm();
+            return true;
+        }
+        let ready = |c: &Contender| match together {
+            Some(stage) => c.stage == stage && !self.waits(c),
+            None => self.run && c.stage != Stage::Closed,
         };
         let ready: Vec<bool> = self.contenders.iter().map(ready).collect();
         let crew = &session.data.crew;

@@ -4,10 +4,11 @@ use std::collections::VecDeque;
 
 use super::baseline;
 use super::data::Data;
-use super::fit::Fit;
+use super::fit::{Fit, same_place};
 use super::knowledge::Knowledge;
+use super::probes::Probed;
 use super::structure::Structure;
-use crate::effect::{Effect, Probe, Scales};
+use crate::effect::{Effect, Scales};
 use crate::model::{Start, load_torque};
 
 /// Iterations that every starting point gets before the best are chosen.
@@ -25,8 +26,11 @@ const WORTH_A_START: f64 = 0.2;
 /// Effects with at most this many starting values have one valley.
 const FEW_STARTS: usize = 1;
 
-/// The best starting point is not given up while an iteration brings its cost below this share.
+/// A starting point is not given up while an iteration brings its cost below this share.
 const COMING_ON: f64 = 0.5;
+
+/// Starting points that cost this many times the best one after a few iterations may still lead farther than that.
+const FAR_BEHIND: f64 = 4.0;
 
 /// Starting points that are followed on the whole record.
 const FINALISTS: usize = 3;
@@ -59,10 +63,10 @@ type Point = (Vec<f64>, Vec<Start>);
 pub(super) struct Search {
     structure: Structure,
     pending: VecDeque<Point>,
-    /// Points with the cost after a first iteration.
-    tried: Vec<(f64, Point)>,
-    /// The best of these, worst first.
-    shortlist: Vec<Point>,
+    /// Points with what a first iteration on the scout brings them to.
+    tried: Vec<(Fit, Point)>,
+    /// The best of these, worst first; without that iteration where they are few.
+    shortlist: Vec<(Option<Fit>, Point)>,
     /// What they came to on the scout, the best first once all are tried.
     scanned: Vec<(Fit, Vec<Start>)>,
     /// Share of the record that the scout is.
@@ -106,14 +110,14 @@ impl Search {
         data: &Data,
         fit: &Fit,
         effect: &'static dyn Effect,
-        probe: &Probe,
+        probed: &Probed,
         instead: Option<(&Fit, usize)>,
         ground: Option<Ground>,
     ) -> Self {
         let settled = ground.is_some_and(|g| g.settled);
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
-        let own = effect.starts(probe);
+        let own = probed.starts(effect);
         let mut points = Vec::new();
         let related =
             |other: &dyn Effect| other.has_part(effect.id()) || same_dimensions(effect, other);
@@ -163,7 +167,7 @@ impl Search {
             }
         }
         if !settled {
-            for start in effect.starts_undamped(probe) {
+            for start in effect.starts_undamped(&probed.probe) {
                 let mut values = body.clone();
                 values[baseline::DAMPING] = 0.0;
                 values.extend(start);
@@ -171,7 +175,7 @@ impl Search {
                 points.push((values, at.starts.clone()));
             }
             points.extend(Self::other_valleys(
-                data, fit, &rest, &kept, &structure, &own, probe,
+                data, fit, &rest, &kept, &structure, &own, probed,
             ));
         }
         Self {
@@ -218,7 +222,7 @@ impl Search {
         kept: &[f64],
         structure: &Structure,
         own: &[Vec<f64>],
-        probe: &Probe,
+        probed: &Probed,
     ) -> Vec<(Vec<f64>, Vec<Start>)> {
         let mut points = Vec::new();
         if own.len() > FEW_STARTS {
@@ -228,7 +232,7 @@ impl Search {
             if present.parameters().len() > 1 {
                 continue;
             }
-            let starts = present.starts(probe);
+            let starts = probed.starts(*present);
             if starts.len() <= FEW_STARTS {
                 continue;
             }
@@ -280,7 +284,8 @@ impl Search {
     fn from_points(structure: Structure, points: Vec<Point>, present: f64) -> Self {
         let few = points.len() <= SHORTLIST;
         let (pending, shortlist) = if few {
-            (Vec::new(), points)
+            let points = points.into_iter();
+            (Vec::new(), points.map(|point| (None, point)).collect())
         } else {
             (points, Vec::new())
         };
@@ -317,28 +322,31 @@ impl Search {
         if let Some(point) = self.pending.pop_front() {
             let mut fit = self.begun(&point, scout, scales);
             fit.iterate(scout, scales);
-            self.tried.push((fit.cost, point));
+            self.tried.push((fit, point));
             if self.pending.is_empty() {
-                self.tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-                let near = self.tried.partition_point(|(cost, _)| *cost <= self.reach);
+                self.tried.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
+                let near = self.tried.partition_point(|(f, _)| f.cost <= self.reach);
                 self.tried.truncate(near.clamp(1, SHORTLIST));
-                self.shortlist = self.tried.drain(..).map(|(_, point)| point).collect();
-                self.shortlist.reverse();
+                let tried = self.tried.drain(..).rev();
+                self.shortlist = tried.map(|(fit, point)| (Some(fit), point)).collect();
             }
             return true;
         }
-        let Some(point) = self.shortlist.pop() else {
+        let Some((known, point)) = self.shortlist.pop() else {
             return false;
         };
-        let mut fit = self.begun(&point, scout, scales);
-        let retry = self.retries.then(|| fit.clone());
-        fit.iterate(scout, scales);
+        let mut fit = known.unwrap_or_else(|| {
+            let mut fit = self.begun(&point, scout, scales);
+            fit.iterate(scout, scales);
+            fit
+        });
         fit.done |= fit.cost > self.reach;
         for _ in 1..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
-        if let Some(mut other) = retry.filter(|_| fit.cost > self.limit) {
+        if self.retries && fit.cost > self.limit {
             // Perhaps a wrong body led the new effect astray.
+            let mut other = self.begun(&point, scout, scales);
             other.fit_body(scout, scales);
             for _ in 0..SCAN_ITERATIONS {
                 other.iterate(scout, scales);
@@ -368,20 +376,30 @@ impl Search {
         fit
     }
 
-    /// Puts the scanned points in order; the best goes on while it is coming on.
+    /// Puts the scanned points in order; those that are not far behind the best go on while they are coming on.
     fn rank(&mut self, data: &Data, scout: &Data, scales: &Scales) {
-        self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
+        self.sort_scanned();
         self.share = scout.used() as f64 / data.used() as f64;
         let Some((best, _)) = self.scanned.first_mut() else {
             return;
         };
-        while !self.settled && best.cost > self.limit && !best.done {
-            let before = best.cost;
-            best.iterate(scout, scales);
-            if best.cost > COMING_ON * before {
-                break;
+        if !self.settled && best.cost > self.limit {
+            come_on(best, scout, scales, self.limit);
+        }
+        if self.settled || best.cost > self.limit {
+            return;
+        }
+        let far = FAR_BEHIND * best.cost;
+        for (fit, _) in &mut self.scanned {
+            if fit.cost <= far {
+                come_on(fit, scout, scales, 0.0);
             }
         }
+        self.sort_scanned();
+    }
+
+    fn sort_scanned(&mut self) {
+        self.scanned.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
     }
 
     /// Goes on with the best of the scanned points on the whole record.
@@ -397,8 +415,15 @@ impl Search {
         first.done |= self.given_up;
         settle(&mut first, best.cost / self.share, data, scales);
         self.finalists.push(first);
-        for (fit, starts) in scanned.take(FINALISTS - 1) {
-            if fit.cost <= near.min(hopeless) {
+        for (fit, starts) in scanned {
+            if self.finalists.len() == FINALISTS {
+                break;
+            }
+            let twin = self
+                .finalists
+                .iter()
+                .any(|f| same_place(&f.values, &fit.values));
+            if fit.cost <= near.min(hopeless) && !twin {
                 let mut next = Fit::new(data, fit.structure, fit.values, starts, scales);
                 settle(&mut next, fit.cost / self.share, data, scales);
                 self.finalists.push(next);
@@ -416,8 +441,8 @@ impl Search {
         if self.finalists.is_empty() {
             self.choose_finalists(data, scales);
         }
-        self.optimism = f64::INFINITY;
-        for fit in &mut self.finalists {
+        let mut fits = Vec::with_capacity(self.finalists.len());
+        for mut fit in self.finalists.drain(..) {
             let before = fit.cost;
             fit.iterate(data, scales);
             let hoped = if fit.done {
@@ -425,11 +450,19 @@ impl Search {
             } else {
                 fit.cost - HOPE * (before - fit.cost).max(0.0)
             };
-            self.optimism = self.optimism.min(hoped);
+            fits.push((hoped, fit));
         }
-        let best = self.cost();
-        self.finalists.retain(|fit| fit.cost <= NEAR * best);
-        self.finalists.iter().any(|fit| !fit.done)
+        fits.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        self.optimism = fits.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
+        for (hoped, fit) in fits {
+            // One that goes where a better one is, or that is not hoped to come to where the best has ended, may not win.
+            let vain = |best: &Fit| fit.cost > NEAR * best.cost || best.done && hoped > best.cost;
+            let twin = |better: &Fit| same_place(&better.values, &fit.values);
+            if !self.finalists.first().is_some_and(vain) && !self.finalists.iter().any(twin) {
+                self.finalists.push(fit);
+            }
+        }
+        self.goes_on()
     }
 
     /// Whether a fit may still become better.
@@ -460,6 +493,17 @@ impl Search {
             best.mend_odd_windows(data, scales);
         }
         Some(best)
+    }
+}
+
+/// Iterates while that brings the cost far down, until it is as low as `enough`.
+fn come_on(fit: &mut Fit, data: &Data, scales: &Scales, enough: f64) {
+    while fit.cost > enough && !fit.done {
+        let before = fit.cost;
+        fit.iterate(data, scales);
+        if fit.cost > COMING_ON * before {
+            break;
+        }
     }
 }
 

@@ -1,11 +1,14 @@
 //! What all fits on one measurement share: its data, sizes, units, and how a fit becomes a report.
 
+use std::sync::Arc;
+
 use super::atlas::atlas;
 use super::baseline;
 use super::data::Data;
 use super::fit::Fit;
 use super::knowledge::{self, Knowledge};
 use super::locate::locate;
+use super::probes::{Probed, Probes};
 use super::score::{Score, score};
 use super::select::is_noise;
 use super::split::hold_back;
@@ -60,6 +63,8 @@ pub(super) struct Session {
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
+    /// What models that were met leave unexplained.
+    probes: Probes,
     motion: Motion,
     /// The gap that a drifting test shows.
     gap: Option<SeenGap>,
@@ -91,6 +96,7 @@ impl Session {
         let compared = data.thinned(COMPARED);
         Ok(Self {
             scales,
+            probes: Probes::default(),
             scout: compared.scout(),
             knowledge,
             own: model
@@ -190,8 +196,8 @@ impl Session {
     }
 
     /// What `fit` leaves unexplained, as a force.
-    pub fn probe(&self, fit: &Fit) -> Probe {
-        self.probe_of(&self.data, fit)
+    pub fn probed(&self, fit: &Fit) -> Arc<Probed> {
+        self.probes.of(fit, || self.probe_of(&self.data, fit))
     }
 
     /// The same of a fit on these data.

@@ -60,6 +60,11 @@ impl Structure {
         next
     }
 
+    /// The effects, in their order.
+    pub fn ids(&self) -> Vec<EffectId> {
+        self.effects.iter().map(|e| e.id()).collect()
+    }
+
     /// Number of values of the baseline.
     pub fn baseline_len(&self) -> usize {
         baseline::parameters(self.kind).len()

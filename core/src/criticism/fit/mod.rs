@@ -42,6 +42,9 @@ const DAMPING_GROWTH: f64 = 6.0;
 const MAX_STALLS: usize = 2;
 const RESTART_DAMPING: f64 = 1e-3;
 
+/// Share of their size by which values may differ that say the same.
+const SAME_PLACE: f64 = 0.01;
+
 /// Standard deviations by which a load on a joint may be off where it follows the body.
 const FARTHEST: f64 = 3.0;
 
@@ -306,6 +309,12 @@ fn simulate(
     };
     motion.priors = starts.iter().map(prior).collect();
     motion
+}
+
+/// Whether the values of two fits of one structure say the same, but for a hundredth of each.
+pub(super) fn same_place(a: &[f64], b: &[f64]) -> bool {
+    let mut pairs = a.iter().zip(b);
+    pairs.all(|(a, b)| (a - b).abs() <= SAME_PLACE * a.abs().max(b.abs()))
 }
 
 /// Residual in noise units.

@@ -44,7 +44,7 @@ impl Hypothesis {
             values: fit.values.clone(),
             said: FittedModel {
                 effect,
-                effects: fit.structure.effects.iter().map(|e| e.id()).collect(),
+                effects: fit.structure.ids(),
                 parameters: session.parameters(scored),
             },
         }

@@ -240,8 +240,15 @@ impl StepJob {
                     return Stage::Report;
                 };
                 let search = self.wanted.get(next).map(|effect| {
-                    let probe = self.session.probe(&scored.fit);
-                    Search::adding(&self.session.data, &scored.fit, *effect, &probe, None, None)
+                    let probed = self.session.probed(&scored.fit);
+                    Search::adding(
+                        &self.session.data,
+                        &scored.fit,
+                        *effect,
+                        &probed,
+                        None,
+                        None,
+                    )
                 });
                 self.session
                     .baseline

@@ -1,0 +1,80 @@
+//! What models leave unexplained, with the starting values that effects found in it: a model is met again where
+//! others are tried in the place of one of its effects.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::fit::{Fit, same_place};
+use crate::effect::{Effect, EffectId, Probe};
+
+/// Models that are remembered.
+const REMEMBERED: usize = 12;
+
+/// A model that costs the same but for this share, and has the values of another one, is the same.
+const SAME_COST: f64 = 0.01;
+
+/// A probe with the starting values that were found in it.
+pub(super) struct Probed {
+    pub probe: Probe,
+    starts: Mutex<BTreeMap<EffectId, Vec<Vec<f64>>>>,
+}
+
+impl Probed {
+    fn new(probe: Probe) -> Self {
+        Self {
+            probe,
+            starts: Mutex::default(),
+        }
+    }
+
+    /// Starting values of `effect`, searched for once.
+    pub fn starts(&self, effect: &dyn Effect) -> Vec<Vec<f64>> {
+        let found = || self.starts.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(starts) = found().get(&effect.id()) {
+            return starts.clone();
+        }
+        // Not under the lock: the search is long, and others look for other effects meanwhile.
+        let starts = effect.starts(&self.probe);
+        found().insert(effect.id(), starts.clone());
+        starts
+    }
+}
+
+/// A model that was probed.
+struct Met {
+    effects: Vec<EffectId>,
+    values: Vec<f64>,
+    cost: f64,
+    probed: Arc<Probed>,
+}
+
+impl Met {
+    fn is(&self, fit: &Fit) -> bool {
+        self.effects == fit.structure.ids()
+            && (self.cost - fit.cost).abs() <= SAME_COST * self.cost
+            && same_place(&self.values, &fit.values)
+    }
+}
+
+/// The models that were probed last.
+#[derive(Default)]
+pub(super) struct Probes(Mutex<VecDeque<Met>>);
+
+impl Probes {
+    /// What `fit` leaves: known, or as `make` finds it.
+    pub fn of(&self, fit: &Fit, make: impl FnOnce() -> Probe) -> Arc<Probed> {
+        let mut met = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = met.iter().find(|m| m.is(fit)) {
+            return known.probed.clone();
+        }
+        let probed = Arc::new(Probed::new(make()));
+        met.truncate(REMEMBERED - 1);
+        met.push_front(Met {
+            effects: fit.structure.ids(),
+            values: fit.values.clone(),
+            cost: fit.cost,
+            probed: probed.clone(),
+        });
+        probed
+    }
+}
