@@ -102,6 +102,12 @@ fn check(text: String, holds: bool) -> Check {
     Check { text, holds }
 }
 
+/// Digits to which two numbers agree that differ by this share.
+pub(crate) fn digits(difference: f64) -> i32 {
+    let agreed = -libm::log10(difference.abs().max(f64::EPSILON));
+    (agreed.floor() as i32).max(0)
+}
+
 fn none() -> Vec<Check> {
     vec![check("there is an exact cycle".to_owned(), false)]
 }
@@ -119,7 +125,7 @@ fn oscillates(data: &ExploreData) -> Vec<Check> {
         .map(|c| (c.period / exact.period - 1.0).abs());
     all.push(match simulated {
         Some(error) => check(
-            format!("the simulation has its period to {error:.1e} of it"),
+            format!("the simulation has its period to {} digits", digits(error)),
             error < SETTLED,
         ),
         None => check("the simulation settles into it".to_owned(), false),

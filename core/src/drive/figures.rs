@@ -4,7 +4,7 @@ use super::{
     Adhesion, Body, Command, Contact, Direction, Drive, DriveInput, DriveRun, EventKind, Summary,
     VelocityRelay, drifting_cycle, engaged_drift,
 };
-use crate::figures::Check;
+use crate::figures::{Check, digits};
 use crate::relay::Relay;
 
 /// A figure of the paper as a run of a drive.
@@ -210,15 +210,16 @@ fn stays_in_the_gap(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Ve
         ),
         check(
             format!(
-                "its period, {:.4} ms, is that of the closed form to {missed:.0e} of it",
-                1e3 * period
+                "its period, {:.4} ms, is that of the closed form to {} digits",
+                1e3 * period,
+                digits(missed)
             ),
             missed < CLOSED_FORM,
         ),
         check(
             format!(
-                "it drifts by {:.0e} of its swing a period",
-                (cycle.drift / cycle.swing).abs()
+                "it drifts by {:.4} % of its swing a period",
+                100.0 * (cycle.drift / cycle.swing).abs()
             ),
             cycle.drift.abs() < CLOSED_FORM * cycle.swing,
         ),
@@ -249,8 +250,9 @@ fn drifts_as_the_formula_says(input: &DriveInput, summary: &Summary) -> Vec<Chec
     vec![
         check(
             format!(
-                "it drifts at {:.3} mrad/s, the closed form to {missed:.0e} of it",
-                MILLI * drift.velocity
+                "it drifts at {:.3} mrad/s, the closed form to {} digits",
+                MILLI * drift.velocity,
+                digits(missed)
             ),
             missed < CLOSED_FORM,
         ),

@@ -63,7 +63,7 @@ pub enum TuningError {
     },
     /// The measured numbers do not fit a first-order lag or integrator with dead time.
     #[error(
-        "no first-order model fits: {what} is {value}, but a lag or an integrator with dead time has it {range}"
+        "no first-order model fits: {what} is {value:.4}, but a lag or an integrator with dead time has it {range}"
     )]
     NotFirstOrder {
         /// Which number.
@@ -75,7 +75,7 @@ pub enum TuningError {
     },
     /// A controller that cannot turn a point of the Nyquist curve as far as wanted.
     #[error(
-        "the point must be turned by {turn} rad: this controller turns it by more than {least} and less than {most} rad"
+        "the point must be turned by {turn:.4} rad: this controller turns it by more than {least:.4} and less than {most:.4} rad"
     )]
     OutOfReach {
         /// Wanted turn, rad.
@@ -87,7 +87,7 @@ pub enum TuningError {
     },
     /// The gain adaptation did not reach the wanted amplitude.
     #[error(
-        "the gain adaptation stands at gain {gain} with a relative amplitude error of {error} after {runs} relay runs: the wanted phase may be out of this plant's reach"
+        "the gain adaptation stands at gain {gain:.4} with a relative amplitude error of {error:.2e} after {runs} relay runs: the wanted phase may be out of this plant's reach"
     )]
     NotConverged {
         /// Relay runs made.
