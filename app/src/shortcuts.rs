@@ -87,8 +87,16 @@ pub fn pressed(ctx: &egui::Context, pages: &[&'static str], commands: &mut Vec<C
     if ctx.text_edit_focused() {
         return;
     }
+    // A menu or a list lies over everything else; egui closes it.
+    let popup = egui::Popup::is_any_open(ctx);
+    // Longer combinations first: Ctrl+Z would take Ctrl+Shift+Z too.
+    let mut longest_first: Vec<&Shortcut> = SHORTCUTS.iter().collect();
+    longest_first.sort_by_key(|s| !s.keys.iter().any(|k| k.modifiers.shift));
     ctx.input_mut(|input| {
-        for shortcut in &SHORTCUTS {
+        for shortcut in longest_first {
+            if popup && shortcut.command == Command::Close {
+                continue;
+            }
             // Where a keyboard needs Shift for the question mark, its modifier must not count.
             let asked = shortcut.keys.iter().any(|k| {
                 input.consume_shortcut(k)
