@@ -20,18 +20,17 @@ const fn key(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(modifiers, key)
 }
 
-/// All but those of the pages, which are numbered in the order of their tabs. Longer combinations stand
-/// first: Ctrl+Z would take Ctrl+Shift+Z too.
+/// All but those of the pages, which are numbered in the order of their tabs; in the order of the sheet.
 const SHORTCUTS: [Shortcut; 8] = [
-    Shortcut {
-        keys: &[key(COMMAND_SHIFT, Key::Z), key(COMMAND, Key::Y)],
-        sentence: "Do again what was taken back",
-        command: Command::Redo,
-    },
     Shortcut {
         keys: &[key(COMMAND, Key::Z)],
         sentence: "Take back the last change",
         command: Command::Undo,
+    },
+    Shortcut {
+        keys: &[key(COMMAND_SHIFT, Key::Z), key(COMMAND, Key::Y)],
+        sentence: "Do again what was taken back",
+        command: Command::Redo,
     },
     Shortcut {
         keys: &[key(PLAIN, Key::P)],
