@@ -90,3 +90,63 @@ fn escape_closes_a_menu_and_a_list_and_then_what_lies_beneath() {
     press(&mut harness, Key::Escape);
     assert_eq!(entries(&harness), before, "the list is closed");
 }
+
+/// Whether a line is drawn around a place.
+fn ringed(harness: &App, place: Rect) -> bool {
+    shapes(harness).iter().any(|shape| {
+        let Shape::Rect(rect) = shape else {
+            return false;
+        };
+        let near = |a: f32, b: f32| (a - b).abs() < 6.0;
+        let around = near(rect.rect.left(), place.left())
+            && near(rect.rect.right(), place.right())
+            && near(rect.rect.top(), place.top())
+            && near(rect.rect.bottom(), place.bottom());
+        around && rect.stroke.width >= 1.0 && rect.stroke.color.a() > 128
+    })
+}
+
+#[test]
+fn whatever_has_the_keyboard_has_a_ring() {
+    for place in [
+        "v1;start;start.paused=20",
+        "v1;lessons",
+        "v1;explore;explore.paused=20",
+        "v1;maps",
+        "v1;tune",
+        "v1;backlash;backlash.paused=1",
+        "v1;compare",
+        "v1;mystery",
+    ] {
+        let mut harness = app("start", TALL);
+        show(&mut harness, place);
+        let mut stops = 0;
+        let mut seen = Vec::new();
+        loop {
+            harness.key_press(Key::Tab);
+            harness.step();
+            harness.step();
+            let focused = harness
+                .root()
+                .children_recursive()
+                .find(egui_kittest::Node::is_focused)
+                .map(|n| (n.accesskit_node().label().unwrap_or_default(), n.rect()));
+            // A plot is no control: it has no node of its own.
+            if let Some((name, at)) = focused {
+                assert!(ringed(&harness, at), "{place}: {name} {at:?}");
+                seen.push(name);
+            }
+            stops += 1;
+            let ring = harness.ctx.memory(egui::Memory::focused);
+            let at = ring.and_then(|id| harness.ctx.read_response(id));
+            if let Some(at) = at {
+                assert!(ringed(&harness, at.rect), "{place}: stop {stops}: {at:?}");
+            }
+            let first = seen.first().cloned();
+            if stops > 8 && seen.last() == first.as_ref() || stops > 150 {
+                break;
+            }
+        }
+        assert!(stops > 8, "{place}: {stops} stops");
+    }
+}

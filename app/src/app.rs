@@ -191,7 +191,11 @@ impl HysteronApp {
         for command in std::mem::take(&mut self.desk.commands) {
             self.carry_out(ui, command);
         }
-        self.overlays_ui(ui.ctx());
+        if let Some(sentence) = typed::refused(ui.ctx()) {
+            self.notice = Some(Notice::refused(sentence));
+        }
+        theme::focus_ring(ui.ctx());
+        self.overlays_ui(ui.ctx(), foot);
         #[cfg(target_arch = "wasm32")]
         crate::hook::publish(&self.hook_state());
     }

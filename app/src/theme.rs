@@ -152,6 +152,32 @@ pub fn running_text<R>(ui: &mut egui::Ui, text: impl FnOnce(&mut egui::Ui) -> R)
     .inner
 }
 
+/// What a page scrolls; by its own name, since pages stand in the same place and would scroll together.
+pub fn scroll(name: &str) -> egui::ScrollArea {
+    egui::ScrollArea::vertical().id_salt(name)
+}
+
+/// Draws a ring around what has the keyboard: plots and frameless buttons show nothing of it by themselves. A text
+/// field has its caret.
+pub fn focus_ring(ctx: &egui::Context) {
+    let focused = ctx.memory(egui::Memory::focused);
+    let Some(response) = focused.and_then(|id| ctx.read_response(id)) else {
+        return;
+    };
+    if ctx.text_edit_focused() {
+        return;
+    }
+    let color = ctx.global_style().visuals.selection.stroke.color;
+    // What is scrolled away has no ring.
+    let seen = response.interact_rect.expand(RING);
+    ctx.layer_painter(response.layer_id)
+        .with_clip_rect(seen)
+        .rect_stroke(response.rect, 4.0, (RING, color), egui::StrokeKind::Outside);
+}
+
+/// Width of the ring around what has the keyboard, points.
+const RING: f32 = 2.0;
+
 /// The large answer of a page.
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
     ui.add(egui::Label::new(egui::RichText::new(tr(text)).size(24.0).strong()).wrap());
