@@ -150,3 +150,88 @@ fn whatever_has_the_keyboard_has_a_ring() {
         assert!(stops > 8, "{place}: {stops} stops");
     }
 }
+
+/// Types into the number beside a slider, key by key, and leaves it.
+fn type_number(harness: &mut App, name: &str, text: &str) {
+    let at = place(harness, Role::Slider, name).left_center() + vec2(185.0, 0.0);
+    harness.hover_at(at);
+    harness.step();
+    for pressed in [true, false] {
+        harness.input_mut().events.push(Event::PointerButton {
+            pos: at,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+    }
+    harness.step();
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    for key in text.chars() {
+        harness.event(Event::Text(key.to_string()));
+        harness.step();
+    }
+    harness.key_press(Key::Enter);
+    finish(harness);
+    // So that the next click is not the second.
+    harness.run_steps(8);
+}
+
+#[test]
+fn a_number_that_cannot_be_changes_nothing_and_is_said() {
+    let mut harness = app("explore", TALL);
+    show(&mut harness, "v1;explore;explore.paused=20");
+    let set = |harness: &App| {
+        let state = state(harness);
+        let set = &state["explore"]["loop"];
+        let noise = set["noise"]["std_dev"].as_f64().unwrap_or_default();
+        (set["relay"]["delay"].as_f64().expect("a delay"), noise)
+    };
+    type_number(&mut harness, "delay [s]", "250 ms");
+    assert_eq!(set(&harness), (0.25, 0.0));
+    assert_eq!(notice(&harness), "");
+    for (name, text, said) in [
+        (
+            "delay [s]",
+            "2 kg",
+            "2 kg cannot be taken: a number in s is wanted.",
+        ),
+        (
+            "delay [s]",
+            "1e",
+            "1e cannot be taken: a number in s is wanted.",
+        ),
+        (
+            "delay [s]",
+            "50",
+            "50 cannot be taken: the range goes from 0 to 2 s.",
+        ),
+        (
+            "noise σ",
+            "50 ms",
+            "50 ms cannot be taken: a number without a unit is wanted.",
+        ),
+    ] {
+        type_number(&mut harness, name, text);
+        assert_eq!(set(&harness), (0.25, 0.0), "{text}");
+        assert_eq!(notice(&harness), said);
+        press(&mut harness, Key::Escape);
+    }
+    type_number(&mut harness, "noise σ", "0.05");
+    assert_eq!(set(&harness), (0.25, 0.05));
+    assert_eq!(notice(&harness), "");
+}
+
+#[test]
+fn a_number_that_is_only_looked_at_stays_as_it_is() {
+    let mut harness = app("explore", TALL);
+    let link = "v1;explore;explore.paused=20;loop.relay.delay=3.00004";
+    show(&mut harness, link);
+    type_number(&mut harness, "delay [s]", "3");
+    assert_eq!(
+        state(&harness)["explore"]["loop"]["relay"]["delay"],
+        3.00004
+    );
+    assert_eq!(notice(&harness), "");
+}

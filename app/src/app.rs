@@ -14,7 +14,7 @@ use crate::document::Document;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
-use crate::pages::{Command, Desk, Hint, View, chart_menu, chart_zoom, registry};
+use crate::pages::{Command, Desk, Hint, View, chart_menu, chart_zoom, registry, typed};
 use crate::shortcuts;
 use crate::theme::{self, Look};
 use crate::{lessons, link};

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use hysteron_core::figures::Check;
 
-use crate::language::{tr, typed_in};
+use crate::language::tr;
+use crate::pages::typed::{DECIMALS, Typed};
 use crate::theme;
 
 /// A slider over `value * scale`, reset by a double click or by Delete. A value from elsewhere (a map, a dragged line, a
@@ -20,13 +21,11 @@ pub fn slider(
     let mut shown = *value * scale;
     let unit = label.strip_suffix(']').and_then(|l| l.rsplit_once('['));
     let unit = unit.map_or("", |(_, unit)| unit);
-    let response = ui.add(
-        egui::Slider::new(&mut shown, range)
-            .text(tr(label))
-            .max_decimals(3)
-            .custom_parser(typed_in(unit))
-            .clamping(egui::SliderClamping::Edits),
-    );
+    let slider = Typed::new(shown, unit, range, DECIMALS)
+        .slider(ui.ctx(), &mut shown)
+        .text(tr(label))
+        .clamping(egui::SliderClamping::Edits);
+    let response = ui.add(slider);
     if reset_asked(ui, &response) {
         *value = normal;
     } else if response.changed() {

@@ -15,6 +15,7 @@ mod mystery;
 mod playback;
 mod start;
 mod tune;
+pub mod typed;
 
 use hysteron_core::explore::ExploreInput;
 

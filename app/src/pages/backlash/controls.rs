@@ -5,8 +5,9 @@ use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 use super::scene::MILLI;
 use super::{Backlash, SPEED};
 use crate::hook::Targets;
-use crate::language::{tr, tr_number, typed_in};
+use crate::language::{tr, tr_number};
 use crate::pages::controls::{reset_asked, slider};
+use crate::pages::typed::{DECIMALS, Typed};
 use crate::recent::Recents;
 
 /// Width below which the playback stands in two rows, points.
@@ -257,9 +258,9 @@ impl Backlash {
     }
 
     fn speed_ui(&mut self, ui: &mut egui::Ui) {
-        let speed = egui::Slider::new(&mut self.speed, 0.001..=2.0)
+        let speed = Typed::new(self.speed, "x", 0.001..=2.0, DECIMALS)
+            .slider(ui.ctx(), &mut self.speed)
             .logarithmic(true)
-            .custom_parser(typed_in("x"))
             .suffix(" x");
         let speed = ui.add(speed);
         if reset_asked(ui, &speed) {

@@ -3,8 +3,9 @@
 use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
 
 use super::scene::MILLI;
-use crate::language::{tr, typed_in};
+use crate::language::tr;
 use crate::pages::controls::reset_asked;
+use crate::pages::typed::{DECIMALS, Typed};
 
 /// What is asked for, and the last proposal.
 pub struct Design {
@@ -31,9 +32,9 @@ impl Design {
             return false;
         };
         let mut shown = MILLI * self.gap;
-        let gap = egui::Slider::new(&mut shown, 0.5..=100.0)
+        let gap = Typed::new(shown, "mrad", 0.5..=100.0, DECIMALS)
+            .slider(ui.ctx(), &mut shown)
             .logarithmic(true)
-            .custom_parser(typed_in("mrad"))
             .text(tr("expected gap [mrad]"));
         let gap = ui.add(gap);
         if reset_asked(ui, &gap) {
@@ -41,9 +42,9 @@ impl Design {
         } else if gap.changed() {
             self.gap = shown / MILLI;
         }
-        let torque = egui::Slider::new(&mut self.torque, 0.01..=5.0)
+        let torque = Typed::new(self.torque, "N m", 0.01..=5.0, DECIMALS)
+            .slider(ui.ctx(), &mut self.torque)
             .logarithmic(true)
-            .custom_parser(typed_in("N m"))
             .text(tr("largest torque [N m]"));
         let torque = ui.add(torque);
         if reset_asked(ui, &torque) {

@@ -6,8 +6,9 @@ use hysteron_core::measurement::Kind;
 
 use super::{Command, Compare};
 use crate::hook::Targets;
-use crate::language::{tr, typed_in};
+use crate::language::tr;
 use crate::pages;
+use crate::pages::typed::Typed;
 use crate::theme;
 
 /// Width of the widest bar, points.
@@ -195,11 +196,9 @@ fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut
     let mut row = |name: &str, value: &mut f64, unit: &str| {
         let label = ui.label(tr(name));
         let speed = 0.01 * value.abs().max(1e-9);
-        let drag = egui::DragValue::new(value)
+        let drag = Typed::new(*value, unit, 1e-9..=1e9, 6)
+            .field(ui.ctx(), value)
             .speed(speed)
-            .range(1e-9..=1e9)
-            .max_decimals(6)
-            .custom_parser(typed_in(unit))
             .suffix(plain(unit));
         ui.add(drag).labelled_by(label.id);
         ui.end_row();

@@ -4,8 +4,9 @@ use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
 use super::{Command, Maps, axis_title, with_unit};
-use crate::language::{tr, typed_in};
+use crate::language::tr;
 use crate::pages::controls::reset_asked;
+use crate::pages::typed::{DECIMALS, Typed};
 
 impl Maps {
     /// Axes and quantity.
@@ -52,10 +53,9 @@ impl Maps {
         let mut point = old;
         for (value, axis) in point.iter_mut().zip([x, y]) {
             let unit = axis.parameter.unit();
-            let slider = egui::Slider::new(value, axis.from..=axis.to)
-                .text(tr(axis_title(axis.parameter.label(), unit)))
-                .custom_parser(typed_in(unit))
-                .max_decimals(3);
+            let slider = Typed::new(*value, unit, axis.from..=axis.to, DECIMALS)
+                .slider(ui.ctx(), value)
+                .text(tr(axis_title(axis.parameter.label(), unit)));
             let slider = ui.add(slider);
             if reset_asked(ui, &slider) {
                 let usual = axis.parameter.read(&ExploreInput::default());
@@ -129,15 +129,12 @@ fn axis_ui(
         let speed = 0.005 * (axis.to - axis.from).abs().max(1e-3);
         for (label, value) in [("from", &mut axis.from), ("to", &mut axis.to)] {
             let label = ui.label(tr(label));
-            ui.add(
-                egui::DragValue::new(value)
-                    .speed(speed)
-                    .range(0.0..=1e4)
-                    .max_decimals(3)
-                    .custom_parser(typed_in(axis.parameter.unit()))
-                    .suffix(suffix(axis.parameter.unit())),
-            )
-            .labelled_by(label.id);
+            let unit = axis.parameter.unit();
+            let field = Typed::new(*value, unit, 0.0..=1e4, DECIMALS)
+                .field(ui.ctx(), value)
+                .speed(speed)
+                .suffix(suffix(unit));
+            ui.add(field).labelled_by(label.id);
         }
     });
 }

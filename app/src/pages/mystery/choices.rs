@@ -5,8 +5,9 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
-use crate::language::{tr, typed_in};
+use crate::language::tr;
 use crate::pages::Desk;
+use crate::pages::typed::{DECIMALS, Typed};
 
 /// Name and story of an experiment.
 fn words(experiment: Experiment) -> (&'static str, &'static str) {
@@ -215,11 +216,9 @@ fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
     let [least, most] = effect.range;
     let mut shown = *value * scale;
     let text = ui.label(format!("{} {symbol}", tr(label)));
-    let field = egui::DragValue::new(&mut shown)
-        .range(least * scale..=most * scale)
+    let field = Typed::new(shown, unit, least * scale..=most * scale, DECIMALS)
+        .field(ui.ctx(), &mut shown)
         .speed(0.002 * most * scale)
-        .max_decimals(3)
-        .custom_parser(typed_in(unit))
         .suffix(format!(" {unit}"));
     if ui.add(field).labelled_by(text.id).changed() {
         *value = shown / scale;
