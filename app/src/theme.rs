@@ -23,6 +23,10 @@ pub const SIMULATED: Color32 = Color32::from_rgb(0x56, 0xB4, 0xE9);
 /// Where the model fails.
 pub const SHADE: Color32 = Color32::from_rgb(0xF0, 0xE4, 0x42);
 
+/// What is wrong, in dark words on a light ground.
+const WARNING: Color32 = Color32::from_rgb(0xB0, 0x3A, 0x00);
+const ERROR: Color32 = Color32::from_rgb(0xB4, 0x00, 0x00);
+
 /// How the app looks as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
@@ -89,6 +93,9 @@ impl Look {
             style.visuals.override_text_color = Some(text);
             style.visuals.panel_fill = ground;
             style.visuals.text_edit_bg_color = Some(field);
+            // egui's orange is too faint on white.
+            style.visuals.warn_fg_color = WARNING;
+            style.visuals.error_fg_color = ERROR;
         });
         ctx.set_zoom_factor(self.zoom());
     }
@@ -99,6 +106,7 @@ pub fn apply(ctx: &egui::Context) {
     // The default greys are too faint to read from afar.
     ctx.style_mut_of(egui::Theme::Dark, |style| {
         style.visuals.override_text_color = Some(Color32::from_gray(225));
+        style.visuals.error_fg_color = Color32::from_rgb(0xFF, 0x70, 0x70);
     });
     ctx.all_styles_mut(|style| {
         use egui::{FontId, TextStyle};
@@ -186,7 +194,7 @@ pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
 /// A curve's colour as text: darker on a light ground, where it would be too faint to read.
 pub fn readable(ui: &egui::Ui, color: Color32) -> Color32 {
     if ui.visuals().dark_mode {
-        color
+        color.lerp_to_gamma(Color32::WHITE, 0.1)
     } else {
         color.lerp_to_gamma(Color32::BLACK, 0.4)
     }

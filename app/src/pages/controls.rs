@@ -72,7 +72,7 @@ pub fn claim_ui(ui: &mut egui::Ui, number: u32, title: &str, claim: &str, checks
             } else {
                 ("no:", theme::MODEL)
             };
-            ui.colored_label(color, tr(mark));
+            ui.colored_label(theme::readable(ui, color), tr(mark));
             let end = if i + 1 == checks.len() { "." } else { ";" };
             ui.label(format!("{}{end}", tr(&check.text)));
         }

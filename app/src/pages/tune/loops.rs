@@ -182,11 +182,12 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
 }
 
 fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, horizon: f64) {
+    let [before_color, after_color] = [BEFORE, AFTER].map(|c| theme::readable(ui, c));
     table(ui, "loops", &["", "before", "after"], |ui| {
         let mut row = |name: &str, value: &dyn Fn(&LoopReport) -> String| {
             ui.label(tr(name));
-            ui.colored_label(BEFORE, tr(value(before)));
-            ui.colored_label(AFTER, tr(after.map_or_else(String::new, value)));
+            ui.colored_label(before_color, tr(value(before)));
+            ui.colored_label(after_color, tr(after.map_or_else(String::new, value)));
             ui.end_row();
         };
         row("stable", &|l| match l.unstable_poles {
