@@ -302,3 +302,35 @@ fn warnings_and_coloured_words_are_readable_in_every_look() {
         }
     }
 }
+
+#[test]
+fn each_page_stands_where_it_was_left() {
+    let mut harness = app("backlash", [1000.0, 500.0]);
+    show(&mut harness, "v1;backlash;backlash.paused=1");
+    let headline = |harness: &App| {
+        let y = shapes(harness).into_iter().find_map(|shape| match shape {
+            Shape::Text(text) if text.galley.job.text.starts_with("It oscillates") => {
+                Some(text.pos.y)
+            }
+            _ => None,
+        });
+        y.expect("a headline")
+    };
+    for at in [[700.0, 300.0], [100.0, 300.0]] {
+        harness.hover_at(at.into());
+        harness.step();
+        harness.input_mut().events.push(Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: vec2(0.0, -200.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(6);
+    }
+    show(&mut harness, "v1;explore;explore.paused=20");
+    let after = headline(&harness);
+    let mut fresh = app("explore", [1000.0, 500.0]);
+    show(&mut fresh, "v1;explore;explore.paused=20");
+    assert!((after - headline(&fresh)).abs() < 0.5, "{after}");
+}

@@ -516,6 +516,12 @@ impl eframe::App for HysteronApp {
         storage.set_string(KEPT_LOOK, self.look().name().to_owned());
     }
 
+    /// What egui keeps by itself is where everything is scrolled to: a page that is opened again begins with its
+    /// headline.
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         #[cfg(target_arch = "wasm32")]
         if let Some(text) = self.address.changed() {

@@ -191,7 +191,7 @@ pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
     ui.add(egui::Label::new(egui::RichText::new(tr(text)).size(24.0).strong()).wrap());
 }
 
-/// A curve's colour as text: darker on a light ground, where it would be too faint to read.
+/// A curve's colour as text, which needs more contrast: lighter on a dark ground, darker on a light one.
 pub fn readable(ui: &egui::Ui, color: Color32) -> Color32 {
     if ui.visuals().dark_mode {
         color.lerp_to_gamma(Color32::WHITE, 0.1)

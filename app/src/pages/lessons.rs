@@ -23,7 +23,7 @@ impl View for Lessons {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         egui::CentralPanel::default().show(ui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            theme::scroll("lessons").show(ui, |ui| {
                 ui.add_space(6.0);
                 theme::answer_ui(ui, "What can a relay teach in ten minutes?");
                 ui.label(tr("Each lesson stands beside the app: its buttons set the pages, and its question is checked."));

@@ -87,7 +87,7 @@ impl View for Start {
         self.compute(&desk.relay_loop);
         self.play(ui);
         egui::CentralPanel::default().show(ui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            theme::scroll("start").show(ui, |ui| {
                 self.loop_ui(ui, &mut desk.relay_loop.relay);
                 ui.add_space(10.0);
                 doors_ui(ui, desk);

@@ -277,11 +277,11 @@ impl Backlash {
             .exact_size(SIDE)
             .resizable(false)
             .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| self.side_ui(ui, recent, targets));
+                theme::scroll("backlash_side").show(ui, |ui| self.side_ui(ui, recent, targets));
             });
         egui::CentralPanel::default().show(ui, |ui| {
             // Large type leaves less room than the plots need.
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            theme::scroll("backlash").show(ui, |ui| {
                 self.answer_ui(ui);
                 self.playback_ui(ui, targets);
                 let Some(scene) = &self.scene else {
@@ -300,7 +300,7 @@ impl Backlash {
 
     fn narrow_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         egui::CentralPanel::default().show(ui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            theme::scroll("backlash").show(ui, |ui| {
                 self.answer_ui(ui);
                 self.playback_ui(ui, targets);
                 if let Some(scene) = &self.scene {

@@ -40,6 +40,7 @@ use crate::language::tr;
 use crate::recent::Recent;
 use crate::save::save;
 use crate::tasks::ExperimentTask;
+use crate::theme;
 use answer::times_noise;
 use welcome::BUILT_IN;
 
@@ -227,7 +228,7 @@ impl Compare {
             let narrow = ui.available_width() < 700.0;
             if narrow {
                 egui::CentralPanel::default().show(ui, |ui| {
-                    egui::ScrollArea::vertical().show(ui, |ui| {
+                    theme::scroll("compare").show(ui, |ui| {
                         // What is seen first, then what could be done: the list of effects is long.
                         self.answer_ui(ui);
                         self.message_ui(ui, &mut commands);
@@ -253,7 +254,7 @@ impl Compare {
                     .default_size(400.0)
                     .min_size(320.0)
                     .show(ui, |ui| {
-                        egui::ScrollArea::vertical()
+                        theme::scroll("compare_side")
                             .show(ui, |ui| side::ui(self, ui, targets, &mut commands));
                     });
                 egui::CentralPanel::default().show(ui, |ui| {
@@ -261,7 +262,7 @@ impl Compare {
                     self.message_ui(ui, &mut commands);
                     self.findings_ui(ui, &mut commands);
                     self.looks_ui(ui, targets, &mut commands);
-                    egui::ScrollArea::vertical().show(ui, |ui| {
+                    theme::scroll("compare").show(ui, |ui| {
                         let height = ui.available_height();
                         self.evidence_ui(ui, height, targets, &mut commands);
                     });

@@ -140,7 +140,7 @@ impl Compare {
         targets: &mut Targets,
         commands: &mut Vec<Command>,
     ) {
-        egui::ScrollArea::vertical().show(ui, |ui| {
+        theme::scroll("compare_welcome").show(ui, |ui| {
             ui.add_space(16.0);
             theme::answer_ui(ui, "What is missing from the model?");
             ui.label(tr("Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which physical effect would explain the rest."));

@@ -187,14 +187,14 @@ impl Explore {
             .default_size(400.0)
             .resizable(false)
             .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
+                theme::scroll("explore_side").show(ui, |ui| {
                     self.controls_ui(ui);
                     self.numbers_ui(ui);
                 });
             });
         egui::CentralPanel::default().show(ui, |ui| {
             // Large type leaves less room than the plots need.
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            theme::scroll("explore").show(ui, |ui| {
                 self.answer_ui(ui);
                 let height = (0.5 * ui.available_height() - 34.0).max(150.0);
                 ui.columns(2, |columns| {
@@ -208,7 +208,7 @@ impl Explore {
 
     fn narrow_ui(&mut self, ui: &mut egui::Ui) {
         egui::CentralPanel::default().show(ui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            theme::scroll("explore").show(ui, |ui| {
                 self.answer_ui(ui);
                 self.nyquist_ui(ui, 260.0);
                 self.time_ui(ui, 220.0);

@@ -182,7 +182,7 @@ impl View for Maps {
         let narrow = ui.available_width() < 700.0;
         if narrow {
             egui::CentralPanel::default().show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
+                theme::scroll("maps").show(ui, |ui| {
                     self.update(ui.ctx());
                     self.answer_ui(ui);
                     let height = ui.available_width() + 40.0;
@@ -199,7 +199,7 @@ impl View for Maps {
             .default_size(330.0)
             .resizable(false)
             .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
+                theme::scroll("maps_side").show(ui, |ui| {
                     self.choices_ui(ui);
                     self.update(ui.ctx());
                     ui.separator();

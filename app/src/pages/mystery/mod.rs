@@ -195,7 +195,7 @@ impl View for Bench {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         egui::CentralPanel::default().show(ui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| self.page_ui(ui, desk));
+            theme::scroll("mystery").show(ui, |ui| self.page_ui(ui, desk));
         });
     }
 

@@ -112,7 +112,7 @@ impl View for Tune {
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         if ui.available_width() < 700.0 {
             egui::CentralPanel::default().show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
+                theme::scroll("tune").show(ui, |ui| {
                     egui::CollapsingHeader::new(tr("Plant, relay and wishes"))
                         .show(ui, |ui| self.controls_ui(ui, desk));
                     self.ask(ui.ctx(), desk);
@@ -126,11 +126,11 @@ impl View for Tune {
             .default_size(350.0)
             .resizable(false)
             .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| self.controls_ui(ui, desk));
+                theme::scroll("tune_side").show(ui, |ui| self.controls_ui(ui, desk));
             });
         egui::CentralPanel::default().show(ui, |ui| {
             self.ask(ui.ctx(), desk);
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            theme::scroll("tune").show(ui, |ui| {
                 self.steps_ui(ui, desk);
                 let height = (ui.max_rect().bottom() - ui.cursor().top() - 150.0).max(280.0);
                 self.stage_ui(ui, height);
