@@ -1,15 +1,19 @@
 // Keeps the page for visits without a network. Every build has its own store: the files of one build are
 // never mixed with those of another. A new build takes over when the last window of the old one is closed.
-const STORE = "hysteron-VERSION";
+// Stores belong to the host: the folder in their name tells those of another Hysteron on it apart.
+const OURS = `hysteron ${new URL(self.registration.scope).pathname} `;
+const STORE = OURS + "VERSION";
 const FILES = FILE_LIST;
 
 self.addEventListener("install", (event) => {
-  event.waitUntil(caches.open(STORE).then((store) => store.addAll(FILES)));
+  // Past the browser's own cache, which may still have files of the build before.
+  const fresh = FILES.map((file) => new Request(file, { cache: "reload" }));
+  event.waitUntil(caches.open(STORE).then((store) => store.addAll(fresh)));
 });
 
 self.addEventListener("activate", (event) => {
   event.waitUntil((async () => {
-    const old = (await caches.keys()).filter((name) => name.startsWith("hysteron-") && name !== STORE);
+    const old = (await caches.keys()).filter((name) => name.startsWith(OURS) && name !== STORE);
     await Promise.all(old.map((name) => caches.delete(name)));
     await self.clients.claim();
   })());
