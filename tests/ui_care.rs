@@ -334,3 +334,56 @@ fn each_page_stands_where_it_was_left() {
     show(&mut fresh, "v1;explore;explore.paused=20");
     assert!((after - headline(&fresh)).abs() < 0.5, "{after}");
 }
+
+/// A file that is let go over the window.
+#[derive(Debug)]
+struct Dropped(PathBuf, Vec<u8>);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Ok(self.1.clone())
+    }
+}
+
+/// Drops a file and waits until the page has said something about it, or opened it.
+fn drop_file(harness: &mut App, name: &str, bytes: &[u8]) {
+    let file: egui::DroppedFileHandle =
+        std::sync::Arc::new(Dropped(PathBuf::from(name), bytes.to_vec()));
+    harness.input_mut().dropped_files.push(file);
+    for _ in 0..500 {
+        harness.step();
+        let now = state(harness);
+        if now["message"].is_string() || now["file"] == name {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    finish(harness);
+}
+
+#[test]
+fn a_refused_file_is_not_among_those_opened_before() {
+    let good = format!("{}/../tests/data/drive-02.csv", env!("CARGO_MANIFEST_DIR"));
+    let good = std::fs::read(good).expect("a file of the tests");
+    for page in ["compare", "backlash"] {
+        let mut harness = app(page, TALL);
+        finish(&mut harness);
+        drop_file(&mut harness, "bad.csv", b"no measurement\n");
+        assert!(state(&harness)["message"].is_string(), "{page}");
+        assert!(harness.query_by_label("bad.csv").is_none(), "{page}");
+        drop_file(&mut harness, "good.csv", &good);
+        if page == "compare" {
+            click(&mut harness, "Open another");
+        }
+        let buttons = |name| {
+            harness
+                .query_all_by_role_and_label(Role::Button, name)
+                .count()
+        };
+        assert_eq!([buttons("good.csv"), buttons("bad.csv")], [1, 0], "{page}");
+    }
+}

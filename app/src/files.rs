@@ -38,6 +38,8 @@ struct Read {
 pub struct Files {
     sender: Sender<Read>,
     receiver: Receiver<Read>,
+    /// The last one that has arrived: nobody knows yet whether it is what its page takes.
+    arrived: Option<Recent>,
     opened: Vec<Recent>,
 }
 
@@ -47,6 +49,7 @@ impl Default for Files {
         Self {
             sender,
             receiver,
+            arrived: None,
             opened: Vec::new(),
         }
     }
@@ -56,11 +59,14 @@ impl Files {
     /// The next file that has been read.
     pub fn arrived(&mut self) -> Option<Arrival> {
         let read = self.receiver.try_recv().ok()?;
-        if let Ok(bytes) = &read.bytes {
-            let recent = Recent::new(&read.name, &read.path, bytes);
-            self.opened.push(recent);
-        }
+        let bytes = read.bytes.as_ref().ok();
+        self.arrived = bytes.map(|b| Recent::new(&read.name, &read.path, b));
         Some((read.name, read.bytes))
+    }
+
+    /// The file of this name was what its page takes: it may be opened again.
+    pub fn taken(&mut self, name: &str) {
+        self.opened.extend(self.arrived.take_if(|r| r.name == name));
     }
 
     /// What has been opened since it was last asked for.

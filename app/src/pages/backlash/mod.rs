@@ -191,6 +191,7 @@ impl Backlash {
                 Ok(scene) => {
                     self.scene = Some(scene);
                     self.file = self.open_file();
+                    self.files.taken(&measurement.name);
                     self.figure = None;
                 }
                 Err(error) => self.keep(error),

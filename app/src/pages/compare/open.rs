@@ -18,6 +18,7 @@ impl Compare {
         }
         match import_csv(name, bytes, None) {
             Ok(measurement) => {
+                self.files.taken(name);
                 self.message = measurement.warnings.first().cloned();
                 self.measurement = Some(Arc::new(measurement));
                 self.source = export::Source::of(bytes);
@@ -59,6 +60,7 @@ impl Compare {
                 ));
             }
             (Ok(model), _) => {
+                self.files.taken(name);
                 self.message = None;
                 self.forget_model();
                 self.model = Some(model);
