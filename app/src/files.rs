@@ -27,6 +27,17 @@ pub const MODEL: Filter = Filter {
     endings: &["toml"],
 };
 
+/// Why no page takes a file of MATLAB: it has neither units nor a mapping of its columns.
+pub fn refused(name: &str, bytes: &[u8]) -> Option<String> {
+    let matlab = name.to_ascii_lowercase().ends_with(".mat") || bytes.starts_with(b"MATLAB ");
+    matlab.then(|| {
+        format!(
+            "{name} is a file of MATLAB, which does not say what its columns are. Say it on the command line: \
+             hysteron diagnose {name} --map ...; or save the file as CSV."
+        )
+    })
+}
+
 /// A file that is being read elsewhere, and how to find it again.
 struct Read {
     name: String,

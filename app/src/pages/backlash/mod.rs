@@ -18,7 +18,7 @@ pub use settings::is_built_in;
 
 use crate::document::parsed;
 use crate::export::Table;
-use crate::files::Files;
+use crate::files::{self, Files};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
@@ -143,6 +143,10 @@ impl Backlash {
 
     /// Opens a measurement from the bytes of a file; a bad one leaves everything as it was.
     fn open_bytes(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        if let Some(refused) = files::refused(name, bytes) {
+            self.message = Some(refused);
+            return;
+        }
         let text = String::from_utf8_lossy(bytes).into_owned();
         self.simulation = None;
         let task = GapTask::File(name.to_owned(), text);

@@ -8,6 +8,7 @@ use hysteron_core::user_model::UserModel;
 
 use super::reveal::Sealed;
 use super::{Compare, Look, export, own};
+use crate::files;
 use crate::jobs::Job;
 
 impl Compare {
@@ -15,6 +16,10 @@ impl Compare {
     pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
         if name.to_ascii_lowercase().ends_with(".toml") {
             return self.open_model(ctx, name, bytes);
+        }
+        if let Some(refused) = files::refused(name, bytes) {
+            self.message = Some(refused);
+            return;
         }
         match import_csv(name, bytes, None) {
             Ok(measurement) => {
