@@ -409,3 +409,30 @@ fn a_matlab_file_is_pointed_to_the_command_line() {
         assert!(texts.iter().any(german), "{page}: {texts:#?}");
     }
 }
+
+#[test]
+fn the_answer_to_a_lesson_s_question_comes_into_view() {
+    for size in [[1280.0, 657.0], PHONE] {
+        let mut harness = app("lessons", size);
+        show(&mut harness, "v1;explore;explore.paused=20;lesson=relay");
+        let field = harness.get_by_label("Your answer");
+        field.scroll_to_me();
+        harness.run_steps(8);
+        for (typed, said) in [("0.5", "Not yet."), ("0.7616", "Right.")] {
+            ui::type_over(&mut harness, "Your answer", typed);
+            harness.get_by_label("Check").click_accesskit();
+            finish(&mut harness);
+            harness.run_steps(20);
+            let panel = harness.ctx.content_rect();
+            let seen = harness.output().shapes.iter().any(|clipped| {
+                let Shape::Text(text) = &clipped.shape else {
+                    return false;
+                };
+                let place = text.visual_bounding_rect();
+                let inside = clipped.clip_rect.intersect(panel).contains_rect(place);
+                text.galley.job.text == said && inside
+            });
+            assert!(seen, "{size:?}: {said}");
+        }
+    }
+}

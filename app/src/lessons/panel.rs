@@ -25,6 +25,10 @@ pub struct Study {
     typed: (String, String),
     /// Whether the last try was wrong.
     missed: bool,
+    /// Whether what was found is still to be brought into view.
+    found: bool,
+    /// Whether it is folded where there is little room.
+    folded: bool,
 }
 
 impl Study {
@@ -53,6 +57,7 @@ impl Study {
             return;
         };
         self.missed = !lesson.question.solved(&self.typed.1, state);
+        self.found = true;
         if !self.missed {
             self.solved.insert(lesson.id.to_owned());
         }
@@ -107,6 +112,15 @@ impl Study {
         if asked {
             commands.push(Command::Check);
         }
+        let said = ui.scope(|ui| self.found_ui(ui, lesson, commands)).response;
+        if std::mem::take(&mut self.found) {
+            said.scroll_to_me(None);
+        }
+    }
+
+    /// Whether the answer was right, and what follows.
+    fn found_ui(&self, ui: &mut egui::Ui, lesson: &Lesson, commands: &mut Vec<Command>) {
+        let question = &lesson.question;
         if self.missed {
             ui.colored_label(ui.visuals().warn_fg_color, tr("Not yet."));
             ui.label(question.hint);
