@@ -436,3 +436,33 @@ fn the_answer_to_a_lesson_s_question_comes_into_view() {
         }
     }
 }
+
+#[test]
+fn a_lesson_is_folded_on_a_phone() {
+    let mut harness = app("lessons", PHONE);
+    show(&mut harness, "v1;explore;explore.paused=20;lesson=relay");
+    let room = |harness: &App, fold: &str| place(harness, Role::Button, fold).top();
+    let before = room(&harness, "Fold the lesson");
+    click(&mut harness, "Fold the lesson");
+    let after = room(&harness, "Unfold the lesson");
+    assert!(after > before + 200.0, "{before} {after}");
+    let title = |t: &String| t.contains("The relay and its hysteresis");
+    assert!(texts(&harness).iter().any(title), "its title stays");
+    assert!(harness.query_by_label("Check").is_none());
+    // The slider and the plot that it changes stand in the window together.
+    let node = harness.get_by_role_and_label(Role::Slider, "hysteresis ε");
+    node.scroll_to_me();
+    harness.run_steps(20);
+    let slider = place(&harness, Role::Slider, "hysteresis ε");
+    let menu = "Menu of the plot: output y, input u over time [s]";
+    let plot = place(&harness, Role::Button, menu);
+    let (plot_height, bar) = (220.0, 60.0);
+    let together = slider.bottom() - (plot.bottom() - plot_height);
+    assert!(together < after - bar, "{together} {after}");
+    click(&mut harness, "Unfold the lesson");
+    assert!((room(&harness, "Fold the lesson") - before).abs() < 1.0);
+    // Where there is room, nothing is folded.
+    let mut harness = app("lessons", WIDE);
+    show(&mut harness, "v1;explore;explore.paused=20;lesson=relay");
+    assert!(harness.query_by_label("Fold the lesson").is_none());
+}

@@ -39,16 +39,35 @@ impl Study {
         };
         if self.typed.0 != lesson.id {
             self.typed = (lesson.id.to_owned(), String::new());
-            self.missed = false;
+            (self.missed, self.folded) = (false, false);
         }
-        let panel = if ui.available_width() < NARROW {
+        let narrow = ui.available_width() < NARROW;
+        if narrow && self.folded {
+            egui::Panel::bottom("lesson_folded")
+                .resizable(false)
+                .show(ui, |ui| self.folded_ui(ui, &lesson, targets));
+            return;
+        }
+        let panel = if narrow {
             egui::Panel::bottom("lesson below").exact_size(0.42 * ui.available_height())
         } else {
             egui::Panel::right("lesson").exact_size(WIDTH)
         };
-        panel
-            .resizable(false)
-            .show(ui, |ui| self.lesson_ui(ui, &lesson, targets, commands));
+        panel.resizable(false).show(ui, |ui| {
+            self.lesson_ui(ui, &lesson, narrow, targets, commands);
+        });
+    }
+
+    /// Its title, and how it is unfolded: the page has the rest of a small window.
+    fn folded_ui(&mut self, ui: &mut egui::Ui, lesson: &Lesson, targets: &mut Targets) {
+        ui.add_space(4.0);
+        ui.strong(lesson.title);
+        let unfold = ui.button(tr("Unfold the lesson"));
+        targets.note("lesson:fold", ui, &unfold);
+        if unfold.clicked() {
+            self.folded = false;
+        }
+        ui.add_space(4.0);
     }
 
     /// Whether the question of the open lesson is solved by what was typed and what the app shows.
@@ -67,6 +86,7 @@ impl Study {
         &mut self,
         ui: &mut egui::Ui,
         lesson: &Lesson,
+        narrow: bool,
         targets: &mut Targets,
         commands: &mut Vec<Command>,
     ) {
@@ -80,6 +100,11 @@ impl Study {
                     targets.note("lesson:close", ui, &close);
                     if close.clicked() {
                         commands.push(Command::Lesson(None));
+                    }
+                    if narrow {
+                        let fold = ui.button(tr("Fold the lesson"));
+                        targets.note("lesson:fold", ui, &fold);
+                        self.folded = fold.clicked();
                     }
                 });
                 ui.add(
