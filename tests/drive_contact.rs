@@ -271,7 +271,7 @@ fn what_cannot_be_is_refused_with_its_range() {
         "motor inertia is 0: it must be above 0",
     );
     refused(|i| i.drive.load.coulomb = f64::NAN, "load coulomb");
-    refused(|i| i.drive.half_gap = -1.0, "half_gap");
+    refused(|i| i.drive.half_gap = -1.0, "half gap");
     refused(
         |i| i.drive.contact = Contact::Rigid { restitution: 1.5 },
         "restitution is 1.5",

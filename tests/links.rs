@@ -254,7 +254,7 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
         ("v1;explore;loop.plant.denominator=%5B1%5D", "order"),
         ("v1;explore;explore.figure=77", "no figure 77"),
         ("v1;backlash;backlash.run.duration=1e9", "120 s"),
-        ("v1;backlash;backlash.run.drive.half_gap=-1", "half_gap"),
+        ("v1;backlash;backlash.run.drive.half_gap=-1", "half gap"),
         ("v1;compare;compare.file=passwords.csv", "passwords.csv"),
         (
             "v1;compare;compare.file=drive-02;compare.effects=%5B%22magic%22%5D",

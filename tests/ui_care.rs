@@ -466,3 +466,37 @@ fn a_lesson_is_folded_on_a_phone() {
     show(&mut harness, "v1;explore;explore.paused=20;lesson=relay");
     assert!(harness.query_by_label("Fold the lesson").is_none());
 }
+
+#[test]
+fn a_link_that_cannot_be_is_refused_in_the_words_of_the_interface() {
+    let mut harness = app("start", WIDE);
+    harness.state_mut().speak(Language::German);
+    let ctx = harness.ctx.clone();
+    for (link, said) in [
+        (
+            "v1;explore;loop.plant.numerator=1,nan",
+            "Dieser Link hat einen falschen Wert: loop.plant.numerator=1,nan.",
+        ),
+        (
+            "v1;explore;loop.relay.gain=much",
+            "Dieser Link hat einen falschen Wert: loop.relay.gain=much.",
+        ),
+        ("v1;backlash;backlash.run.drive.half_gap=-1", "halbes Spiel"),
+        (
+            "v1;maps;maps.quantity=mine",
+            "Diese Einstellungen sind nicht lesbar.",
+        ),
+    ] {
+        let refused = harness.state_mut().open_link(&ctx, link);
+        assert!(refused.is_err(), "{link}");
+        finish(&mut harness);
+        let texts = texts(&harness);
+        assert!(texts.iter().any(|t| t.contains(said)), "{link}: {texts:#?}");
+        let raw = |t: &String| {
+            ["invalid", "expected", "half_gap is", "unknown"]
+                .iter()
+                .any(|w| t.contains(w))
+        };
+        assert!(!texts.iter().any(raw), "{link}: {texts:#?}");
+    }
+}

@@ -158,7 +158,8 @@ impl Document {
 /// # Errors
 /// One sentence.
 pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
-    T::deserialize(value).map_err(|e| format!("These settings cannot be read: {e}."))
+    // What serde says is about Rust, and in English.
+    T::deserialize(value).map_err(|_| "These settings cannot be read.".to_owned())
 }
 
 /// Whether a loop can be computed.

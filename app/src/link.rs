@@ -71,9 +71,21 @@ pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), String> {
             ));
         };
         *place = decode(value)
+            .filter(|value| is_alike(value, place))
             .ok_or_else(|| format!("This link has a bad value: {}.", shortened(part)))?;
     }
     Ok((page, settings))
+}
+
+/// Whether a value can stand in the place of another: a list for a list, a number for a number. Nothing stands for
+/// anything, and what is chosen by a word may have another shape.
+fn is_alike(value: &Value, usual: &Value) -> bool {
+    match usual {
+        Value::Array(_) => value.is_array() || value.is_null(),
+        Value::Number(_) => value.is_number() || value.is_null(),
+        Value::Bool(_) => value.is_boolean() || value.is_null(),
+        _ => true,
+    }
 }
 
 /// Writes what differs: within objects that have the same keys by key, else as a whole.

@@ -195,7 +195,7 @@ impl Drive {
             check(names[1], body.viscous, body.viscous >= 0.0, "0 or more")?;
             check(names[2], body.coulomb, body.coulomb >= 0.0, "0 or more")?;
         }
-        check("half_gap", self.half_gap, self.half_gap >= 0.0, "0 or more")?;
+        check("half gap", self.half_gap, self.half_gap >= 0.0, "0 or more")?;
         match self.contact {
             Contact::Rigid { restitution: e } => {
                 check("restitution", e, (0.0..=1.0).contains(&e), "0 to 1")?;

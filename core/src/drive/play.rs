@@ -65,7 +65,7 @@ pub fn cycles_with_play(
     relay: &Relay,
 ) -> Result<Vec<PlayCycle>, DriveError> {
     relay.validate()?;
-    check("half_gap", half_gap, half_gap >= 0.0, "0 or more")?;
+    check("half gap", half_gap, half_gap >= 0.0, "0 or more")?;
     let loop_ = PlayLoop {
         plant,
         half_gap,
