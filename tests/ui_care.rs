@@ -500,3 +500,15 @@ fn a_link_that_cannot_be_is_refused_in_the_words_of_the_interface() {
         assert!(!texts.iter().any(raw), "{link}: {texts:#?}");
     }
 }
+
+#[test]
+fn of_several_files_it_is_said_which_one_is_opened() {
+    let mut harness = app("compare", WIDE);
+    for name in ["a.csv", "b.csv"] {
+        let file: egui::DroppedFileHandle =
+            std::sync::Arc::new(Dropped(PathBuf::from(name), Vec::new()));
+        harness.input_mut().dropped_files.push(file);
+    }
+    harness.step();
+    assert_eq!(notice(&harness), "Of 2 files one is opened: a.csv.");
+}

@@ -398,6 +398,12 @@ impl HysteronApp {
         {
             page.open_dropped(ctx, &file);
         }
+        if count > 1 {
+            let name = file.path().file_name().unwrap_or_default();
+            let name = name.to_string_lossy();
+            let saying = format!("Of {count} files one is opened: {name}.");
+            self.notice = Some(Notice::done(ctx, saying));
+        }
     }
 
     /// A link that is pasted while no text field has the keyboard is opened.
