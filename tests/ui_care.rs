@@ -512,3 +512,18 @@ fn of_several_files_it_is_said_which_one_is_opened() {
     harness.step();
     assert_eq!(notice(&harness), "Of 2 files one is opened: a.csv.");
 }
+
+#[test]
+fn a_notice_leaves_what_to_try_next_in_view() {
+    let mut harness = app("explore", WIDE);
+    show(&mut harness, "v1;explore;explore.paused=20");
+    press(&mut harness, Key::L);
+    harness.run_steps(2);
+    let said = notice(&harness);
+    let at = shapes(&harness).into_iter().find_map(|shape| match shape {
+        Shape::Text(text) if text.galley.job.text == said => Some(text.visual_bounding_rect()),
+        _ => None,
+    });
+    let next = place(&harness, Role::Button, "Try it");
+    assert!(at.expect("a notice").bottom() < next.top());
+}

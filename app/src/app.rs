@@ -180,6 +180,7 @@ impl HysteronApp {
         {
             egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, hint, desk));
         }
+        let foot = ui.available_rect_before_wrap().bottom();
         if let Some(page) = self.pages.get_mut(self.front) {
             desk.zooms.follow(page.id(), &present.settings[page.id()]);
             chart_zoom::begin(ui.ctx(), desk.zooms.of(page.id()));
@@ -379,8 +380,8 @@ impl HysteronApp {
         bar.ui(ui, &mut self.desk);
     }
 
-    /// What lies over the page.
-    fn overlays_ui(&mut self, ctx: &egui::Context) {
+    /// What lies over the page, which ends at `foot`.
+    fn overlays_ui(&mut self, ctx: &egui::Context, foot: f32) {
         drop_hint_ui(ctx);
         if self.sheet {
             let titles: Vec<_> = self.pages.iter().map(|p| p.title()).collect();
@@ -389,13 +390,18 @@ impl HysteronApp {
         if let Some(text) = self.said.1.try_iter().last() {
             self.notice = Some(Notice::done(ctx, text));
         }
-        notice::ui(ctx, &mut self.notice);
+        notice::ui(ctx, &mut self.notice, foot);
     }
 
     fn take_dropped_files(&mut self, ctx: &egui::Context) {
-        if let Some(file) = ctx.input(|i| i.raw.dropped_files.first().cloned())
-            && let Some(page) = self.go_to_files()
-        {
+        let (first, count) = ctx.input(|i| {
+            let files = &i.raw.dropped_files;
+            (files.first().cloned(), files.len())
+        });
+        let Some(file) = first else {
+            return;
+        };
+        if let Some(page) = self.go_to_files() {
             page.open_dropped(ctx, &file);
         }
         if count > 1 {

@@ -36,8 +36,9 @@ impl Notice {
     }
 }
 
-/// Draws the notice, if there is one, and takes it away in time.
-pub fn ui(ctx: &egui::Context, notice: &mut Option<Notice>) {
+/// Draws the notice, if there is one, at the foot of the page, and takes it away in time; `foot` is where the page ends
+/// and what stands below it begins.
+pub fn ui(ctx: &egui::Context, notice: &mut Option<Notice>, foot: f32) {
     let Some(shown) = notice else {
         return;
     };
@@ -48,7 +49,10 @@ pub fn ui(ctx: &egui::Context, notice: &mut Option<Notice>) {
         ctx.request_repaint_after(std::time::Duration::from_secs_f64(left.max(0.0)));
     }
     egui::Area::new(egui::Id::unique("notice"))
-        .anchor(egui::Align2::CENTER_BOTTOM, egui::vec2(0.0, -16.0))
+        .anchor(
+            egui::Align2::CENTER_BOTTOM,
+            egui::vec2(0.0, foot - ctx.content_rect().bottom() - 16.0),
+        )
         .order(egui::Order::Foreground)
         .show(ctx, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
