@@ -527,3 +527,13 @@ fn a_notice_leaves_what_to_try_next_in_view() {
     let next = place(&harness, Role::Button, "Try it");
     assert!(at.expect("a notice").bottom() < next.top());
 }
+
+#[test]
+fn the_word_of_a_mystery_is_shown_only_when_asked_for() {
+    let mut harness = app("mystery", TALL);
+    ui::type_over(&mut harness, "Word", "blue whale");
+    let shown = |harness: &App| texts(harness).iter().any(|t| t == "blue whale");
+    assert!(!shown(&harness));
+    click(&mut harness, "Show the word");
+    assert!(shown(&harness));
+}

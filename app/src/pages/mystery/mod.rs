@@ -32,6 +32,8 @@ pub struct Bench {
     /// What the teacher chose, in the order of the menu.
     picks: Vec<Pick>,
     word: String,
+    /// Whether the word can be read: a class may look on.
+    legible: bool,
     job: Option<Job<MysteryTask>>,
     message: Option<String>,
     made: Option<Product>,
@@ -118,12 +120,14 @@ impl Bench {
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(tr("Word"));
             let field = egui::TextEdit::singleline(&mut self.word)
+                .password(!self.legible)
                 .desired_width(240.0)
                 .hint_text(tr("a few words are better than one"));
             let word = ui.add(field).labelled_by(label.id).on_hover_text(tr(
                 "Whoever has it can open the truth; without it nobody can, you neither",
             ));
             desk.targets.note("mystery:word", ui, &word);
+            ui.checkbox(&mut self.legible, tr("Show the word"));
             let obstacle = self.obstacle();
             let ready = obstacle.is_none() && self.job.is_none();
             let make = ui.add_enabled(ready, egui::Button::new(tr("Make the mystery")));
