@@ -537,3 +537,27 @@ fn the_word_of_a_mystery_is_shown_only_when_asked_for() {
     click(&mut harness, "Show the word");
     assert!(shown(&harness));
 }
+
+#[test]
+fn a_page_exports_what_it_shows() {
+    let mut harness = app("start", WIDE);
+    for (link, first, none) in [
+        ("v1;start", "time series", "Nyquist curve"),
+        (
+            "v1;tune;tune.step=loops",
+            "step response before",
+            "relay test",
+        ),
+        ("v1;tune", "relay test", "step response before"),
+    ] {
+        show(&mut harness, link);
+        let tables = harness.state().tables();
+        assert_eq!(tables[0].name, first, "{link}");
+        assert!(tables.iter().all(|t| t.name != none), "{link}");
+        click(&mut harness, "Export");
+        for table in &tables {
+            harness.get_by_label(&format!("Data: {} (CSV)", table.name));
+        }
+        press(&mut harness, Key::Escape);
+    }
+}

@@ -16,6 +16,9 @@ use crate::theme;
 /// Simulated periods that are played in a second.
 const PERIODS_PER_SECOND: f64 = 0.6;
 
+/// Tables of Explore that are about what is shown here too: all but Nyquist's curve.
+const SHOWN: usize = TABLES.len() - 1;
+
 /// Width below which everything stands in one column, points.
 const NARROW: f32 = 700.0;
 
@@ -100,11 +103,14 @@ impl View for Start {
     }
 
     fn table_names(&self) -> Vec<&'static str> {
-        self.data().map_or_else(Vec::new, |_| TABLES.to_vec())
+        self.data()
+            .map_or_else(Vec::new, |_| TABLES[..SHOWN].to_vec())
     }
 
     fn tables(&self) -> Vec<Table> {
-        self.data().map_or_else(Vec::new, tables)
+        let mut tables = self.data().map_or_else(Vec::new, tables);
+        tables.truncate(SHOWN);
+        tables
     }
 
     fn settings(&self) -> serde_json::Value {

@@ -1,12 +1,13 @@
 //! Step 6: the loop before and after.
 
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
-use hysteron_core::tuning::{LoopReport, Response};
+use hysteron_core::tuning::{LoopReport, Response, TuningReport};
 
 use super::draw::{
     AFTER, BEFORE, CAPTION, beside, controller, curve, maybe, number, plot, series, table,
 };
 use super::{Seen, Stage};
+use crate::export::Table;
 use crate::language::tr;
 use crate::pages::chart::{Key, Shape, caption_ui, sparse};
 use crate::theme;
@@ -69,6 +70,33 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
         |ui, height| nyquist_ui(ui, &report.before, after, height),
         |ui, _| table_ui(ui, &report.before, after, report.horizon),
     );
+}
+
+/// Names of [`tables`]; the last two where a tuned loop is there.
+const TABLES: [&str; 4] = [
+    "step response before",
+    "load response before",
+    "step response after",
+    "load response after",
+];
+
+/// Names of the tables that this step gives.
+pub fn table_names(report: &TuningReport) -> Vec<&'static str> {
+    let loops = if report.after.is_ok() { 2 } else { 1 };
+    TABLES.into_iter().take(2 * loops).collect()
+}
+
+/// The responses that this step shows.
+pub fn tables(report: &TuningReport) -> Vec<Table> {
+    let loops = [Some(&report.before), report.after.as_ref().ok()];
+    let responses = loops.into_iter().flatten();
+    let responses = responses.flat_map(|l| [&l.set_point, &l.load]);
+    let table = |(name, response): (&'static str, &Response)| {
+        Table::new(name)
+            .with("time [s]", response.time.iter().copied())
+            .with("output y", response.output.iter().copied())
+    };
+    TABLES.into_iter().zip(responses).map(table).collect()
 }
 
 fn response_ui(

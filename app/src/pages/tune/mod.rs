@@ -152,15 +152,20 @@ impl View for Tune {
     }
 
     fn table_names(&self) -> Vec<&'static str> {
-        self.seen().map_or_else(Vec::new, |_| {
-            vec!["relay test", "relay input", "true Nyquist curve"]
-        })
+        match self.seen() {
+            None => Vec::new(),
+            Some(seen) if self.shows_loops() => loops::table_names(seen.report),
+            Some(_) => vec!["relay test", "relay input", "true Nyquist curve"],
+        }
     }
 
     fn tables(&self) -> Vec<Table> {
         let Some(seen) = self.seen() else {
             return Vec::new();
         };
+        if self.shows_loops() {
+            return loops::tables(seen.report);
+        }
         let run = &seen.report.test.run;
         let [input, nyquist] = [&run.input, &seen.report.nyquist];
         vec![
@@ -202,6 +207,12 @@ impl View for Tune {
 }
 
 impl Tune {
+    /// Whether the step in view is that of the closed loops.
+    fn shows_loops(&self) -> bool {
+        let stage = STAGES.get(self.stage);
+        stage.is_some_and(|s| s.id == loops::STAGE.id)
+    }
+
     /// Starts the experiment where something was changed and none runs: so a slider that is dragged
     /// shows every experiment that could be finished meanwhile.
     fn ask(&mut self, ctx: &egui::Context, desk: &Desk) {
