@@ -354,10 +354,12 @@ fn drop_file(harness: &mut App, name: &str, bytes: &[u8]) {
     let file: egui::DroppedFileHandle =
         std::sync::Arc::new(Dropped(PathBuf::from(name), bytes.to_vec()));
     harness.input_mut().dropped_files.push(file);
+    let before = state(harness)["message"].clone();
     for _ in 0..500 {
         harness.step();
         let now = state(harness);
-        if now["message"].is_string() || now["file"] == name {
+        let said = now["message"].is_string() && now["message"] != before;
+        if said || now["file"] == name {
             break;
         }
         std::thread::sleep(std::time::Duration::from_millis(10));
