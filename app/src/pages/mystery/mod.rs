@@ -128,6 +128,7 @@ impl Bench {
             ));
             desk.targets.note("mystery:word", ui, &word);
             ui.checkbox(&mut self.legible, tr("Show the word"));
+            ui.end_row();
             let obstacle = self.obstacle();
             let ready = obstacle.is_none() && self.job.is_none();
             let make = ui.add_enabled(ready, egui::Button::new(tr("Make the mystery")));
