@@ -129,6 +129,7 @@ impl HysteronApp {
     pub fn open_link(&mut self, ctx: &egui::Context, text: &str) -> Result<(), String> {
         let present = self.document();
         let opened = Document::read(text, &self.untouched)
+            .and_then(|document| document.check_shape(&self.untouched).map(|()| document))
             .and_then(|document| self.apply(ctx, &document.within(&present)));
         if let Err(sentence) = &opened {
             self.notice = Some(Notice::refused(sentence));

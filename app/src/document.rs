@@ -72,6 +72,14 @@ impl Document {
         Ok(Self { page, settings })
     }
 
+    /// Whether all that is set has the shape of what is set when nothing was touched.
+    ///
+    /// # Errors
+    /// One sentence.
+    pub fn check_shape(&self, defaults: &Self) -> Result<(), String> {
+        link::check_shape(&self.settings, &defaults.settings)
+    }
+
     /// What a link sets here: its page and what pages share; the other pages stay as they are.
     pub fn within(mut self, present: &Self) -> Self {
         let mut settings = present.settings.clone();

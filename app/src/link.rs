@@ -71,10 +71,32 @@ pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), String> {
             ));
         };
         *place = decode(value)
-            .filter(|value| is_alike(value, place))
             .ok_or_else(|| format!("This link has a bad value: {}.", shortened(part)))?;
     }
     Ok((page, settings))
+}
+
+/// Whether all settings have the shape of the usual ones.
+///
+/// # Errors
+/// One sentence that names the one that has not, as it stands in a link.
+pub fn check_shape(settings: &Value, usual: &Value) -> Result<(), String> {
+    match misfit("", settings, usual) {
+        Some(part) => Err(format!("This link has a bad value: {}.", shortened(&part))),
+        None => Ok(()),
+    }
+}
+
+/// The first value that cannot stand in its place, with its path.
+fn misfit(path: &str, value: &Value, usual: &Value) -> Option<String> {
+    if let (Value::Object(values), Value::Object(usual)) = (value, usual) {
+        return usual.iter().find_map(|(key, usual)| {
+            let dot = if path.is_empty() { "" } else { "." };
+            misfit(&format!("{path}{dot}{key}"), values.get(key)?, usual)
+        });
+    }
+    let part = || format!("{path}={}", encode(value));
+    (!is_alike(value, usual)).then(part)
 }
 
 /// Whether a value can stand in the place of another: a list for a list, a number for a number. Nothing stands for
