@@ -60,15 +60,15 @@ fn equation_4_lag_with_dead_time_relay_and_true_ultimate_point() {
         let half = (2.0 * dead_time.exp() - 1.0).ln();
         close("period", test.period, 2.0 * half, 1e-10);
         let report = compare(&test, &plant);
-        close("K_u by relay", report.plain.gain, by_relay, 5e-4);
+        close("Ku by relay", report.plain.gain, by_relay, 5e-4);
         // Phase crossover: atan w + w D = pi.
         let w = root(0.0, PI / dead_time, |w| w.atan() + w * dead_time - PI);
         let truth = report.truth.unwrap();
-        close("true K_u", truth.gain, w.hypot(1.0), 1e-12);
-        close("true K_u in the issue", truth.gain, exact, 5e-4);
-        close("true T_u", truth.period, 2.0 * PI / w, 1e-12);
+        close("true Ku", truth.gain, w.hypot(1.0), 1e-12);
+        close("true Ku in the issue", truth.gain, exact, 5e-4);
+        close("true Tu", truth.period, 2.0 * PI / w, 1e-12);
         let expected = report.plain.gain / truth.gain - 1.0;
-        close("error of K_u", report.plain_error.unwrap(), expected, 1e-12);
+        close("error of Ku", report.plain_error.unwrap(), expected, 1e-12);
         assert!(report.amplitude_convention.contains("half of peak to peak"));
     }
 }
@@ -109,7 +109,7 @@ fn equation_4_true_point_through_integrators_dead_time_and_far_poles() {
     check(&[1.0], &[1.0, 0.0], 1e-4, 0.5e4 * PI, 0.5e4 * PI);
     check(&[2.0], &[1.0, 0.0], 300.0, PI / 1200.0, PI / 600.0);
     check(&[1.0], &[1.0, 3.0, 2.0, 0.0], 0.0, 6.0, 2.0_f64.sqrt());
-    // Three lags: K_u = (T1 + T2 + T3)(1/T1 + 1/T2 + 1/T3) - 1, w^2 = (T1 + T2 + T3)/(T1 T2 T3).
+    // Three lags: Ku = (T1 + T2 + T3)(1/T1 + 1/T2 + 1/T3) - 1, w^2 = (T1 + T2 + T3)/(T1 T2 T3).
     let (t1, t2, t3) = (1.0, 1e-4, 1e-5);
     let sum: f64 = t1 + t2 + t3;
     let den = [t1 * t2 * t3, t1 * t2 + t1 * t3 + t2 * t3, sum, 1.0];

@@ -52,7 +52,7 @@ const PLAIN_AXES: [&str; 26] = [
     "output",
     "input",
     "input u",
-    "ultimate gain K_u",
+    "ultimate gain Ku",
     "stability",
     "y of the model",
     "u",

@@ -13,7 +13,7 @@ fn page(size: [f32; 2]) -> App {
 }
 
 /// The paper's third-order lag under the relay k = 1, eps = 0.1: period 4.788 s and amplitude 0.2857
-/// exactly, hence `K_u = 4/(pi sqrt(a^2 - eps^2)) = 4.758`; true are 8 and `2 pi/sqrt(3) = 3.628` s.
+/// exactly, hence `Ku = 4/(pi sqrt(a^2 - eps^2)) = 4.758`; true are 8 and `2 pi/sqrt(3) = 3.628` s.
 #[test]
 fn the_experiment_leads_step_by_step_from_the_relay_to_the_tuned_loop() {
     let mut harness = page(WIDE);
@@ -26,7 +26,7 @@ fn the_experiment_leads_step_by_step_from_the_relay_to_the_tuned_loop() {
     click(&mut harness, "Next step");
     let said = answer(&harness);
     for number in [
-        "K_u = 4.758",
+        "Ku = 4.758",
         "4.788 s",
         "8.000",
         "3.628 s",
@@ -60,7 +60,7 @@ fn another_rule_changes_the_controller_and_the_loop() {
     assert!(answer(&harness).starts_with("AMIGO PID"));
     click(&mut harness, "Ziegler-Nichols PI");
     let said = answer(&harness);
-    // 0.45 K_u and T_u/1.2 of the relay's 4.758 and 4.788 s.
+    // 0.45 Ku and Tu/1.2 of the relay's 4.758 and 4.788 s.
     assert!(
         said.contains("K = 2.141") && said.contains("Ti = 3.990 s"),
         "{said}"

@@ -202,6 +202,6 @@ fn hysteresis_costs(input: &ExploreInput, data: &ExploreData) -> Result<Vec<Chec
             new.period,
             new.period > old.period,
         ),
-        compared("smaller K_u = 4k/(πa)", k_old, k_new, k_new < k_old),
+        compared("smaller Ku = 4k/(πa)", k_old, k_new, k_new < k_old),
     ])
 }

@@ -318,7 +318,7 @@ impl Quantity {
         match self {
             Self::Period => "period",
             Self::Amplitude => "amplitude a",
-            Self::UltimateGain => "ultimate gain K_u",
+            Self::UltimateGain => "ultimate gain Ku",
             Self::PeriodError => "describing function's error in period",
             Self::AmplitudeError => "describing function's error in amplitude",
             Self::Stability => "stability",

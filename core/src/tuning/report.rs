@@ -334,7 +334,7 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
     steps.push(relay_step(
         "Relay instead of the controller",
         format!(
-            "It oscillates with period {:.4} s and amplitude {:.4} (half of peak to peak): K_u = {:.4}.",
+            "It oscillates with period {:.4} s and amplitude {:.4} (half of peak to peak): Ku = {:.4}.",
             test.period, test.amplitude, report.ultimate.corrected.gain
         ),
         test,

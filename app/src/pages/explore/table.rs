@@ -14,7 +14,7 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
         .striped(true)
         .spacing([12.0, 4.0])
         .show(ui, |ui| {
-            for title in ["", "period [s]", "amplitude", "K_u", "stable"] {
+            for title in ["", "period [s]", "amplitude", "Ku", "stable"] {
                 ui.strong(tr(title));
             }
             ui.end_row();
@@ -32,7 +32,7 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
                 row_ui(ui, name, color, relay, cycle, reference);
             }
         });
-    ui.small(tr("Amplitude a: half of peak to peak. K_u = 4k/(πa). Below each: difference from the exact value."));
+    ui.small(tr("Amplitude a: half of peak to peak. Ku = 4k/(πa). Below each: difference from the exact value."));
 }
 
 fn row_ui(

@@ -36,7 +36,7 @@ impl Maps {
             self.point = self.point.map(|[x, y]| [y, x]);
         }
         ui.add_space(4.0);
-        ui.small(tr("Everything else is as set in Explore. Amplitude: half of peak to peak. K_u = 4k/(πa), with the exact amplitude a."));
+        ui.small(tr("Everything else is as set in Explore. Amplitude: half of peak to peak. Ku = 4k/(πa), with the exact amplitude a."));
     }
 
     /// Every quantity at the chosen point.

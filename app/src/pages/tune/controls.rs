@@ -130,7 +130,7 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
 
 fn equations_ui(ui: &mut egui::Ui) {
     ui.collapsing(tr("The equations"), |ui| {
-        ui.monospace(tr("(4) K_u = 4k/(π √(a² - ε²)), T_u: period\n\
+        ui.monospace(tr("(4) Ku = 4k/(π √(a² - ε²)), Tu: period\n\
              (7) k = π a/4,  ε = a sin φ\n\
              (8) K(n+1): secant through two runs\n\
              (9) C(jω) = S/M\n\

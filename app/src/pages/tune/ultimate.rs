@@ -21,7 +21,7 @@ pub const STAGE: Stage = Stage {
 fn answer(seen: Seen<'_>) -> String {
     let found = &seen.report.ultimate;
     let said = format!(
-        "At K_u = {} with T_u = {} s, says the relay.",
+        "At Ku = {} with Tu = {} s, says the relay.",
         number(found.corrected.gain),
         number(found.corrected.period)
     );
@@ -44,7 +44,7 @@ fn off(share: f64) -> String {
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
-    ui.label(tr("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis, and K_u is read off the axis. Try less hysteresis."));
+    ui.label(tr("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis, and Ku is read off the axis. Try less hysteresis."));
     beside(
         ui,
         height,
@@ -61,10 +61,10 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
         ("plant P(jω)", theme::MEASURED, Shape::Line),
         ("relay -1/N(a)", theme::DESCRIBING, Shape::Dashes),
         ("point by the relay", theme::MODEL, Shape::Diamond),
-        ("-1/K_u by the relay", theme::MODEL, Shape::Square),
+        ("-1/Ku by the relay", theme::MODEL, Shape::Square),
     ];
     if report.ultimate.truth.is_some() {
-        curves.push(("true -1/K_u", theme::EXACT, Shape::Circle));
+        curves.push(("true -1/Ku", theme::EXACT, Shape::Circle));
     }
     caption_ui(ui, "", &curves);
     plot(
@@ -110,14 +110,14 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
         );
         let by_relay = on_axis(report.ultimate.corrected);
         mark(
-            "-1/K_u by the relay",
+            "-1/Ku by the relay",
             by_relay,
             theme::MODEL,
             MarkerShape::Square,
         );
         if let Some(truth) = report.ultimate.truth {
             mark(
-                "true -1/K_u",
+                "true -1/Ku",
                 on_axis(truth),
                 theme::EXACT,
                 MarkerShape::Circle,
@@ -128,7 +128,7 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
 
 fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
     let found = &seen.report.ultimate;
-    let heads = ["", "K_u", "error", "T_u [s]", "error"];
+    let heads = ["", "Ku", "error", "Tu [s]", "error"];
     table(ui, "ultimate table", &heads, |ui| {
         let mut row = |name: &str, u: Option<Ultimate>, gain: Option<f64>, period: Option<f64>| {
             ui.label(tr(name));
@@ -153,7 +153,7 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
         row("true", found.truth, None, None);
     });
     ui.small(tr(format!(
-        "Here the {}. Half or twice of K_u is what a program reports that counts otherwise.",
+        "Here the {}. Half or twice of Ku is what a program reports that counts otherwise.",
         found.amplitude_convention
     )));
     ui.add_space(6.0);
