@@ -1,6 +1,7 @@
 //! The page in a real headless Chromium: loads, opens a measurement, adds the effect, reads the error.
 
 mod driver;
+mod dropped;
 mod export;
 mod mystery;
 mod phone;
@@ -50,7 +51,7 @@ pub fn test() -> Result<(), String> {
     })?;
     busy.read(&session)?;
     let error = before["error"].as_f64().ok_or("no error is shown")?;
-    same::check(&before, "drive-02")?;
+    same::check(&before, "assets/measurements/drive-02.csv")?;
     look(&session, &folder.join("compare.png"))?;
     Busy::begin(&session)?;
     click(&session, "add:coulomb_friction")?;
@@ -69,6 +70,7 @@ pub fn test() -> Result<(), String> {
     offline(&session, &page)?;
     export::journey(&session, &folder.join("exports"), &page)?;
     mystery::journey(&session, &page)?;
+    dropped::journey(&session, &page)?;
     phone::journey(&session, &folder, port)?;
     refused::journey(&folder.join("refused"), &page)?;
     speed::report(&session)?;

@@ -8,15 +8,14 @@ use crate::run::{PROGRAM, output, root, run};
 const EQUAL: f64 = 1e-9;
 
 /// Compares the errors of the baseline and of every effect on top of it, as the page has `shown` them for a
-/// measurement of the assets, with those of the command line.
-pub fn check(shown: &Value, file: &str) -> Result<(), String> {
-    let path = format!("assets/measurements/{file}.csv");
+/// measurement, with those of the command line; `path` is from the root.
+pub fn check(shown: &Value, path: &str) -> Result<(), String> {
     // The tests before this one have built it.
     let program = root().join("target/debug").join(PROGRAM);
     if !program.exists() {
         run("cargo", &["build", "-p", "hysteron"])?;
     }
-    let arguments = ["diagnose", "--format", "json", &path];
+    let arguments = ["diagnose", "--format", "json", path];
     let said = output(&program.to_string_lossy(), &arguments).ok_or("the command line failed")?;
     let native: Value = serde_json::from_str(&said).map_err(|e| e.to_string())?;
     let native = &native["steps"][0];
@@ -29,7 +28,7 @@ pub fn check(shown: &Value, file: &str) -> Result<(), String> {
         largest = largest.max(difference(&candidate["error"], &same["error"])?);
     }
     println!(
-        "{} errors on {file}, native and web: they differ by {largest:e} at most",
+        "{} errors on {path}, native and web: they differ by {largest:e} at most",
         1 + tried.len()
     );
     if largest > EQUAL {
