@@ -143,7 +143,7 @@ fn the_zoom_of_a_plot_comes_back_in_another_window() {
         ),
         (
             "v1;compare;compare.file=drive-02;compare.look=places",
-            "rms over velocity [rad/s]",
+            "rms [× noise] over velocity [rad/s]",
             "compare=atlas_",
         ),
     ] {
@@ -192,10 +192,11 @@ fn a_zoom_is_taken_back_and_is_not_of_the_next_record() {
 #[test]
 fn what_compare_shows_comes_back_in_another_window() {
     let mut here = app("compare", TALL);
-    show(
-        &mut here,
-        "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02",
-    );
+    show(&mut here, "v1;compare;compare.file=drive-02");
+    here.get_by_label("Add Coulomb friction").click_accesskit();
+    finish(&mut here);
+    let steps = state(&here)["steps"].as_array().map_or(0, Vec::len);
+    assert_eq!(steps, 2, "the baseline, and what was added");
     for (label, parts) in [
         ("Where it fails", &["compare.look=places"][..]),
         (
@@ -226,7 +227,7 @@ fn comes_back(here: &App, parts: &[&str]) {
     }
     let mut there = app("explore", TALL);
     show(&mut there, &link);
-    for key in ["link", "effects", "error", "fingerprint", "plots"] {
+    for key in ["link", "effects", "error", "steps", "fingerprint", "plots"] {
         assert_eq!(state(&there)[key], state(here)[key], "{key} of {link}");
     }
 }

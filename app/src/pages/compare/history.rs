@@ -48,7 +48,26 @@ impl Compare {
         Some(before)
     }
 
-    /// Has the step before computed where it is to stand beside, and takes what has been found.
+    /// The errors on the way, as far as they are known, for tests.
+    pub(super) fn way_errors(&self) -> Vec<Option<f64>> {
+        let way = self.way();
+        let steps = (0..=way.len()).map(|n| self.reports.get(&way[..n]));
+        steps.map(|r| r.map(|r| r.step.error)).collect()
+    }
+
+    /// The step of the way to compute next: the one before that on screen may be wanted beside it.
+    fn unknown(&self) -> Option<Vec<EffectId>> {
+        let way = self.way();
+        let all = (0..=way.len()).map(|n| &way[..n]);
+        self.effects_before()
+            .into_iter()
+            .chain(all)
+            .find(|step| !self.reports.contains_key(*step) && !self.lost.contains(*step))
+            .map(<[EffectId]>::to_vec)
+    }
+
+    /// Has the steps computed that are missing on the way to the model on screen, one after the other, and takes what
+    /// has been found.
     pub(super) fn take_earlier(&mut self, ctx: &egui::Context) {
         if let Some((effects, job)) = &mut self.earlier {
             let effects = effects.clone();
@@ -61,7 +80,8 @@ impl Compare {
                     }
                     News::Failed(text) => {
                         self.message = Some(text);
-                        self.before = false;
+                        self.before &= self.effects_before() != Some(effects.as_slice());
+                        self.lost.insert(effects);
                         self.earlier = None;
                         return;
                     }
@@ -70,14 +90,12 @@ impl Compare {
             }
             return;
         }
-        let wanted = self.before && self.job.is_none();
-        if let (true, Some(before), Some(measurement)) =
-            (wanted, self.effects_before(), &self.measurement)
-            && !self.reports.contains_key(before)
-        {
-            let model = self.model.as_ref();
-            let job = Job::start(ctx, measurement, before, model);
-            self.earlier = Some((before.to_vec(), job));
+        if self.job.is_some() || self.shown.is_none() {
+            return;
+        }
+        if let (Some(step), Some(measurement)) = (self.unknown(), &self.measurement) {
+            let job = Job::start(ctx, measurement, &step, self.model.as_ref());
+            self.earlier = Some((step, job));
         }
     }
 

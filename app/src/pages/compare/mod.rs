@@ -18,7 +18,7 @@ mod side;
 mod waterfall;
 mod welcome;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -82,8 +82,10 @@ pub struct Compare {
     limits: Option<Limits>,
     /// A search within other limits: for which model, and the number of the proposal.
     search: Option<(Vec<EffectId>, usize, Job<ExperimentTask>)>,
-    /// The step before the one on screen, where it is not known: a link brings the last one alone.
+    /// A step of the way that is computed beside: a link brings the last one alone.
     earlier: Option<(Vec<EffectId>, Job)>,
+    /// Steps of the way that cannot be computed.
+    lost: HashSet<Vec<EffectId>>,
     /// The finding that is shaded.
     finding: usize,
     /// The truth that came with the measurement, sealed.
@@ -115,6 +117,7 @@ impl Default for Compare {
             limits: None,
             search: None,
             earlier: None,
+            lost: HashSet::new(),
             finding: 0,
             sealed: None,
             files: Files::default(),
@@ -418,6 +421,7 @@ impl Compare {
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
             "next_experiment": report.and_then(|r| r.verdict.as_ref()).and_then(|v| v.next_experiment.clone()),
             "experiments": report.and_then(|r| r.verdict.as_ref()).map_or(0, |v| v.experiments.len()),
+            "steps": self.way_errors(),
             "undone": self.undone,
             "fingerprint": self.chosen(),
             "model": self.model_file,

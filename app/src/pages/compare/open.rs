@@ -107,6 +107,7 @@ impl Compare {
         self.reports.clear();
         self.shown = None;
         self.undone.clear();
+        self.lost.clear();
         self.limits = None;
         self.search = None;
         self.finding = 0;
@@ -116,13 +117,17 @@ impl Compare {
     /// Shows the step of the present effects: at once if it is known, else by a job.
     pub(super) fn start(&mut self, ctx: &egui::Context) {
         self.job = None;
-        self.earlier = None;
+        let earlier = self.earlier.take();
         if self.reports.contains_key(&self.effects) {
             self.shown = Some(self.effects.clone());
         } else if let Some(measurement) = &self.measurement {
             self.progress = (0.0, "Starting".to_owned());
-            let model = self.model.as_ref();
-            self.job = Some(Job::start(ctx, measurement, &self.effects, model));
+            // It may be on its way already.
+            let begun = earlier.filter(|(effects, _)| *effects == self.effects);
+            self.job = Some(begun.map_or_else(
+                || Job::start(ctx, measurement, &self.effects, self.model.as_ref()),
+                |(_, job)| job,
+            ));
         }
     }
 }

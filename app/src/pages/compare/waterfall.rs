@@ -7,6 +7,7 @@ use hysteron_core::effect::name_of;
 use super::{Command, Compare, times_noise};
 use crate::hook::Targets;
 use crate::language::tr;
+use crate::motion;
 use crate::theme;
 
 /// Width of the widest bar, in points.
@@ -27,9 +28,9 @@ pub(super) fn ui(
     ui.strong(tr("Error, in units of the noise"));
     let way = page.way();
     let at = page.shown.as_ref().map_or(0, Vec::len);
-    let steps: Vec<(String, &StepReport)> = (0..=way.len())
-        .filter_map(|n| {
-            let report = page.reports.get(&way[..n])?;
+    // A step that came in a link is known a while later.
+    let steps: Vec<(String, Option<&StepReport>)> = (0..=way.len())
+        .map(|n| {
             let first = if page.model_file.is_some() {
                 "Your model"
             } else {
@@ -38,11 +39,12 @@ pub(super) fn ui(
             let label = n
                 .checked_sub(1)
                 .map_or(tr(first), |i| format!("+ {}", tr(name_of(way[i]))));
-            Some((label, report))
+            (label, page.reports.get(&way[..n]))
         })
         .collect();
-    let largest = steps.iter().map(|(_, r)| r.step.error).fold(2.0, f64::max);
-    let floor = steps.first().map_or(1.0, |(_, r)| r.noise_floor);
+    let mut known = steps.iter().filter_map(|(_, r)| *r);
+    let largest = known.clone().map(|r| r.step.error).fold(2.0, f64::max);
+    let floor = known.next().map_or(1.0, |r| r.noise_floor);
     let width = (ui.available_width() - WATERFALL_TEXT).clamp(LEAST_BAR, BAR_WIDTH);
     egui::Grid::new("waterfall").num_columns(3).show(ui, |ui| {
         for (n, (label, report)) in steps.iter().enumerate() {
@@ -63,9 +65,13 @@ pub(super) fn ui(
             }
             // What was taken back is still there, but fainter.
             let strength = if n > at { 0.4 } else { 1.0 };
-            ui.label(tr(times_noise(report.step.error)));
-            let color = theme::MODEL.gamma_multiply(strength);
-            bar_ui(ui, report.step.error, floor, largest, color, width);
+            if let Some(report) = report {
+                ui.label(tr(times_noise(report.step.error)));
+                let color = theme::MODEL.gamma_multiply(strength);
+                bar_ui(ui, report.step.error, floor, largest, color, width);
+            } else if page.earlier.is_some() {
+                motion::busy_ui(ui);
+            }
             ui.end_row();
         }
         ui.label(tr("   Noise floor"));
