@@ -32,7 +32,7 @@ const PLAIN: [&str; 14] = [
 ];
 
 /// Axes and columns that have no unit, but for those of the measurements, which are named by their columns.
-const PLAIN_AXES: [&str; 26] = [
+const PLAIN_AXES: [&str; 24] = [
     "real part",
     "imaginary part",
     "output y",
@@ -47,8 +47,6 @@ const PLAIN_AXES: [&str; 26] = [
     "plant gain, times",
     "time constants, times",
     "relay phase",
-    "rms",
-    "mean",
     "output",
     "input",
     "input u",

@@ -173,7 +173,7 @@ fn picture_ui(
             };
             place(&f.axis, low)..=place(&f.axis, f.to)
         });
-    let mut chart = small(id, axis_label(profile), "rms");
+    let mut chart = small(id, axis_label(profile), "rms [× noise]");
     if profile.axis == FREQUENCY {
         chart = chart.decades();
     }

@@ -14,7 +14,7 @@ use crate::theme;
 
 /// Height of a plot over time, and width of its labels, points.
 const HEIGHT: f32 = 170.0;
-const AXIS_WIDTH: f32 = 78.0;
+const AXIS_WIDTH: f32 = 90.0;
 
 /// Likeness from which a fingerprint is the same at a glance, and from which it resembles.
 const SAME: f64 = 0.9;
@@ -138,7 +138,7 @@ fn profile_ui(report: &StepReport, profile: &Profile, ui: &mut egui::Ui) {
     let mut all = report.atlas.iter();
     let left = all.find(|p| p.output == profile.output && p.axis == profile.axis);
     let id = format!("print {} {}", profile.output, profile.axis);
-    small(id, axis_label(profile), "mean").show(ui, |plot| {
+    small(id, axis_label(profile), "mean [× noise]").show(ui, |plot| {
         if let Some(left) = left {
             let line = Line::new(tr("what is left"), points(left, |b| b.mean));
             plot.line(line.color(theme::RESIDUAL).width(2.0));
