@@ -23,8 +23,14 @@ const LABELS: [f32; 2] = [40.0, 24.0];
 const READ_X: i32 = 6;
 const READ_Y: i32 = 5;
 
-/// The labels of an axis that ends below this have an exponent, so that they need no more room.
+/// The labels of an axis that ends below this have a smaller unit, or an exponent, so that they need no more room.
 const LEAST_PLAIN: f64 = 1e-3;
+
+/// Units that take a prefix, and the prefixes by their powers of ten.
+const PREFIXED: [&str; 10] = [
+    "rad", "rad/s", "rad/s²", "m", "m/s", "m/s²", "s", "N", "N m", "V",
+];
+const PREFIXES: [(i32, &str); 3] = [(-6, "µ"), (-9, "n"), (-12, "p")];
 
 pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
@@ -107,7 +113,10 @@ impl<'a> Chart<'a> {
         let salt = IdSalt::new(&name);
         let axes = [x.into(), y.into()];
         let axis = |hints: AxisHints<'static>, i: usize| {
-            hints.label_spacing(shown_from(LABELS[i])).formatter(label)
+            let unit = unit_of(&axes[i]).to_owned();
+            hints
+                .label_spacing(shown_from(LABELS[i]))
+                .formatter(move |mark, range| label(mark, range, &unit))
         };
         let [x, y] = [0, 1].map(|i| tr(&axes[i]));
         let plot = Plot::new(salt)
@@ -304,7 +313,7 @@ fn shown_from(points: f32) -> egui::Rangef {
 }
 
 /// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
-fn label(mark: GridMark, range: &RangeInclusive<f64>) -> String {
+fn label(mark: GridMark, range: &RangeInclusive<f64>, unit: &str) -> String {
     let step = mark.step_size.abs();
     let first = step.log10().floor();
     let lead = step / 10_f64.powf(first);
@@ -322,12 +331,25 @@ fn label(mark: GridMark, range: &RangeInclusive<f64>) -> String {
     // Of the range: all labels of an axis have the same.
     let largest = range.start().abs().max(range.end().abs());
     if largest < LEAST_PLAIN {
-        let exponent = 3.0 * (largest.max(step).log10() / 3.0).floor();
-        let decimals = (more - first + exponent).max(0.0) as usize;
-        let value = value / 10_f64.powf(exponent);
-        return tr_number(format!("{value:.decimals$}e{exponent}"));
+        let exponent = 3 * (largest.max(step).log10() / 3.0).floor() as i32;
+        let decimals = (more - first + f64::from(exponent)).max(0.0) as usize;
+        let value = value / 10_f64.powi(exponent);
+        let prefix = PREFIXES.iter().find(|(power, _)| *power == exponent);
+        return match prefix.filter(|_| PREFIXED.contains(&unit)) {
+            Some((_, prefix)) => {
+                let number = tr_number(format!("{value:.decimals$}"));
+                format!("{number} {prefix}{unit}")
+            }
+            None => tr_number(format!("{value:.decimals$}e{exponent}")),
+        };
     }
     tr_number(format!("{value:.decimals$}"))
+}
+
+/// The unit in the name of an axis, if it has one.
+fn unit_of(axis: &str) -> &str {
+    let inner = axis.strip_suffix(']').and_then(|a| a.rsplit_once('['));
+    inner.map_or("", |(_, unit)| unit)
 }
 
 /// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
@@ -440,7 +462,7 @@ mod tests {
     fn labels(range: RangeInclusive<f64>, marks: &[(f64, f64)]) -> Vec<String> {
         let mark = |&(value, step_size)| GridMark { value, step_size };
         let marks = marks.iter().map(mark);
-        marks.map(|mark| label(mark, &range)).collect()
+        marks.map(|mark| label(mark, &range, "")).collect()
     }
 
     #[test]
@@ -454,5 +476,19 @@ mod tests {
             ["5.3742", "5.37425"]
         );
         assert_eq!(labels(0.0..=3000.0, &[(2500.0, 500.0)]), ["2500"]);
+    }
+
+    #[test]
+    fn a_small_value_has_a_smaller_unit_where_there_is_one() {
+        let small = |unit: &str| {
+            let mark = GridMark {
+                value: 0.0005,
+                step_size: 0.0005,
+            };
+            label(mark, &(0.0..=0.0009), unit)
+        };
+        assert_eq!(small(unit_of("x1 - model [rad]")), "500 µrad");
+        assert_eq!(small(unit_of("inertia [kg m²]")), "500e-6");
+        assert_eq!(small(unit_of("output")), "500e-6");
     }
 }
