@@ -49,4 +49,4 @@ pub use report::{
 };
 pub use residual_test::{ResidualTest, ResidualTestKind};
 pub use step::StepJob;
-pub use verdict::with_error;
+pub use verdict::{with_error, written_like};

@@ -228,27 +228,49 @@ fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
 
 /// Value and uncertainty with two digits of uncertainty, such as `0.0406 ± 0.0012 N m`.
 pub fn with_error(value: f64, error: f64, unit: &str) -> String {
-    let unit = if unit == "1" {
-        String::new()
-    } else {
-        format!(" {}", shown_unit(unit))
-    };
+    let unit = unit_behind(unit);
+    match notation(value, error) {
+        None => format!("{value:.4e}{unit}"),
+        Some((digits, 0)) => format!("{value:.digits$} ± {error:.digits$}{unit}"),
+        Some((digits, power)) => {
+            let scale = 10_f64.powi(power);
+            format!(
+                "({:.digits$} ± {:.digits$})e{power}{unit}",
+                value / scale,
+                error / scale
+            )
+        }
+    }
+}
+
+/// A value with the digits and in the notation in which [`with_error`] writes another value and its error.
+pub fn written_like(value: f64, (other, error): (f64, f64), unit: &str) -> String {
+    let unit = unit_behind(unit);
+    match notation(other, error) {
+        None => format!("{value:.4e}{unit}"),
+        Some((digits, 0)) => format!("{value:.digits$}{unit}"),
+        Some((digits, power)) => format!("{:.digits$}e{power}{unit}", value / 10_f64.powi(power)),
+    }
+}
+
+/// Decimals, and the power of ten that is written behind them, so that two digits of the uncertainty are seen;
+/// nothing where there is none.
+fn notation(value: f64, error: f64) -> Option<(usize, i32)> {
     if !error.is_finite() || error <= 0.0 {
-        return format!("{value:.4e}{unit}");
+        return None;
     }
     let place = libm::log10(error.abs()).floor() as i32 - 1;
     let size = libm::log10(value.abs().max(error)).floor() as i32;
-    if !(-4..=5).contains(&size) {
-        let digits = (size - place).clamp(0, 12) as usize;
-        let scale = 10_f64.powi(size);
-        return format!(
-            "({:.digits$} ± {:.digits$})e{size}{unit}",
-            value / scale,
-            error / scale
-        );
+    let power = if (-4..=5).contains(&size) { 0 } else { size };
+    Some(((power - place).clamp(0, 12) as usize, power))
+}
+
+fn unit_behind(unit: &str) -> String {
+    if unit == "1" {
+        String::new()
+    } else {
+        format!(" {}", shown_unit(unit))
     }
-    let digits = (-place).clamp(0, 12) as usize;
-    format!("{value:.digits$} ± {error:.digits$}{unit}")
 }
 
 fn in_registry_order(mut ids: Vec<EffectId>) -> Vec<EffectId> {
@@ -262,7 +284,7 @@ fn in_registry_order(mut ids: Vec<EffectId>) -> Vec<EffectId> {
 
 #[cfg(test)]
 mod tests {
-    use super::with_error;
+    use super::{with_error, written_like};
 
     #[test]
     fn digits_follow_the_uncertainty() {
@@ -273,5 +295,21 @@ mod tests {
         assert_eq!(with_error(29.87, 0.43, "s"), "29.87 ± 0.43 s");
         assert_eq!(with_error(1.28e-5, 2.1e-7, "rad"), "(1.280 ± 0.021)e-5 rad");
         assert_eq!(with_error(2.0, 0.1, "kg m^2"), "2.00 ± 0.10 kg m²");
+    }
+
+    #[test]
+    fn a_value_beside_another_is_written_like_it() {
+        let found = (9.100_61e-4, 7.7e-8);
+        assert_eq!(
+            with_error(found.0, found.1, "kg m^2"),
+            "0.000910061 ± 0.000000077 kg m²"
+        );
+        assert_eq!(written_like(9.098e-4, found, "kg m^2"), "0.000909800 kg m²");
+        assert_eq!(
+            written_like(1.3e-5, (1.28e-5, 2.1e-7), "rad"),
+            "1.300e-5 rad"
+        );
+        assert_eq!(written_like(3.0, (29.87, 0.43), "1"), "3.00");
+        assert_eq!(written_like(3.0, (2.0, f64::NAN), "1"), "3.0000e0");
     }
 }

@@ -1,8 +1,8 @@
 //! The sealed truth of a mystery, and the model on screen beside it.
 
 use egui::RichText;
-use hysteron_core::criticism::with_error;
-use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of, shown_unit};
+use hysteron_core::criticism::{with_error, written_like};
+use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 
 use super::{Command, Compare};
@@ -44,6 +44,11 @@ impl Sealed {
             "message": self.message,
             "points": self.revealed.as_ref().map(|(_, r)| r.points()),
         })
+    }
+
+    /// Whether the truth has been seen.
+    pub fn is_revealed(&self) -> bool {
+        self.revealed.is_some()
     }
 
     pub fn is_busy(&self) -> bool {
@@ -219,35 +224,31 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
 /// Name, truth, value of the model, error and marks of a number.
 fn cells(number: &Compared) -> [String; 5] {
     let owner = number.effect.map_or("simplest model", name_of);
-    let found = number.found.map_or_else(
-        || "not in your model".to_owned(),
-        |(value, error)| with_error(value, error, &number.unit),
-    );
+    // The truth is written as what was found, so that their digits can be compared.
+    let (truth, found) = match number.found {
+        Some((value, error)) => (
+            written_like(number.truth, (value, error), &number.unit),
+            with_error(value, error, &number.unit),
+        ),
+        None => (
+            written_like(number.truth, four_digits(number.truth), &number.unit),
+            "not in your model".to_owned(),
+        ),
+    };
     // 0.0 rather than -0.0.
     let percent = number.error().map(|e| (1000.0 * e).round() / 10.0 + 0.0);
     [
         format!("{} ({owner})", number.symbol),
-        with_unit(number.truth, &number.unit),
+        truth,
         found,
         percent.map_or_else(String::new, |p| format!("{p:+.1} %")),
         format!("{:.0} %", 100.0 * number.mark),
     ]
 }
 
-/// A true value, four digits.
-fn with_unit(value: f64, unit: &str) -> String {
-    let size = value.abs();
-    let text = if (1e-2..1e4).contains(&size) {
-        let decimals = (3.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.3e}")
-    };
-    if unit.is_empty() || unit == "1" {
-        text
-    } else {
-        format!("{text} {}", shown_unit(unit))
-    }
+/// A value with an error for which four digits of it are written.
+fn four_digits(value: f64) -> (f64, f64) {
+    (value, 1e-2 * 10_f64.powf(value.abs().log10().floor()))
 }
 
 fn rule_ui(reveal: &Reveal, ui: &mut egui::Ui) {
