@@ -293,14 +293,27 @@ fn span_after(from: f64, to: f64, what: &str) -> String {
     }
 }
 
-/// A duration in a unit that suits it.
+/// A duration in a unit that suits it, also when it is rounded: 1.0 ms, not 1000 µs.
 pub(super) fn seconds(t: f64) -> String {
     let size = t.abs();
-    if size == 0.0 || size >= 1.0 {
+    if size == 0.0 || size >= 0.999_95 {
         format!("{t:.2} s")
-    } else if size >= 1e-3 {
+    } else if size >= 0.999_5e-3 {
         format!("{:.1} ms", 1e3 * t)
     } else {
         format!("{:.0} µs", 1e6 * t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seconds;
+
+    #[test]
+    fn a_rounded_duration_has_the_unit_that_suits_it() {
+        assert_eq!(seconds(0.000_999_96), "1.0 ms");
+        assert_eq!(seconds(0.000_72), "720 µs");
+        assert_eq!(seconds(0.999_96), "1.00 s");
+        assert_eq!(seconds(0.72), "720.0 ms");
     }
 }
