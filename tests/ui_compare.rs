@@ -4,7 +4,7 @@
 mod ui;
 
 use egui_kittest::kittest::Queryable as _;
-use ui::{App, NARROW, WIDE, app, click, finish, picture, state};
+use ui::{App, NARROW, WIDE, app, click, finish, picture, show, state, texts};
 
 /// Compare with a measurement of the tests, after the first fit.
 fn opened(file: &str, size: [f32; 2]) -> App {
@@ -12,7 +12,8 @@ fn opened(file: &str, size: [f32; 2]) -> App {
     let path = format!("{}/../tests/data/{file}.csv", env!("CARGO_MANIFEST_DIR"));
     let bytes = std::fs::read(path).expect("a file of the tests");
     let ctx = harness.ctx.clone();
-    harness.state_mut().open(&ctx, file, &bytes);
+    let name = file.rsplit('/').next().unwrap_or_default();
+    harness.state_mut().open(&ctx, name, &bytes);
     finish(&mut harness);
     harness
 }
@@ -70,6 +71,8 @@ fn the_way_goes_back_and_forth_and_shows_the_step_before() {
     let error = |harness: &App| state(harness)["error"].as_f64().expect("an error");
     let before = error(&harness);
     click(&mut harness, "Where it fails");
+    let axes = texts(&harness);
+    assert!(axes.iter().any(|t| t == "rms [× noise]"), "{axes:#?}");
     picture(&mut harness, "compare_places");
     click(&mut harness, "Fingerprints");
     assert_eq!(
@@ -92,6 +95,52 @@ fn the_way_goes_back_and_forth_and_shows_the_step_before() {
     assert_eq!(error(&harness), before);
     click(&mut harness, "+ Coulomb friction");
     assert_eq!(error(&harness), after);
+}
+
+#[test]
+fn a_link_brings_the_whole_way_and_not_its_end_alone() {
+    let way = |harness: &App| -> Vec<String> {
+        let texts = texts(harness);
+        let rows = ["Baseline", "+ Coulomb friction", "+ Quadratic drag"];
+        // Beside the name of a step stands its error.
+        let known = texts.windows(2).filter(|w| rows.contains(&&*w[0]));
+        known.flatten().cloned().collect()
+    };
+    let mut here = opened("drive-02", WIDE);
+    press(&mut here, "Add Coulomb friction");
+    let shown = way(&here);
+    assert_eq!(shown.len(), 4, "{shown:?}");
+    let link = state(&here)["link"].as_str().expect("a link").to_owned();
+    let mut there = app("explore", WIDE);
+    show(&mut there, &link);
+    assert_eq!(way(&there), shown);
+    // While it is not known, the way is there: back at once, and on to the end.
+    let two = "v1;compare;compare.effects=%5B%22coulomb_friction%22%2C%22quadratic_drag%22%5D;compare.file=drive-02";
+    show(&mut there, "v1;compare");
+    show(&mut there, two);
+    assert_eq!(way(&there).len(), 6);
+    click(&mut there, "Baseline");
+    assert_eq!(state(&there)["steps"][1], state(&here)["error"]);
+    click(&mut there, "+ Coulomb friction");
+    assert_eq!(state(&there)["error"], state(&here)["error"]);
+}
+
+#[test]
+fn the_finding_that_is_shaded_lies_in_the_plots() {
+    let mut harness = opened("../../assets/measurements/drive-03", WIDE);
+    let marked = |harness: &App, share: &str| {
+        let said = texts(harness);
+        let words = format!("{share} % of the error");
+        assert!(said.contains(&words), "{said:#?}");
+    };
+    // Seconds after the first periods.
+    harness.get_by_label_contains("48 % of the squared position error lies within 15.2 ms");
+    marked(&harness, "48");
+    let other = "41 % of the squared velocity error lies between 1.80 s and 3.00 s";
+    harness.get_by_label_contains(other).click();
+    finish(&mut harness);
+    marked(&harness, "41");
+    picture(&mut harness, "compare_finding");
 }
 
 #[test]

@@ -21,6 +21,14 @@ const MAX_POINTS: usize = 10_000;
 const FIRST_PASSES: usize = 28;
 const LEAST_VIEW: f64 = 0.01;
 
+/// Widest view of a finding, in first views; and the share of one that is shown before a finding behind it.
+const WIDEST: f64 = 4.0;
+const LEAD: f64 = 0.25;
+
+/// Height of the words over a finding, and of what is below a plot, points.
+const WORDS: f32 = 20.0;
+const BELOW: f32 = 40.0;
+
 /// Room above and below what is in view, as a share of it.
 const ROOM: f64 = 0.08;
 
@@ -31,7 +39,7 @@ const GROUND: f32 = 0.75;
 const CAPTION: f32 = 26.0;
 
 /// Width of the labels of y, so that the plots line up.
-const AXIS_WIDTH: f32 = 78.0;
+const AXIS_WIDTH: f32 = 90.0;
 
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 110.0;
@@ -71,9 +79,15 @@ fn curves(page: &Compare, modelled: bool) -> Vec<Key<'static>> {
 }
 
 /// A plot over time that moves together with the others; what is in view fills its height.
-fn plot<'a>(measurement: &Measurement, id: String, y_label: String, height: f32) -> Chart<'a> {
+fn plot<'a>(
+    measurement: &Measurement,
+    finding: Option<&Finding>,
+    id: String,
+    y_label: String,
+    height: f32,
+) -> Chart<'a> {
     let group = egui::Id::unique(("compare", &measurement.name));
-    let (start, end) = first_view(measurement);
+    let (start, end) = view_of(measurement, finding);
     let axes = ["time [s]".to_owned(), y_label];
     let chart = Chart::new(id, axes, height, AXIS_WIDTH).zoomed_as("time");
     chart.with(|plot| {
@@ -100,14 +114,39 @@ fn first_view(measurement: &Measurement) -> (f64, f64) {
     (start, last.unwrap_or(end).max(least))
 }
 
-/// Fills the height with the values in view, and these others.
-fn fit(plot: &mut Pen<'_, '_>, time: &[f64], curves: &[&[f64]], others: &[f64]) {
+/// Begin and end of what is shown until someone zooms, s: also where the finding lies, or the first part of it.
+fn view_of(measurement: &Measurement, finding: Option<&Finding>) -> (f64, f64) {
+    let view = first_view(measurement);
+    match finding.and_then(|f| f.spans.first()) {
+        Some(span) => with_span(view, *span, measurement.time[measurement.len() - 1]),
+        None => view,
+    }
+}
+
+/// A view that also shows this span of a record until `last`, but is not so wide that its curves become a band.
+fn with_span(view: (f64, f64), span: (f64, f64), last: f64) -> (f64, f64) {
+    if span.1 <= view.1 {
+        return view;
+    }
+    let width = view.1 - view.0;
+    let begin = if span.0 < view.1 {
+        view.0
+    } else {
+        span.0 - LEAD * width
+    };
+    let end = (span.1 + ROOM * width).clamp(begin + width, begin + WIDEST * width);
+    (begin, end.min(last))
+}
+
+/// Fills the height with the values in view, and these others; a share of it above them is left for words.
+fn fit(plot: &mut Pen<'_, '_>, time: &[f64], curves: &[&[f64]], others: &[f64], words: f64) {
     let view = in_view(&plot.plot_bounds(), time);
     let values = curves.iter().filter_map(|c| c.get(view.clone()));
     let (low, high) = extremes(values.flatten().chain(others).copied());
     if low <= high {
         let room = ROOM * (high - low).max(f64::MIN_POSITIVE);
-        plot.set_plot_bounds_y(low - room..=high + room);
+        let above = words / (1.0 - words) * (high + room - low);
+        plot.set_plot_bounds_y(low - room..=high + room.max(above));
     }
 }
 
@@ -130,14 +169,24 @@ fn signal_plot(
     let label = unit_label(&output.name, &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
+    let alone = measurement.outputs.len() == 1;
+    let marked = finding.filter(|f| alone || is_about(f, output));
+    let words = marked.map_or(0.0, |_| f64::from(WORDS / (height - BELOW)));
     let shown = plot(
         measurement,
+        finding,
         format!("signal {}", output.name),
         label,
         height,
     )
     .show(ui, |plot| {
-        fit(plot, &measurement.time, &[&output.values, model], &[]);
+        fit(
+            plot,
+            &measurement.time,
+            &[&output.values, model],
+            &[],
+            words,
+        );
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
         let measured = points(&measurement.time, &output.values, &drawn);
@@ -154,12 +203,7 @@ fn signal_plot(
                     .style(LineStyle::dashed_loose()),
             );
         }
-        let alone = measurement.outputs.len() == 1;
-        mark(
-            plot,
-            finding.filter(|f| alone || is_about(f, output)),
-            ground,
-        );
+        mark(plot, marked, ground);
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
@@ -182,13 +226,14 @@ fn residual_plot(
     let earlier = before.map_or_else(Vec::new, less);
     let shown = plot(
         measurement,
+        finding,
         format!("residual {}", output.name),
         label,
         height,
     )
     .show(ui, |plot| {
         let noise = [2.0, -2.0].map(|side| side * modelled.noise);
-        fit(plot, &measurement.time, &[&residual, &earlier], &noise);
+        fit(plot, &measurement.time, &[&residual, &earlier], &noise, 0.0);
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
         if before.is_some() {
@@ -248,10 +293,17 @@ fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>, ground: egu
     let seen = |s: &&(f64, f64)| s.1 >= low[0] && s.0 <= high[0];
     if let Some(span) = finding.spans.iter().find(seen) {
         let text = format!("{:.0} % of the error", 100.0 * finding.share_of_error);
-        let at = PlotPoint::new(span.0.max(low[0]), high[1]);
+        // Words that begin in the right half might not end before the plot does.
+        let from = span.0.max(low[0]);
+        let (x, anchor) = if from < f64::midpoint(low[0], high[0]) {
+            (from, egui::Align2::LEFT_TOP)
+        } else {
+            (span.1.min(high[0]), egui::Align2::RIGHT_TOP)
+        };
+        let at = PlotPoint::new(x, high[1]);
         let words = egui::RichText::new(tr(text));
         let words = words.strong().background_color(ground);
-        plot.text(Text::new("", at, words).anchor(egui::Align2::LEFT_TOP));
+        plot.text(Text::new("", at, words).anchor(anchor));
     }
 }
 
@@ -285,5 +337,25 @@ fn draw_more(ui: &egui::Ui, time: &[f64], shown: &PlotResponse<Range<usize>>) {
     let view = in_view(shown.transform.bounds(), time);
     if view.start < shown.inner.start || view.end > shown.inner.end {
         ui.ctx().request_repaint();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_span;
+
+    #[test]
+    fn a_finding_is_in_view() {
+        let first = (0.0, 0.73);
+        assert_eq!(with_span(first, (0.1, 0.4), 60.0), first);
+        let (begin, end) = with_span(first, (0.72, 1.6), 60.0);
+        assert!(begin == 0.0 && end > 1.6 && end < 1.7, "{end}");
+        let (begin, end) = with_span(first, (50.0, 50.1), 60.0);
+        assert!(begin > 49.0 && begin < 50.0 && end > 50.1, "{begin} {end}");
+        assert!((end - begin - 0.73).abs() < 1e-9);
+        let (begin, end) = with_span(first, (0.1, 60.0), 60.0);
+        assert!(begin == 0.0 && end < 3.0, "a solid band: {end}");
+        let (_, end) = with_span(first, (1.0, 2.0), 2.0);
+        assert_eq!(end, 2.0);
     }
 }
