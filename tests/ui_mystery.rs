@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable as _;
 use hysteron_core::effect::EffectId;
 use hysteron_core::mystery::{Choice, Experiment, Mystery, Pick, Request, make};
 use serde_json::Value;
-use ui::{App, NARROW, WIDE, app, click, finish, picture, show, state, type_over};
+use ui::{App, NARROW, WIDE, app, click, finish, picture, show, state, texts, type_over};
 
 const WORD: &str = "blue whale";
 
@@ -103,6 +103,25 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
         .as_f64()
         .expect("points");
     assert!(points > 95.0, "{points}");
+    // The truth is written as what was found: the same decimals.
+    let said = texts(&student);
+    let at = said.iter().position(|t| t.starts_with("J1 ("));
+    let row = &said[at.expect("a row of the inertia")..];
+    let decimals = |text: &str| {
+        let number = text.split(' ').next().unwrap_or_default();
+        number.split_once('.').map(|(_, d)| d.len())
+    };
+    assert!(row[2].contains('±'), "{row:#?}");
+    assert_eq!(decimals(&row[1]), decimals(&row[2]), "{row:#?}");
+    // On from there, and not back to the seal.
+    let next = "Nothing more is missing: see beside it what the step before left.";
+    assert_eq!(state(&student)["hint"], next);
+    click(&mut student, "Try it");
+    let texts = texts(&student);
+    assert!(texts.iter().any(|t| t == "the step before"), "{texts:#?}");
+    let state = state(&student);
+    let hint = state["hint"].as_str().expect("a hint");
+    assert!(hint.contains("A drive that answers late"), "{hint}");
 }
 
 fn harness_refuses_without_a_word(teacher: &mut App) {

@@ -54,15 +54,34 @@ impl Compare {
         if !verdict.complete {
             return self.where_it_fails();
         }
-        if self.sealed.is_some() && self.look != Look::Reveal {
+        if self.sealed.as_ref().is_some_and(|s| !s.is_revealed()) {
+            if self.look == Look::Reveal {
+                return Hint::say("The model is complete: type the word and reveal the truth.");
+            }
             let sentence = "The model is complete: now see what was hidden.";
             return set(sentence, "look", serde_json::json!(Look::Reveal));
         }
         if report.step.effects.is_empty() || self.effects_before().is_none() || self.before {
             return self.another();
         }
-        let sentence = "Nothing more is missing: see beside it what the step before left.";
-        set(sentence, "before", true.into())
+        self.beside()
+    }
+
+    /// The step before beside this one, in plots that can show both.
+    fn beside(&self) -> Hint {
+        let look = match self.look {
+            Look::Places => Look::Places,
+            _ => Look::Time,
+        };
+        let set = |field, value| Command::Set("compare", field, value);
+        Hint {
+            sentence: "Nothing more is missing: see beside it what the step before left."
+                .to_owned(),
+            commands: vec![
+                set("look", serde_json::json!(look)),
+                set("before", true.into()),
+            ],
+        }
     }
 
     /// Where structure is left that no effect explains.
