@@ -137,10 +137,7 @@ fn more_hysteresis_less_ultimate_gain() {
     let mut harness = open("ultimate");
     let said = |h: &App| {
         let text = state(h)["answer"].as_str().expect("an answer").to_owned();
-        let number = text
-            .split("Ku = ")
-            .nth(1)
-            .and_then(|t| t.split(' ').next());
+        let number = text.split("Ku = ").nth(1).and_then(|t| t.split(' ').next());
         number.and_then(|n| n.parse::<f64>().ok()).expect("Ku")
     };
     assert!((said(&harness) - 7.81).abs() < 0.01, "{}", said(&harness));
