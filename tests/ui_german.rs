@@ -329,3 +329,25 @@ fn a_locale_names_a_language() {
         assert_eq!(Language::of_locale(locale), language, "{locale}");
     }
 }
+
+#[test]
+fn the_reader_is_addressed_alike_and_a_thing_has_one_word() {
+    let assets = format!("{}/../assets", env!("CARGO_MANIFEST_DIR"));
+    let folders = [
+        format!("{assets}/german"),
+        format!("{assets}/lessons/german"),
+    ];
+    let files = folders
+        .iter()
+        .flat_map(|f| std::fs::read_dir(f).expect("a folder"));
+    for file in files.flatten() {
+        let text = std::fs::read_to_string(file.path()).expect("a text");
+        let words: Vec<&str> = text.split_whitespace().collect();
+        for pair in words.windows(2) {
+            let polite = pair[0].ends_with("en") && pair[1] == "Sie";
+            assert!(!polite, "{}: {pair:?}", file.path().display());
+            let other = pair[0].starts_with("Spiel");
+            assert!(!other, "backlash is Lose: {pair:?}");
+        }
+    }
+}
