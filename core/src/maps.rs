@@ -270,10 +270,8 @@ impl Outcome {
         let near = describing.map(|c| c.period).or(guess).map(|t| 0.5 * t);
         let near = near.and_then(|half| exact_symmetric(&space, relay, lag, half));
         let exact = near.or_else(|| {
-            let likely = likely_half_periods(plant, relay).into_iter();
-            likely
-                .filter_map(|half| exact_symmetric(&space, relay, lag, half))
-                .next()
+            let mut likely = likely_half_periods(plant, relay).into_iter();
+            likely.find_map(|half| exact_symmetric(&space, relay, lag, half))
         });
         Self {
             gain: input.relay.gain,
