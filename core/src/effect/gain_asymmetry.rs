@@ -40,8 +40,8 @@ impl Effect for GainAsymmetry {
         }]
     }
 
-    fn starts(&self, _probe: &Probe) -> Vec<Vec<f64>> {
-        vec![vec![0.0]]
+    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        vec![vec![probe.asymmetry().unwrap_or(0.0)]]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

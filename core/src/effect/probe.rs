@@ -51,6 +51,9 @@ const STILL: f64 = 0.01;
 /// Smallest friction level to start from, as a share of the typical force.
 const LEAST_FRICTION: f64 = 0.01;
 
+/// Largest asymmetry of the input to start from.
+const LARGEST_ASYMMETRY: f64 = 0.5;
+
 /// A search for starting values whose best one leaves more than this share of the unexplained force has found nothing: a
 /// fit from there would not lower the error by the three per cent that count.
 const FOUND: f64 = 0.99;
@@ -464,6 +467,21 @@ impl Probe {
         };
         let found = solved.map(|(c, _)| c[2] / (self.inverse_inertia + c[0]));
         found.filter(|f| f.is_finite()).unwrap_or(0.0)
+    }
+
+    /// By which share the input acts more strongly one way than the unexplained force says, beside friction, a constant
+    /// force and another body; `None` where that cannot be told, as under an input of one size.
+    pub fn asymmetry(&self) -> Option<f64> {
+        let sign = self.signature(|_, v| v.signum());
+        let size: Box<dyn Fn(usize) -> f64 + '_> =
+            Box::new(|k| self.acting.get(k).map_or(0.0, |u| u.abs()));
+        let friction: Box<dyn Fn(usize) -> f64 + '_> = Box::new(|k| 0.5 * (sign[k] + sign[k + 1]));
+        let (c, _) = match self.kind {
+            Kind::Drive => self.solve(&[size, friction], 1),
+            Kind::Process => self.solve(&[size], 1),
+        }?;
+        let share = c[BASE] / (self.inverse_inertia + c[0]);
+        (share.abs() < LARGEST_ASYMMETRY).then_some(share)
     }
 
     /// Largest commanded input.
