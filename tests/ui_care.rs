@@ -483,7 +483,7 @@ fn a_link_that_cannot_be_is_refused_in_the_words_of_the_interface() {
             "v1;explore;loop.relay.gain=much",
             "Dieser Link hat einen falschen Wert: loop.relay.gain=much.",
         ),
-        ("v1;backlash;backlash.run.drive.half_gap=-1", "halbes Spiel"),
+        ("v1;backlash;backlash.run.drive.half_gap=-1", "halbe Lose"),
         (
             "v1;maps;maps.quantity=mine",
             "Diese Einstellungen sind nicht lesbar.",
