@@ -78,12 +78,18 @@ fn there_are_eight_lessons_of_five_to_ten_minutes_whose_buttons_work() {
 fn the_relay_and_its_hysteresis() {
     let mut harness = open("relay");
     assert_eq!(state(&harness)["page"], "explore");
-    follow(&mut harness, "Hysteresis 0.5");
-    let period = shown(&harness, "exact.period");
-    assert!(
-        (period / (2.0 * 3.0_f64.ln()) - 1.0).abs() < 1e-9,
-        "{period}"
-    );
+    for (button, eps) in [
+        ("An almost ideal relay", 0.05_f64),
+        ("Hysteresis 0.2", 0.2),
+        ("Hysteresis 0.5", 0.5),
+    ] {
+        follow(&mut harness, button);
+        let formula = 2.0 * ((1.0 + eps) / (1.0 - eps)).ln();
+        for way in ["exact.period", "simulated.period"] {
+            let period = shown(&harness, way);
+            assert!((period / formula - 1.0).abs() < 1e-9, "{button}: {period}");
+        }
+    }
     let still = format!(
         "{};explore.paused=3",
         state(&harness)["link"].as_str().expect("a link")
