@@ -63,7 +63,7 @@ type Point = (Vec<f64>, Vec<Start>);
 pub(super) struct Search {
     structure: Structure,
     pending: VecDeque<Point>,
-    /// Points with what a first iteration on the scout brings them to.
+    /// Points with what a first iteration on the scout brings them to: the best so far, since each holds a motion.
     tried: Vec<(Fit, Point)>,
     /// The best of these, worst first; without that iteration where they are few.
     shortlist: Vec<(Option<Fit>, Point)>,
@@ -323,10 +323,11 @@ impl Search {
             let mut fit = self.begun(&point, scout, scales);
             fit.iterate(scout, scales);
             self.tried.push((fit, point));
+            self.tried.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
+            self.tried.truncate(SHORTLIST);
             if self.pending.is_empty() {
-                self.tried.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
                 let near = self.tried.partition_point(|(f, _)| f.cost <= self.reach);
-                self.tried.truncate(near.clamp(1, SHORTLIST));
+                self.tried.truncate(near.max(1));
                 let tried = self.tried.drain(..).rev();
                 self.shortlist = tried.map(|(fit, point)| (Some(fit), point)).collect();
             }
