@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::explore::{ExploreError, ExploreInput};
 use crate::limit_cycle::{
-    Cycle, describing_function, exact_symmetric, likely_half_periods, typical_frequency,
+    Cycle, describing_function, dominant, exact_symmetric, likely_half_periods, typical_frequency,
 };
 
 /// Most cells along one side.
@@ -260,11 +260,7 @@ impl Outcome {
     /// function predicts nothing.
     pub fn of(input: &ExploreInput, guess: Option<f64>) -> Self {
         let found = describing_function(&input.plant, &input.relay);
-        let describing = found
-            .iter()
-            .find(|i| i.cycle.stable == Some(true))
-            .or(found.first())
-            .map(|i| i.cycle);
+        let describing = dominant(&found).map(|i| i.cycle);
         let (plant, relay) = (&input.plant, &input.relay);
         let (space, lag) = (plant.state_space(), plant.dead_time + relay.delay);
         let near = describing.map(|c| c.period).or(guess).map(|t| 0.5 * t);
