@@ -459,29 +459,30 @@ impl Probe {
 
     /// Constant force that the unexplained force suggests, beside friction and another body.
     pub fn offset(&self) -> f64 {
-        let sign = self.signature(|_, v| v.signum());
-        let friction: Box<dyn Fn(usize) -> f64 + '_> = Box::new(|k| 0.5 * (sign[k] + sign[k + 1]));
-        let solved = match self.kind {
-            Kind::Drive => self.solve(&[friction], 1),
-            Kind::Process => self.solve(&[], 1),
-        };
-        let found = solved.map(|(c, _)| c[2] / (self.inverse_inertia + c[0]));
+        let found = self.beside_friction(Vec::new()).map(|forces| forces[2]);
         found.filter(|f| f.is_finite()).unwrap_or(0.0)
     }
 
     /// By which share the input acts more strongly one way than the unexplained force says, beside friction, a constant
     /// force and another body; `None` where that cannot be told, as under an input of one size.
     pub fn asymmetry(&self) -> Option<f64> {
-        let sign = self.signature(|_, v| v.signum());
-        let size: Box<dyn Fn(usize) -> f64 + '_> =
-            Box::new(|k| self.acting.get(k).map_or(0.0, |u| u.abs()));
-        let friction: Box<dyn Fn(usize) -> f64 + '_> = Box::new(|k| 0.5 * (sign[k] + sign[k + 1]));
-        let (c, _) = match self.kind {
-            Kind::Drive => self.solve(&[size, friction], 1),
-            Kind::Process => self.solve(&[size], 1),
-        }?;
-        let share = c[BASE] / (self.inverse_inertia + c[0]);
+        let size = |k: usize| self.acting.get(k).map_or(0.0, |u| u.abs());
+        let share = self.beside_friction(vec![Box::new(size)])?[BASE];
         (share.abs() < LARGEST_ASYMMETRY).then_some(share)
+    }
+
+    /// What the unexplained force has of the base forces and of these, beside dry friction of a drive and another body.
+    fn beside_friction<'a>(
+        &'a self,
+        mut forces: Vec<Box<dyn Fn(usize) -> f64 + 'a>>,
+    ) -> Option<DVector<f64>> {
+        if self.kind == Kind::Drive {
+            let sign = self.signature(|_, v| v.signum());
+            forces.push(Box::new(move |k| 0.5 * (sign[k] + sign[k + 1])));
+        }
+        let (c, _) = self.solve(&forces, 1)?;
+        let inverse_inertia = self.inverse_inertia + c[0];
+        Some(c / inverse_inertia)
     }
 
     /// Largest commanded input.
