@@ -15,9 +15,12 @@ use crate::export::Table;
 use crate::language::{tr, tr_number};
 use crate::theme;
 
-/// Points between labels of x and of y, from which on they show: there is room for them, and a faint one could not
-/// be read.
-const LABELS: [f32; 2] = [40.0, 24.0];
+/// Points between labels of x and of y: what they shall have, and what those of a low plot must have, which would
+/// have one label or none else.
+const LABELS: [[f32; 2]; 2] = [[40.0, 40.0], [24.0, 16.0]];
+
+/// Labels that an axis has at least where there is room: one alone shows no scale.
+const FEWEST_LABELS: f64 = 2.0;
 
 /// Significant digits of what is read at the pointer; a time needs more, since it grows.
 const READ_X: i32 = 6;
@@ -115,7 +118,7 @@ impl<'a> Chart<'a> {
         let axis = |hints: AxisHints<'static>, i: usize| {
             let unit = unit_of(&axes[i]).to_owned();
             hints
-                .label_spacing(shown_from(LABELS[i]))
+                .label_spacing(shown_from(LABELS[i][1]))
                 .formatter(move |mark, range| label(mark, range, &unit))
         };
         let [x, y] = [0, 1].map(|i| tr(&axes[i]));
@@ -147,7 +150,7 @@ impl<'a> Chart<'a> {
         let names = [0, 1].map(|i| tr(&self.axes[i]));
         let x = AxisHints::new_x()
             .label(names[0].clone())
-            .label_spacing(shown_from(LABELS[0]))
+            .label_spacing(shown_from(LABELS[0][1]))
             .formatter(|mark, _| power_label(mark.value));
         self.with(|plot| {
             plot.custom_x_axes(vec![x])
@@ -354,17 +357,34 @@ fn unit_of(axis: &str) -> &str {
 
 /// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
 /// a finer and a coarser set.
-fn grid(input: &GridInput, apart: f32) -> [f64; 3] {
+fn grid(input: &GridInput, [apart, least_apart]: [f32; 2]) -> [f64; 3] {
     let (low, high) = input.bounds;
     // The smallest step that egui_plot wants is 8 points wide; a label needs more.
-    let least = f64::from(apart) / 8.0 * input.base_step_size;
-    let wanted = ((high - low) / 7.0).max(least).max(f64::MIN_POSITIVE);
+    let point = input.base_step_size / 8.0;
+    let wanted = ((high - low) / 7.0).max(f64::from(apart) * point);
+    let step = round_step(wanted.max(f64::MIN_POSITIVE));
+    let labels = |step: f64| (high / step).ceil() - (low / step).ceil();
+    let closer = [0.5, 0.4, 0.2].map(|share| round_step(0.99 * share * step));
+    let step = [step]
+        .into_iter()
+        .chain(closer)
+        .find(|s| labels(*s) >= FEWEST_LABELS && *s >= f64::from(least_apart) * point)
+        .unwrap_or(step);
+    // A finer line that is far enough from the next would have a label too.
+    let half = 0.5 * step / point;
+    if half >= f64::from(least_apart) && half < f64::from(apart) {
+        return [step, 10.0 * step, 100.0 * step];
+    }
+    [0.5 * step, step, 10.0 * step]
+}
+
+/// The next 1, 2 or 5 times a power of ten from here on.
+pub fn round_step(wanted: f64) -> f64 {
     let decade = 10_f64.powf(wanted.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0]
+    [1.0, 2.0, 5.0, 10.0]
         .into_iter()
         .find(|s| s * decade >= wanted)
-        .map_or(wanted, |s| s * decade);
-    [0.5 * step, step, 10.0 * step]
+        .map_or(wanted, |s| s * decade)
 }
 
 /// A line at every power of ten, and fine ones between at 2 to 9 times it.
@@ -458,6 +478,25 @@ pub fn dot(name: &'static str, at: [f64; 2]) -> Points<'static> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Lines of an axis that is so many points high.
+    fn lines(bounds: (f64, f64), points: f64) -> [f64; 3] {
+        let base_step_size = 8.0 * (bounds.1 - bounds.0) / points;
+        grid(
+            &GridInput {
+                bounds,
+                base_step_size,
+            },
+            LABELS[1],
+        )
+    }
+
+    #[test]
+    fn a_low_plot_has_two_labels() {
+        assert_eq!(lines((-1.1, 1.1), 220.0), [0.25, 0.5, 5.0]);
+        assert_eq!(lines((-0.9, 0.9), 60.0), [0.25, 0.5, 5.0], "not 0 alone");
+        assert_eq!(lines((-1.1, 1.1), 24.0)[1], 5.0, "no room for two");
+    }
 
     fn labels(range: RangeInclusive<f64>, marks: &[(f64, f64)]) -> Vec<String> {
         let mark = |&(value, step_size)| GridMark { value, step_size };
