@@ -4,7 +4,8 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2}
 
 use super::plots::{CONTACT, LOAD};
 use super::scene::Scene;
-use crate::language::tr;
+use crate::language::{tr, tr_number};
+use crate::pages::chart::round_step;
 use crate::theme;
 
 /// Share of the width that the gap takes at least.
@@ -72,14 +73,13 @@ struct View {
     /// mrad in the middle, and points in a mrad.
     middle: f64,
     scale: f64,
-    /// The walls are drawn outside of the places that they stand at.
-    margin: f32,
 }
 
 impl View {
     fn new(rect: Rect, scene: &Scene, x2: f64) -> Self {
         let beta = scene.half_gap().unwrap_or(1.0);
         let [low, high] = scene.range;
+        // The walls are drawn outside of the places that they stand at.
         let margin = PEG + WALL + 8.0;
         let width = f64::from((rect.width() - 2.0 * margin).max(50.0));
         let span = (high - low) + 2.0 * beta;
@@ -94,7 +94,6 @@ impl View {
             rect,
             middle,
             scale,
-            margin,
         }
     }
 
@@ -104,18 +103,13 @@ impl View {
 
     /// A ruler beneath, so that motion can be seen where the view follows it.
     fn ruler(&self, painter: &Painter, ui: &Ui) {
-        let width = f64::from(self.rect.width() - 2.0 * self.margin + 2.0 * self.margin);
-        let wanted = 80.0 / self.scale;
-        let decade = 10_f64.powf(wanted.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0]
-            .into_iter()
-            .map(|s| s * decade)
-            .find(|s| *s >= wanted)
-            .unwrap_or(wanted);
+        let width = f64::from(self.rect.width());
+        let step = round_step(80.0 / self.scale);
         let first = ((self.middle - 0.5 * width / self.scale) / step).ceil();
         let color = ui.visuals().text_color();
         let y = self.rect.bottom() - 18.0;
         let decimals = (-step.log10().floor()).max(0.0) as usize;
+        let mut named = false;
         for k in 0..40 {
             let x = (first + f64::from(k)) * step;
             let at = self.at(x);
@@ -123,18 +117,18 @@ impl View {
                 break;
             }
             painter.line_segment([pos2(at, y), pos2(at, y + 5.0)], Stroke::new(1.0, color));
-            let label = if k == 0 {
-                format!("{x:.decimals$} mrad")
-            } else {
-                format!("{x:.decimals$}")
-            };
-            painter.text(
-                pos2(at, y + 5.0),
-                Align2::CENTER_TOP,
-                label,
+            let unit = if named { "" } else { " mrad" };
+            let label = painter.layout_no_wrap(
+                tr_number(format!("{x:.decimals$}")) + unit,
                 FontId::proportional(11.0),
                 color,
             );
+            let half = 0.5 * label.size().x;
+            // One at an end would be cut.
+            if at - half >= self.rect.left() && at + half <= self.rect.right() {
+                painter.galley(pos2(at - half, y + 5.0), label, color);
+                named = true;
+            }
         }
     }
 }

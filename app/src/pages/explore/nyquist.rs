@@ -1,6 +1,7 @@
 //! The Nyquist plot: plant, -1/N(a), where they meet; the line and the point S can be dragged.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, PlotTransform, Points, Text};
 use hysteron_core::explore::ExploreData;
@@ -60,19 +61,16 @@ impl Nyquist {
         let shown_margin = self.margin.then(|| margin(relay)).flatten();
         let plot = still("nyquist", "real part", "imaginary part", height)
             .fixed()
-            .with(|plot| {
-                plot.data_aspect(1.0)
-                    .default_x_bounds(-1.6 * view, view)
-                    .default_y_bounds(-1.1 * view, 0.5 * view)
-            });
+            .with(|plot| plot.data_aspect(1.0));
         let level = -PI * relay.hysteresis / (4.0 * relay.gain);
         let marker = amplitude.map(|a| {
             let a = a.max(relay.hysteresis);
             (a, relay.inverse_describing_function(a))
         });
         let shown = plot.show(ui, |plot| {
-            plot.set_plot_bounds_y(-1.1 * view..=0.5 * view);
-            plot.set_plot_bounds_x(-1.6 * view..=view);
+            let [x, y] = bounds(view, plot.transform().frame().aspect_ratio());
+            plot.set_plot_bounds_y(y);
+            plot.set_plot_bounds_x(x);
             plot.line(
                 Line::new(tr("plant P(jω)"), curve(&data.nyquist))
                     .color(theme::MEASURED)
@@ -194,6 +192,17 @@ fn unit_circle() -> PlotPoints<'static> {
 fn label(name: &'static str, text: String, at: [f64; 2]) -> Text {
     let text = egui::RichText::new(tr(text)).size(15.0).strong();
     Text::new(name, PlotPoint::new(at[0], at[1]), text)
+}
+
+/// What is seen of the plane in a plot of this ratio of width to height: all that matters, and as much more on both
+/// sides as there is room for.
+fn bounds(view: f64, aspect: f32) -> [RangeInclusive<f64>; 2] {
+    let aspect = f64::from(aspect).clamp(0.1, 10.0);
+    let ([left, right], [low, high]) = ([-1.6 * view, view], [-1.1 * view, 0.5 * view]);
+    let (width, height) = (right - left, high - low);
+    let beside = (0.5 * (height * aspect - width)).max(0.0);
+    let above = (0.5 * (width / aspect - height)).max(0.0);
+    [left - beside..=right + beside, low - above..=high + above]
 }
 
 /// As fine as the slider shows it.
