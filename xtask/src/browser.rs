@@ -66,6 +66,7 @@ pub fn test() -> Result<(), String> {
         return Err(format!("the error fell from {error} to {fallen} only"));
     }
     look(&session, &folder.join("added.png"))?;
+    let quiet = Busy::quiet(&session, &SWAY)?;
     share(&session, &page, &after)?;
     offline(&session, &page)?;
     export::journey(&session, &folder.join("exports"), &page)?;
@@ -74,7 +75,7 @@ pub fn test() -> Result<(), String> {
     phone::journey(&session, &folder, port)?;
     refused::journey(&folder.join("refused"), &page)?;
     speed::report(&session)?;
-    println!("{interactive}\n{}", busy.report());
+    println!("{interactive}\n{}\n  {quiet}", busy.report());
     session.quiet()
 }
 

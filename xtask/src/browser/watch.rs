@@ -17,6 +17,9 @@ const INTERACTIVE: f64 = 3000.0;
 /// Time in which the page answers while a diagnosis runs, as asked, ms.
 const ANSWER: f64 = 50.0;
 
+/// Times that the pointer sways while nothing runs.
+const QUIET: usize = 12;
+
 /// Has every page of the session watched.
 pub fn install(session: &Session) -> Result<(), String> {
     session.before_every_page(SCRIPT)
@@ -71,7 +74,7 @@ impl Longest {
     fn share(self) -> String {
         let Self { time, at } = self;
         let share = time / ANSWER;
-        format!("{time:.0} ms, {share:.2} of the {ANSWER} ms asked, {at:.0} ms after the click")
+        format!("{time:.0} ms, {share:.2} of the {ANSWER} ms asked, {at:.0} ms after the beginning")
     }
 }
 
@@ -94,11 +97,19 @@ impl Busy {
         session.script("window.hysteron_watch.begin()").map(|_| ())
     }
 
-    /// What was noted since then.
+    /// What was noted since then, while a diagnosis ran.
     ///
     /// # Errors
     /// Where no worker was started, or nothing was drawn.
     pub fn read(&mut self, session: &Session) -> Result<(), String> {
+        if self.note(session)? == 0 {
+            return Err("the diagnosis did not run in a worker".to_owned());
+        }
+        Ok(())
+    }
+
+    /// What was noted since then, and how many workers were started.
+    fn note(&mut self, session: &Session) -> Result<u64, String> {
         // Tasks are told a little later.
         std::thread::sleep(Duration::from_millis(200));
         let seen = session.script("return window.hysteron_watch.read()")?;
@@ -107,18 +118,32 @@ impl Busy {
             time: seen[key].as_f64().unwrap_or(0.0),
             at: seen[format!("{key}_at")].as_f64().unwrap_or(0.0),
         };
-        if count("workers") == 0 {
-            return Err("the diagnosis did not run in a worker".to_owned());
-        }
         if count("frames") == 0 {
-            return Err("nothing was drawn while the diagnosis ran".to_owned());
+            return Err("nothing was drawn".to_owned());
         }
         self.frames += count("frames");
         self.answers += count("answers");
         self.frame = self.frame.or(longest("frame"));
         self.task = self.task.or(longest("task"));
         self.answer = self.answer.or(longest("answer"));
-        Ok(())
+        Ok(count("workers"))
+    }
+
+    /// How long an answer takes while nothing runs: what of it is the renderer's.
+    ///
+    /// # Errors
+    /// Where nothing was drawn.
+    pub fn quiet(session: &Session, sway: &[(f64, f64)]) -> Result<String, String> {
+        Self::begin(session)?;
+        for _ in 0..QUIET {
+            session.hover(sway)?;
+        }
+        let mut quiet = Self::default();
+        quiet.note(session)?;
+        Ok(format!(
+            "with nothing running, that takes at most: {}",
+            quiet.answer.share()
+        ))
     }
 
     /// All of it, as shares of what is asked.
