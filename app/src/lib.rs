@@ -15,6 +15,7 @@ mod files;
 mod hook;
 mod jobs;
 pub mod language;
+mod layout;
 pub mod lessons;
 pub mod link;
 mod motion;

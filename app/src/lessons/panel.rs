@@ -7,12 +7,12 @@ use serde_json::Value;
 use super::{Lesson, after, find, markdown};
 use crate::hook::Targets;
 use crate::language::tr;
+use crate::layout;
 use crate::pages::Command;
 use crate::theme;
 
-/// Width of the panel, points, and that of the window below which it stands at the foot.
+/// Width of the panel, points.
 const WIDTH: f32 = 340.0;
-const NARROW: f32 = 700.0;
 
 /// The lesson that is studied, and how far someone has come.
 #[derive(Default)]
@@ -41,7 +41,7 @@ impl Study {
             self.typed = (lesson.id.to_owned(), String::new());
             (self.missed, self.folded) = (false, false);
         }
-        let narrow = ui.available_width() < NARROW;
+        let narrow = ui.available_width() < layout::NARROW;
         if narrow && self.folded {
             egui::Panel::bottom("lesson_folded")
                 .resizable(false)

@@ -2,11 +2,9 @@
 
 use super::{Command, Desk, View};
 use crate::language::tr;
+use crate::layout;
 use crate::lessons::{self, Lesson};
 use crate::theme;
-
-/// Width below which everything stands in one column, points.
-const NARROW: f32 = 700.0;
 
 /// The page.
 #[derive(Default)]
@@ -29,7 +27,7 @@ impl View for Lessons {
                 ui.label(tr("Each lesson stands beside the app: its buttons set the pages, and its question is checked."));
                 ui.add_space(8.0);
                 let all: Vec<_> = lessons::all().enumerate().collect();
-                if ui.available_width() < NARROW {
+                if ui.available_width() < layout::NARROW {
                     for (index, lesson) in &all {
                         lesson_ui(ui, desk, *index, lesson);
                     }

@@ -11,6 +11,7 @@ use super::{Command, Desk, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::language::tr;
+use crate::layout;
 use crate::theme;
 
 /// Simulated periods that are played in a second.
@@ -18,9 +19,6 @@ const PERIODS_PER_SECOND: f64 = 0.6;
 
 /// Tables of Explore that are about what is shown here too: all but Nyquist's curve.
 const SHOWN: usize = TABLES.len() - 1;
-
-/// Width below which everything stands in one column, points.
-const NARROW: f32 = 700.0;
 
 /// Height of all but the plots, points.
 const REST: f32 = 390.0;
@@ -176,7 +174,7 @@ impl Start {
         match self.finished.as_ref().map(|(_, data)| data) {
             Some(Ok(data)) => {
                 ui.strong(tr(&data.text));
-                if ui.available_width() < NARROW {
+                if ui.available_width() < layout::NARROW {
                     plots::time_ui(ui, relay, data, self.playback.clock, 200.0);
                 } else {
                     // The doors beneath stay in view.
@@ -194,7 +192,7 @@ impl Start {
             None => {}
         }
         // A slider does not break: in a narrow window its name needs the whole width.
-        let narrow = ui.available_width() < NARROW;
+        let narrow = ui.available_width() < layout::NARROW;
         if narrow {
             ui.label(tr("Turn it:"));
         }
@@ -223,7 +221,7 @@ impl Start {
 }
 
 fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
-    if ui.available_width() < NARROW {
+    if ui.available_width() < layout::NARROW {
         for door in &DOORS {
             door_ui(ui, desk, door);
         }

@@ -22,6 +22,7 @@ use crate::files::{self, Files};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::layout;
 use crate::pages::controls::claim_ui;
 use crate::recent::{Recent, Recents};
 use crate::tasks::{GapReport, GapTask};
@@ -38,10 +39,7 @@ const BUDGET: f64 = 1.5e-3;
 /// Events between two looks at the clock.
 const BATCH: usize = 200;
 
-/// Width below which everything stands in one column, points.
-const NARROW: f32 = 700.0;
-
-/// Width of the panel with the controls, points.
+/// Width of the panel with the controls where there is room, points.
 const SIDE: f32 = 380.0;
 
 /// Height of the drawn masses, points.
@@ -279,7 +277,7 @@ impl Backlash {
 
     fn wide_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         egui::Panel::left("drive")
-            .exact_size(SIDE)
+            .exact_size(layout::side(ui, SIDE))
             .resizable(false)
             .show(ui, |ui| {
                 theme::scroll("backlash_side").show(ui, |ui| self.side_ui(ui, recent, targets));
@@ -295,10 +293,15 @@ impl Backlash {
                 picture::ui(ui, scene, self.playback.clock, PICTURE);
                 let height = (0.5 * ui.available_height() - 34.0).max(120.0);
                 plots::time_ui(ui, scene, self.playback.clock, height);
-                ui.columns(2, |columns| {
-                    plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
-                    plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
-                });
+                if layout::room_for_two(ui) {
+                    ui.columns(2, |columns| {
+                        plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
+                        plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
+                    });
+                } else {
+                    plots::phase_ui(ui, scene, self.playback.clock, height);
+                    plots::map_ui(ui, scene, self.playback.clock, height);
+                }
             });
         });
     }
@@ -337,7 +340,7 @@ impl View for Backlash {
         self.simulate(ui.ctx());
         self.estimate(ui.ctx());
         self.play(ui);
-        if ui.available_width() < NARROW {
+        if ui.available_width() < layout::NARROW {
             self.narrow_ui(ui, &desk.recent, &mut desk.targets);
         } else {
             self.wide_ui(ui, &desk.recent, &mut desk.targets);

@@ -37,6 +37,7 @@ use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::layout;
 use crate::recent::Recent;
 use crate::save::save;
 use crate::tasks::ExperimentTask;
@@ -228,7 +229,7 @@ impl Compare {
         let mut commands = Vec::new();
         let targets = &mut desk.targets;
         if self.measurement.is_some() {
-            let narrow = ui.available_width() < 700.0;
+            let narrow = ui.available_width() < layout::NARROW;
             if narrow {
                 egui::CentralPanel::default().show(ui, |ui| {
                     theme::scroll("compare").show(ui, |ui| {
@@ -254,7 +255,7 @@ impl Compare {
                 });
             } else {
                 egui::Panel::right("effects")
-                    .default_size(400.0)
+                    .default_size(layout::side(ui, 400.0))
                     .min_size(320.0)
                     .show(ui, |ui| {
                         theme::scroll("compare_side")

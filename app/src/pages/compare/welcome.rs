@@ -6,11 +6,9 @@ use super::{Command, Compare};
 use crate::enclosed::{self, Enclosed};
 use crate::hook::Targets;
 use crate::language::tr;
+use crate::layout;
 use crate::recent::{Recents, measurement};
 use crate::theme;
-
-/// Width below which everything stands in one column, points.
-const NARROW: f32 = 700.0;
 
 /// Height of the picture on a card, points, and how often the input switches in it.
 const GLIMPSE: f32 = 90.0;
@@ -146,7 +144,7 @@ impl Compare {
             ui.label(tr("Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which physical effect would explain the rest."));
             self.message_ui(ui, commands);
             ui.add_space(12.0);
-            if ui.available_width() < NARROW {
+            if ui.available_width() < layout::NARROW {
                 for (index, built_in) in BUILT_IN.iter().enumerate() {
                     card_ui(ui, index, built_in, targets, commands);
                 }

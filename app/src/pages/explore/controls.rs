@@ -93,7 +93,7 @@ impl Explore {
     }
 
     fn playback_ui(&mut self, ui: &mut egui::Ui) {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let label = self.playback.label(ui.ctx());
             if ui.button(tr(label)).clicked() {
                 self.playback.toggle(ui.ctx());

@@ -18,6 +18,7 @@ use super::{Desk, Hint, View};
 use crate::document::parsed;
 use crate::export::Table;
 use crate::language::tr;
+use crate::layout;
 use crate::pages::controls::claim_ui;
 use crate::theme;
 use nyquist::Nyquist;
@@ -25,9 +26,6 @@ use plant_editor::PlantEditor;
 
 /// Simulated periods that are played back in a second.
 const PERIODS_PER_SECOND: f64 = 0.6;
-
-/// Width below which everything stands in one column, points.
-const NARROW: f32 = 700.0;
 
 /// Computations whose time is remembered.
 const REMEMBERED: usize = 31;
@@ -68,7 +66,7 @@ impl View for Explore {
         self.input.clone_from(&desk.relay_loop);
         self.compute();
         self.play(ui);
-        if ui.available_width() < NARROW {
+        if ui.available_width() < layout::NARROW {
             self.narrow_ui(ui);
         } else {
             self.wide_ui(ui);
@@ -184,7 +182,7 @@ impl Explore {
 
     fn wide_ui(&mut self, ui: &mut egui::Ui) {
         egui::Panel::left("loop")
-            .default_size(400.0)
+            .exact_size(layout::side(ui, 400.0))
             .resizable(false)
             .show(ui, |ui| {
                 theme::scroll("explore_side").show(ui, |ui| {
@@ -197,11 +195,17 @@ impl Explore {
             theme::scroll("explore").show(ui, |ui| {
                 self.answer_ui(ui);
                 let height = (0.5 * ui.available_height() - 34.0).max(150.0);
-                ui.columns(2, |columns| {
-                    self.nyquist_ui(&mut columns[0], height);
-                    self.phase_ui(&mut columns[1], height);
-                });
-                self.time_ui(ui, height);
+                if layout::room_for_two(ui) {
+                    ui.columns(2, |columns| {
+                        self.nyquist_ui(&mut columns[0], height);
+                        self.phase_ui(&mut columns[1], height);
+                    });
+                    self.time_ui(ui, height);
+                } else {
+                    self.nyquist_ui(ui, height);
+                    self.time_ui(ui, height);
+                    self.phase_ui(ui, height);
+                }
             });
         });
     }

@@ -12,7 +12,7 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
     egui::Grid::new("predictions")
         .num_columns(5)
         .striped(true)
-        .spacing([12.0, 4.0])
+        .spacing([7.0, 4.0])
         .show(ui, |ui| {
             for title in ["", "period [s]", "amplitude", "Ku", "stable"] {
                 ui.strong(tr(title));

@@ -12,6 +12,7 @@ use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::layout;
 use crate::motion;
 use crate::tasks::MapTask;
 use crate::theme;
@@ -179,7 +180,7 @@ impl View for Maps {
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.follow(&desk.relay_loop);
         let commands = &mut desk.commands;
-        let narrow = ui.available_width() < 700.0;
+        let narrow = ui.available_width() < layout::NARROW;
         if narrow {
             egui::CentralPanel::default().show(ui, |ui| {
                 theme::scroll("maps").show(ui, |ui| {
@@ -196,7 +197,7 @@ impl View for Maps {
             return;
         }
         egui::Panel::left("map choices")
-            .default_size(330.0)
+            .exact_size(layout::side(ui, 330.0))
             .resizable(false)
             .show(ui, |ui| {
                 theme::scroll("maps_side").show(ui, |ui| {

@@ -15,13 +15,11 @@ use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::layout;
 use crate::motion;
 use crate::tasks::MysteryTask;
 use crate::theme;
 use made::Product;
-
-/// Width below which everything stands in one column, points.
-const NARROW: f32 = 700.0;
 
 /// The page. What is chosen and the word are no settings: a link of this page tells neither.
 #[derive(Default)]
@@ -87,7 +85,7 @@ impl Bench {
             picture::ui(ui, self.experiment);
             ui.add_space(10.0);
         }
-        if ui.available_width() < NARROW {
+        if ui.available_width() < layout::NARROW {
             self.teacher_ui(ui, desk);
             self.record_ui(ui, desk);
         } else {

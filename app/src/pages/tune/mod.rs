@@ -18,6 +18,7 @@ use crate::document::parsed;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
+use crate::layout;
 use crate::motion;
 use crate::tasks::TuneTask;
 use crate::theme;
@@ -110,7 +111,7 @@ impl View for Tune {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        if ui.available_width() < 700.0 {
+        if ui.available_width() < layout::NARROW {
             egui::CentralPanel::default().show(ui, |ui| {
                 theme::scroll("tune").show(ui, |ui| {
                     egui::CollapsingHeader::new(tr("Plant, relay and wishes"))
@@ -123,7 +124,7 @@ impl View for Tune {
             return;
         }
         egui::Panel::left("tuning")
-            .default_size(350.0)
+            .exact_size(layout::side(ui, 350.0))
             .resizable(false)
             .show(ui, |ui| {
                 theme::scroll("tune_side").show(ui, |ui| self.controls_ui(ui, desk));
