@@ -7,7 +7,8 @@ use std::fmt::Write as _;
 
 use hysteron_core::effect::Motion;
 use hysteron_core::measurement::{
-    ImportOptions, Kind, Mapping, Measurement, Quantity, TorqueConstant, import,
+    ImportOptions, Kind, Mapping, Measurement, Quantity, Role, TorqueConstant, columns, guess,
+    import,
 };
 use proptest::prelude::*;
 
@@ -150,6 +151,73 @@ fn a_mapping_serves_text_as_well() {
         None,
         &["line 1", "no column 'power'", "strom"],
     );
+}
+
+#[test]
+fn columns_without_a_name_of_their_own_are_called_by_their_place() {
+    let rows: String = (0..60)
+        .map(|k| {
+            let current = if k % 10 < 5 { 2 } else { -2 };
+            format!("{};{current};{};{k}\n", f64::from(k) * 0.5, k * k)
+        })
+        .collect();
+    let mapping = "t=column 1 [ms],u=column 2 [A],x1=column 3 [counts:4096]";
+    for header in ["", ";;;x\n", "a;a;a;a\n", "-;x,y;=;#\n"] {
+        let text = format!("{header}{rows}");
+        let m = read(text.as_bytes(), mapping, Some("0.05 N m/A"));
+        is_the_rig(&m, 0.05);
+        assert!(!m.input.name.is_empty(), "{header}");
+    }
+    refused(
+        rows.as_bytes(),
+        "t=column 9 [s],u=column 2 [A]",
+        None,
+        &["no column 'column 9'", "column 1, column 2, column 3"],
+    );
+    refused(rows.as_bytes(), "", None, &["'0;2;0;0' is not a header"]);
+}
+
+#[test]
+fn a_minus_alone_leaves_a_column_out() {
+    let text: String = (0..60).map(|k| format!("{k},{},{k},?\n", k % 2)).collect();
+    let text = format!("t [s],u [N m],x1 [rad],v1\n{text}");
+    refused(text.as_bytes(), "t=t", None, &["column 4 (v1)", "no unit"]);
+    let m = read(text.as_bytes(), "t=t,v1=-", None);
+    assert_eq!((m.len(), m.outputs.len()), (60, 1));
+}
+
+#[test]
+fn the_columns_of_a_file_are_shown_before_they_are_mapped() {
+    let found = columns("rig.mat", FLAT).unwrap();
+    let names: Vec<&str> = found.iter().map(|c| c.address.as_str()).collect();
+    // Ts is one number, and no series.
+    assert_eq!(names, ["time", "current", "enc", "speed"]);
+    let [time, current] = [0, 1].map(|i| &found[i].numbers);
+    assert_eq!(
+        (time.count, &time.first, time.range),
+        (60, &vec![0.0, 0.5, 1.0], Some([0.0, 29.5]))
+    );
+    assert_eq!(current.range, Some([-2.0, 2.0]));
+    assert!(time.increase() && !current.increase());
+    assert!(
+        found
+            .iter()
+            .all(|c| c.unit.is_none() && c.known_as.is_none())
+    );
+
+    let rows: String = (0..30).map(|k| format!("{k},5;run;{};1\n", -k)).collect();
+    let found = columns("x.csv", format!("t [ms];state;a=b;a,b\n{rows}").as_bytes()).unwrap();
+    let shown = |i: usize| (found[i].name.as_str(), found[i].address.as_str());
+    // A name that a mapping cannot say is called by its place.
+    assert_eq!(
+        [shown(0), shown(1), shown(2)],
+        [("t", "t"), ("a=b", "a=b"), ("a,b", "column 4")]
+    );
+    assert_eq!(found[0].unit.as_deref(), Some("ms"));
+    assert_eq!(found[0].known_as, Some(Role::Time));
+    assert_eq!(found[0].numbers.range, Some([0.5, 29.5]));
+    let error = columns("x.mat", &FLAT[..200]).unwrap_err();
+    assert!(error.to_string().contains("damaged"), "{error}");
 }
 
 #[test]
@@ -366,6 +434,9 @@ proptest! {
             Ok(m) => prop_assert!(m.len() >= 20 && m.time.windows(2).all(|w| w[0] < w[1])),
             Err(e) => prop_assert!(!e.to_string().contains('\n')),
         }
+        if let Err(e) = columns("rig.mat", &bytes) {
+            prop_assert!(!e.to_string().contains('\n'));
+        }
     }
 
     #[test]
@@ -395,6 +466,11 @@ proptest! {
     #[test]
     fn any_text_with_any_mapping_is_read_or_refused(rows in "[0-9,.;\\n\\-e]{0,400}") {
         let text = format!("time,current,enc\n{rows}");
+        if let Ok(found) = columns("rig.csv", rows.as_bytes()) {
+            let guess = guess(&found);
+            let there = guess.channels.iter().all(|(_, i)| *i < found.len());
+            prop_assert!(there);
+        }
         if let Err(error) = import("rig.csv", text.as_bytes(), &options("t=time [s],u=current [A],x1=enc [rad]", None)) {
             prop_assert!(!error.to_string().contains('\n'));
         }

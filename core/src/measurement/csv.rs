@@ -48,41 +48,106 @@ pub(super) fn import_text(
         column,
         problem,
     };
+    let Text {
+        mut fields,
+        line,
+        dialect,
+        rows,
+    } = open(bytes).map_err(|(line, problem)| fail(line, None, problem))?;
+    if options.mapping.is_empty() && fields.iter().all(|f| f.name.is_empty()) {
+        let found = rows
+            .clone()
+            .next()
+            .map_or_else(String::new, |r| shorten(r.1));
+        return Err(fail(Some(line), None, Problem::NoHeader { found }));
+    }
+    map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
+    let header = understand(fields, options).map_err(|(column, problem)| {
+        let column = column.map(|(i, n)| format!("{i} ({n})"));
+        fail(Some(line), column, problem)
+    })?;
+    let values = read_rows(&header, dialect, rows)
+        .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
+    assemble(name, &header, values).map_err(|problem| fail(None, None, problem))
+}
+
+/// A problem and its line.
+pub(super) type Located = (Option<usize>, Problem);
+
+/// A text, opened at its first row of numbers.
+struct Text<Rows> {
+    /// Columns by their names; the names are empty where the first line holds numbers already.
+    fields: Vec<Field>,
+    /// The line that they stand in.
+    line: usize,
+    dialect: Dialect,
+    /// Rows with their lines.
+    rows: Rows,
+}
+
+/// Opens a text.
+fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &str)> + Clone>, Located> {
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let before = bytes.get(..e.valid_up_to()).unwrap_or_default();
         let line = before.split(|b| *b == b'\n').count();
-        fail(Some(line), None, Problem::NotText)
+        (Some(line), Problem::NotText)
     })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut lines = text
+    let mut rows = text
         .lines()
         .enumerate()
         .map(|(i, line)| (i + 1, line))
         .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
-    let Some((header_line, first)) = lines.next() else {
-        return Err(fail(None, None, Problem::Empty));
+    let whole = rows.clone();
+    let Some((line, first)) = rows.next() else {
+        return Err((None, Problem::Empty));
     };
     let separator = separator_of(first);
-    let mut fields: Vec<Field> = split_header(first, separator)
-        .iter()
-        .map(|f| name_and_unit(f))
-        .map(|(name, unit)| Field::named(name, unit))
-        .collect();
-    map(&mut fields, &options.mapping).map_err(|p| fail(Some(header_line), None, p))?;
-    let header = understand(fields, options).map_err(|(column, problem)| {
-        fail(
-            Some(header_line),
-            column.map(|(i, n)| format!("{i} ({n})")),
-            problem,
-        )
-    })?;
-    let dialect = Dialect {
+    let mut dialect = Dialect {
         separator,
         mark: (separator == ',').then_some('.'),
     };
-    let values = read_rows(&header, dialect, lines)
-        .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
-    assemble(name, &header, values).map_err(|problem| fail(None, None, problem))
+    let names = split_header(first, separator);
+    let bare = names.iter().all(|f| number(f, &mut dialect).is_some());
+    let field = |text: &String| {
+        let (name, unit) = if bare {
+            Default::default()
+        } else {
+            name_and_unit(text)
+        };
+        Field::named(name, unit)
+    };
+    Ok(Text {
+        fields: names.iter().map(field).collect(),
+        line,
+        dialect,
+        rows: if bare { whole } else { rows },
+    })
+}
+
+/// Columns of a text, and what `look` has seen of their numbers; fields that are none are passed over.
+pub(super) fn survey<S: Clone>(
+    bytes: &[u8],
+    blank: S,
+    mut look: impl FnMut(&mut S, f64),
+) -> Result<Vec<(Field, S)>, Located> {
+    let Text {
+        fields,
+        mut dialect,
+        rows,
+        ..
+    } = open(bytes)?;
+    let mut seen = vec![blank; fields.len()];
+    let mut row = Vec::with_capacity(fields.len());
+    for (_, text) in rows {
+        split_row(text, dialect.separator, &mut row);
+        for (field, seen) in row.iter().zip(&mut seen) {
+            if let Some(value) = number(field, &mut dialect) {
+                look(seen, value);
+            }
+        }
+    }
+    Ok(fields.into_iter().zip(seen).collect())
 }
 
 /// The separator: tab or semicolon where the header has one outside brackets, else a comma.

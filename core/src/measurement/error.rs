@@ -26,6 +26,27 @@ fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
+impl Problem {
+    /// Whether it is about what the columns are and not about their values, so that a mapping can mend it.
+    pub fn is_about_columns(&self) -> bool {
+        matches!(
+            self,
+            Self::NoHeader { .. }
+                | Self::NoUnit { .. }
+                | Self::WrongUnit { .. }
+                | Self::BareCounts { .. }
+                | Self::NoColumn { .. }
+                | Self::NoSuchColumn { .. }
+                | Self::NeedlessTorqueConstant { .. }
+                | Self::NotMapped { .. }
+                | Self::NoUnitInMat { .. }
+                | Self::Lengths { .. }
+                | Self::Twice { .. }
+                | Self::Mixed { .. }
+        )
+    }
+}
+
 /// What is wrong with a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of each says it")]

@@ -26,6 +26,14 @@ impl Field {
             sign: 1.0,
         }
     }
+
+    /// A column whose name means nothing: a workspace of MATLAB has many a variable called x or v.
+    pub fn unknown(name: &str) -> Self {
+        Self {
+            role: None,
+            ..Self::named(name.to_owned(), None)
+        }
+    }
 }
 
 /// A column that is read.
@@ -42,10 +50,33 @@ pub(super) struct Column {
     pub unit: String,
 }
 
+/// What a column can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
+pub enum Role {
+    /// The times of the samples.
     Time,
+    /// What was recorded at them.
     Measured(Quantity),
+}
+
+impl Role {
+    /// Its name in headers and mappings.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Time => "t",
+            Self::Measured(Quantity::Input) => "u",
+            Self::Measured(Quantity::Position) => "x1",
+            Self::Measured(Quantity::Velocity) => "v1",
+            Self::Measured(Quantity::LoadPosition) => "x2",
+            Self::Measured(Quantity::LoadVelocity) => "v2",
+            Self::Measured(Quantity::Output) => "y",
+        }
+    }
+
+    /// Whether a column in this role may have this unit.
+    pub fn takes(self, kind: Kind, unit: &str) -> bool {
+        convert(self, kind, "", unit).is_ok()
+    }
 }
 
 /// The header, understood.
@@ -97,6 +128,36 @@ pub(super) fn name_and_unit(field: &str) -> (String, Option<String>) {
     (field.trim().to_owned(), None)
 }
 
+/// What a mapping calls a column that has no name of its own, before its place from 1.
+const PLACE: &str = "column ";
+
+/// How a mapping calls each column: by its name where no other has it and a mapping can say it, else by its place.
+pub(super) fn addresses(fields: &[Field]) -> Vec<String> {
+    let address = |(i, field): (usize, &Field)| {
+        let name = &field.name;
+        let alone = fields.iter().filter(|f| f.name == *name).count() == 1;
+        if alone && Mapping::can_say(name) {
+            name.clone()
+        } else {
+            format!("{PLACE}{}", i + 1)
+        }
+    };
+    fields.iter().enumerate().map(address).collect()
+}
+
+/// The column of this name or at this place.
+fn addressed(fields: &[Field], source: &str) -> Option<usize> {
+    let named = fields.iter().position(|f| f.name == source);
+    let place = || {
+        source
+            .strip_prefix(PLACE)?
+            .parse::<usize>()
+            .ok()?
+            .checked_sub(1)
+    };
+    named.or_else(place).filter(|i| *i < fields.len())
+}
+
 /// Gives the columns that a mapping names their meaning; what it takes, no other column can be.
 pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem> {
     for field in fields.iter_mut() {
@@ -105,14 +166,19 @@ pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem
         }
     }
     for entry in &mapping.entries {
-        let Some(i) = fields.iter().position(|f| f.name == entry.source) else {
-            let names: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
+        let Some(source) = &entry.source else {
+            continue;
+        };
+        let Some(i) = addressed(fields, source) else {
             return Err(Problem::NoSuchColumn {
-                wanted: shorten(&entry.source),
-                found: names.join(", ").chars().take(200).collect(),
+                wanted: shorten(source),
+                found: addresses(fields).join(", ").chars().take(200).collect(),
             });
         };
         if let Some(field) = fields.get_mut(i) {
+            if field.name.is_empty() {
+                field.name.clone_from(source);
+            }
             field.role = Some(entry.role);
             field.sign = if entry.negative { -1.0 } else { 1.0 };
             if entry.unit.is_some() {

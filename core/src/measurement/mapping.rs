@@ -21,7 +21,8 @@ pub struct ImportOptions {
 ///
 /// On the left stands what it is (`t`, `u`, `x1`, `v1`, `x2`, `v2`, `y`), on the right the name in the
 /// file, a minus before it where its direction is the other one, and its unit in brackets (needed where
-/// the file has none).
+/// the file has none). A column without a name of its own is called by its place, `column 3`; a minus
+/// alone (`v1=-`) says that no column is it, whatever its name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mapping {
     pub(super) entries: Vec<Entry>,
@@ -32,14 +33,23 @@ impl Mapping {
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
+
+    /// Whether a column of this name is the one meant where it stands in a mapping.
+    pub(super) fn can_say(name: &str) -> bool {
+        let read = format!("t={name} [s]").parse::<Self>();
+        read.is_ok_and(|mapping| match mapping.entries.as_slice() {
+            [only] => only.source.as_deref() == Some(name) && !only.negative,
+            _ => false,
+        })
+    }
 }
 
 /// One column.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
     pub role: Role,
-    /// Name in the file.
-    pub source: String,
+    /// Name in the file, or place; `None` where no column is it.
+    pub source: Option<String>,
     pub negative: bool,
     pub unit: Option<String>,
 }
@@ -104,7 +114,7 @@ impl FromStr for Mapping {
                 if e.role == entry.role {
                     Some(part.split('=').next().unwrap_or_default().trim())
                 } else {
-                    (e.source == entry.source).then_some(e.source.as_str())
+                    e.source.as_deref().filter(|_| e.source == entry.source)
                 }
             });
             if let Some(name) = again {
@@ -135,7 +145,8 @@ fn entry(part: &str) -> Result<Entry, MappingError> {
         Some(rest) => (rest.trim(), true),
         None => (name, false),
     };
-    if what.is_empty() || source.is_empty() {
+    let none = column == "-";
+    if what.is_empty() || (source.is_empty() && !none) {
         return Err(wrong());
     }
     let role = role(what).ok_or_else(|| MappingError::UnknownQuantity {
@@ -143,7 +154,7 @@ fn entry(part: &str) -> Result<Entry, MappingError> {
     })?;
     Ok(Entry {
         role,
-        source: source.to_owned(),
+        source: (!none).then(|| source.to_owned()),
         negative,
         unit,
     })

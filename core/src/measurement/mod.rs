@@ -6,6 +6,8 @@
 
 mod csv;
 mod error;
+mod found;
+mod guess;
 mod header;
 mod mapping;
 mod mat;
@@ -16,8 +18,12 @@ use serde::{Deserialize, Serialize};
 
 pub use csv::import_csv;
 pub use error::{ImportError, Problem};
+pub use found::{FoundColumn, columns};
+pub use guess::{Guess, guess};
+pub use header::Role;
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
 pub use table::import;
+pub use unit::{electric, usual_units};
 
 /// What kind of system was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -149,13 +155,6 @@ impl Channel {
         if header::role(&self.name) == Some(header::Role::Measured(self.quantity)) {
             return &self.name;
         }
-        match self.quantity {
-            Quantity::Input => "u",
-            Quantity::Position => "x1",
-            Quantity::Velocity => "v1",
-            Quantity::LoadPosition => "x2",
-            Quantity::LoadVelocity => "v2",
-            Quantity::Output => "y",
-        }
+        header::Role::Measured(self.quantity).name()
     }
 }

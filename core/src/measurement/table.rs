@@ -40,10 +40,7 @@ type Located = (Option<String>, Problem);
 fn import_mat(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Measurement, Located> {
     let whole = |problem| (None, problem);
     let series = mat::read(bytes).map_err(whole)?;
-    let mut fields: Vec<Field> = series
-        .iter()
-        .map(|s| Field::named(s.name.clone(), None))
-        .collect();
+    let mut fields: Vec<Field> = series.iter().map(|s| Field::unknown(&s.name)).collect();
     if options.mapping.is_empty() {
         let names: Vec<&str> = series.iter().map(|s| s.name.as_str()).collect();
         let found = if names.is_empty() {
@@ -54,18 +51,10 @@ fn import_mat(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Measu
         return Err(whole(Problem::NotMapped { found }));
     }
     map(&mut fields, &options.mapping).map_err(whole)?;
-    // Names alone mean nothing here: a workspace has many a variable called x or v.
-    let mapped = |field: &Field| {
-        let entries = &options.mapping.entries;
-        entries.iter().any(|e| e.source == field.name)
-    };
-    for field in &mut fields {
-        if !mapped(field) {
-            field.role = None;
-        } else if field.unit.is_none() {
-            let name = shorten(&field.name);
-            return Err((Some(name.clone()), Problem::NoUnitInMat { name }));
-        }
+    let bare = |f: &&Field| f.role.is_some() && f.unit.is_none();
+    if let Some(field) = fields.iter().find(bare) {
+        let name = shorten(&field.name);
+        return Err((Some(name.clone()), Problem::NoUnitInMat { name }));
     }
     let header = understand(fields, options).map_err(|(column, p)| (column.map(|(_, n)| n), p))?;
     let values = columns(&header, series)?;

@@ -1,5 +1,8 @@
 //! Units of columns, as people spell them, and their factors to SI.
 
+use super::Quantity;
+use super::header::Role;
+
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Measures {
@@ -37,6 +40,31 @@ impl Measures {
 pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage V, mV; angle rad, mrad, deg, rev; \
     length m, mm, um; velocity rad/s, deg/s, rpm, m/s, mm/s; counts with their resolution, such as [counts, 4096/rev] \
     or [counts, 0.001 mm]";
+
+/// Units that a column of a drive in this role often has, of which counts need their resolution; none for the output of a
+/// process, which may have any.
+pub fn usual_units(role: Role) -> &'static [&'static str] {
+    match role {
+        Role::Time => &["s", "ms", "us", "min"],
+        Role::Measured(Quantity::Input) => &["N m", "mN m", "N", "kN", "A", "mA", "V", "mV"],
+        Role::Measured(Quantity::Position | Quantity::LoadPosition) => {
+            &["rad", "mrad", "deg", "rev", "m", "mm", "um", COUNTS]
+        }
+        Role::Measured(Quantity::Velocity | Quantity::LoadVelocity) => {
+            &["rad/s", "deg/s", "rpm", "rev/s", "m/s", "mm/s"]
+        }
+        Role::Measured(Quantity::Output) => &[],
+    }
+}
+
+/// What an encoder counts.
+pub(super) const COUNTS: &str = "counts";
+
+/// Whether this is a unit of a current or a voltage, which a torque constant makes a torque or a force.
+pub fn electric(unit: &str) -> bool {
+    let measures = parse(unit).map(|(measures, _)| measures);
+    matches!(measures, Some(Measures::Current | Measures::Voltage))
+}
 
 /// Quantity and factor to SI of a unit, or of counts with a resolution.
 ///
@@ -142,6 +170,19 @@ mod tests {
         let (measures, value) = parse(text).unwrap_or((Measures::Other, 0.0));
         assert_eq!(measures, what, "{text}");
         assert!((value / factor - 1.0).abs() < 1e-12, "{text}: {value}");
+    }
+
+    #[test]
+    fn a_role_takes_its_usual_units() {
+        use Quantity::{Input, LoadPosition, Position, Velocity};
+        let measured = [Input, Position, Velocity, LoadPosition].map(Role::Measured);
+        for role in measured.into_iter().chain([Role::Time]) {
+            for unit in usual_units(role) {
+                let unit = unit.replace(COUNTS, "counts:4096");
+                assert!(role.takes(crate::measurement::Kind::Drive, &unit), "{unit}");
+            }
+        }
+        assert!(electric("mA") && electric("V") && !electric("N m") && !electric("1"));
     }
 
     #[test]

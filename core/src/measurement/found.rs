@@ -1,0 +1,99 @@
+//! What the columns of a file look like, before it is known what they are.
+
+use super::MIN_SAMPLES;
+use super::csv::survey;
+use super::error::{ImportError, Problem};
+use super::header::{Field, Role, addresses};
+use super::mat::{self, Format};
+
+/// First values that are kept of a column.
+const FIRST: usize = 3;
+
+/// A column of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundColumn {
+    /// Its name in the file; empty where it has none.
+    pub name: String,
+    /// How a [`Mapping`](super::Mapping) calls it: by its name, or by its place as `column 3`.
+    pub address: String,
+    /// Its unit, where the file says one.
+    pub unit: Option<String>,
+    /// What it is by its name alone, if it is not mapped.
+    pub known_as: Option<Role>,
+    /// Its numbers, as they stand in the file.
+    pub numbers: Numbers,
+}
+
+/// The numbers of a column.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Numbers {
+    /// How many there are.
+    pub count: usize,
+    /// The first of them.
+    pub first: Vec<f64>,
+    /// The least and the largest of those that are finite.
+    pub range: Option<[f64; 2]>,
+    /// Whether one of them is not larger than the one before.
+    turns: bool,
+    last: Option<f64>,
+}
+
+impl Numbers {
+    /// Whether each is larger than the one before, as times are.
+    pub fn increase(&self) -> bool {
+        !self.turns
+    }
+
+    fn take(&mut self, value: f64) {
+        self.count += 1;
+        if self.first.len() < FIRST {
+            self.first.push(value);
+        }
+        if value.is_finite() {
+            let [least, largest] = self.range.unwrap_or([value; 2]);
+            self.range = Some([least.min(value), largest.max(value)]);
+        }
+        self.turns |= !self.last.is_none_or(|last| value > last);
+        self.last = Some(value);
+    }
+}
+
+/// The columns of a CSV or MATLAB file that are long enough to be a channel of a measurement.
+///
+/// # Errors
+/// One line that says why the file has none, where it is damaged or of another format.
+pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError> {
+    let fail = |(line, problem)| ImportError {
+        file: name.to_owned(),
+        line,
+        column: None,
+        problem,
+    };
+    let seen = match mat::format_of(bytes) {
+        Format::Other => survey(bytes, Numbers::default(), Numbers::take).map_err(fail)?,
+        Format::Hdf5 => return Err(fail((None, Problem::Hdf5))),
+        Format::Mat5 => survey_mat(bytes).map_err(|problem| fail((None, problem)))?,
+    };
+    let (fields, numbers): (Vec<Field>, Vec<Numbers>) = seen.into_iter().unzip();
+    let addresses = addresses(&fields);
+    let found = fields.into_iter().zip(addresses).zip(numbers);
+    Ok(found
+        .filter(|(_, numbers)| numbers.count >= MIN_SAMPLES)
+        .map(|((field, address), numbers)| FoundColumn {
+            name: field.name,
+            address,
+            unit: field.unit,
+            known_as: field.role,
+            numbers,
+        })
+        .collect())
+}
+
+fn survey_mat(bytes: &[u8]) -> Result<Vec<(Field, Numbers)>, Problem> {
+    let seen = |series: mat::Series| {
+        let mut numbers = Numbers::default();
+        series.values.iter().for_each(|v| numbers.take(*v));
+        (Field::unknown(&series.name), numbers)
+    };
+    Ok(mat::read(bytes)?.into_iter().map(seen).collect())
+}
