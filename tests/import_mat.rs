@@ -2,6 +2,9 @@
 //! come out. The `.mat` files in `tests/data` were written by `SciPy`, and hold, for k = 0 to 59, the time
 //! k/2 ms, a current of 2 or -2 A that changes every 5 samples, k^2 encoder counts and 1.5 k rpm.
 
+#[path = "support/mat.rs"]
+mod mat;
+
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -10,6 +13,7 @@ use hysteron_core::measurement::{
     ImportOptions, Kind, Mapping, Measurement, Quantity, Role, TorqueConstant, columns, guess,
     import,
 };
+use mat::{element, file};
 use proptest::prelude::*;
 
 const FLAT: &[u8] = include_bytes!("data/flat-v7.mat");
@@ -45,6 +49,11 @@ fn refused(bytes: &[u8], mapping: &str, constant: Option<&str>, parts: &[&str]) 
     for part in parts {
         assert!(line.contains(part), "expected '{part}' in: {line}");
     }
+}
+
+/// So many lines.
+fn lines(count: i32, line: impl Fn(i32) -> String) -> String {
+    (0..count).map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// The values of the rig, by formula.
@@ -155,12 +164,10 @@ fn a_mapping_serves_text_as_well() {
 
 #[test]
 fn columns_without_a_name_of_their_own_are_called_by_their_place() {
-    let rows: String = (0..60)
-        .map(|k| {
-            let current = if k % 10 < 5 { 2 } else { -2 };
-            format!("{};{current};{};{k}\n", f64::from(k) * 0.5, k * k)
-        })
-        .collect();
+    let rows = lines(60, |k| {
+        let current = if k % 10 < 5 { 2 } else { -2 };
+        format!("{};{current};{};{k}", f64::from(k) * 0.5, k * k)
+    });
     let mapping = "t=column 1 [ms],u=column 2 [A],x1=column 3 [counts:4096]";
     for header in ["", ";;;x\n", "a;a;a;a\n", "-;x,y;=;#\n"] {
         let text = format!("{header}{rows}");
@@ -179,7 +186,7 @@ fn columns_without_a_name_of_their_own_are_called_by_their_place() {
 
 #[test]
 fn a_minus_alone_leaves_a_column_out() {
-    let text: String = (0..60).map(|k| format!("{k},{},{k},?\n", k % 2)).collect();
+    let text = lines(60, |k| format!("{k},{},{k},?", k % 2));
     let text = format!("t [s],u [N m],x1 [rad],v1\n{text}");
     refused(text.as_bytes(), "t=t", None, &["column 4 (v1)", "no unit"]);
     let m = read(text.as_bytes(), "t=t,v1=-", None);
@@ -205,7 +212,7 @@ fn the_columns_of_a_file_are_shown_before_they_are_mapped() {
             .all(|c| c.unit.is_none() && c.known_as.is_none())
     );
 
-    let rows: String = (0..30).map(|k| format!("{k},5;run;{};1\n", -k)).collect();
+    let rows = lines(30, |k| format!("{k},5;run;{};1", -k));
     let found = columns("x.csv", format!("t [ms];state;a=b;a,b\n{rows}").as_bytes()).unwrap();
     let shown = |i: usize| (found[i].name.as_str(), found[i].address.as_str());
     // A name that a mapping cannot say is called by its place.
@@ -304,51 +311,6 @@ fn a_mapping_or_constant_that_makes_no_sense_is_refused() {
         "0.05 N·m/mA".parse::<TorqueConstant>().unwrap().value(),
         50.0
     );
-}
-
-/// A writer of its own, after the format's description: one element, padded to 8 bytes.
-fn element(big: bool, kind: u32, data: &[u8]) -> Vec<u8> {
-    let word = |n: u32| {
-        if big {
-            n.to_be_bytes()
-        } else {
-            n.to_le_bytes()
-        }
-    };
-    let mut bytes = [word(kind), word(data.len() as u32)].concat();
-    bytes.extend(data);
-    bytes.resize(bytes.len().next_multiple_of(8), 0);
-    bytes
-}
-
-/// A file with one array of this class, whose numbers are stored as this type.
-fn file(
-    big: bool,
-    name: &str,
-    class: u32,
-    sizes: [i32; 2],
-    stored: u32,
-    numbers: &[u8],
-) -> Vec<u8> {
-    let word = |n: u32| {
-        if big {
-            n.to_be_bytes()
-        } else {
-            n.to_le_bytes()
-        }
-    };
-    let sizes = sizes.map(|n| word(n as u32)).concat();
-    let array = [
-        element(big, 6, &[word(class), word(0)].concat()),
-        element(big, 5, &sizes),
-        element(big, 1, name.as_bytes()),
-        element(big, stored, numbers),
-    ]
-    .concat();
-    let mut bytes = vec![b' '; 124];
-    bytes.extend(if big { *b"\x01\x00MI" } else { *b"\x00\x01IM" });
-    bytes.extend(element(big, 14, &array));
-    bytes
 }
 
 #[test]
