@@ -391,25 +391,20 @@ fn a_refused_file_is_not_among_those_opened_before() {
 }
 
 #[test]
-fn a_matlab_file_is_pointed_to_the_command_line() {
+fn backlash_points_to_the_page_that_asks_for_columns() {
     let file = format!("{}/../tests/data/flat-v7.mat", env!("CARGO_MANIFEST_DIR"));
     let bytes = std::fs::read(file).expect("a file of the tests");
-    for page in ["compare", "backlash"] {
-        let mut harness = app(page, TALL);
-        finish(&mut harness);
-        drop_file(&mut harness, "log.mat", &bytes);
-        let said = state(&harness)["message"].clone();
-        let said = said.as_str().expect("a message");
-        assert!(
-            said.contains("hysteron diagnose log.mat --map"),
-            "{page}: {said}"
-        );
-        harness.state_mut().speak(Language::German);
-        finish(&mut harness);
-        let texts = texts(&harness);
-        let german = |t: &String| t.contains("hysteron diagnose") && t.contains("Kommandozeile");
-        assert!(texts.iter().any(german), "{page}: {texts:#?}");
-    }
+    let mut harness = app("backlash", TALL);
+    finish(&mut harness);
+    drop_file(&mut harness, "log.mat", &bytes);
+    let said = state(&harness)["message"].clone();
+    let said = said.as_str().expect("a message");
+    assert!(said.contains("Open it in Compare"), "{said}");
+    harness.state_mut().speak(Language::German);
+    finish(&mut harness);
+    let texts = texts(&harness);
+    let german = |t: &String| t.contains("eine MAT-Datei sagt nicht") && t.contains("Vergleichen");
+    assert!(texts.iter().any(german), "{texts:#?}");
 }
 
 #[test]

@@ -3,10 +3,18 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use crate::reading::Reading;
 use crate::recent::Recent;
 
-/// A file that has been read: its name, and its bytes or why there are none.
-pub type Arrival = (String, Result<Vec<u8>, String>);
+/// A file that has been read.
+pub struct Arrival {
+    /// Its name.
+    pub name: String,
+    /// Its bytes, or why there are none.
+    pub bytes: Result<Vec<u8>, String>,
+    /// What it does not say itself, where it was opened before.
+    pub reading: Reading,
+}
 
 /// What a dialog asks for: in words, and by the endings of names.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +26,7 @@ pub struct Filter {
 /// A measurement.
 pub const MEASUREMENT: Filter = Filter {
     words: "Measurement",
-    endings: &["csv", "txt", "tsv"],
+    endings: &["csv", "txt", "tsv", "mat"],
 };
 
 /// What the user knows of a model.
@@ -27,22 +35,24 @@ pub const MODEL: Filter = Filter {
     endings: &["toml"],
 };
 
-/// Why no page takes a file of MATLAB: it has neither units nor a mapping of its columns.
-pub fn refused(name: &str, bytes: &[u8]) -> Option<String> {
-    let matlab = name.to_ascii_lowercase().ends_with(".mat") || bytes.starts_with(b"MATLAB ");
-    matlab.then(|| {
-        format!(
-            "{name} is a file of MATLAB, which does not say what its columns are. Say it on the command line: \
-             hysteron diagnose {name} --map ...; or save the file as CSV."
-        )
-    })
-}
-
 /// A file that is being read elsewhere, and how to find it again.
 struct Read {
     name: String,
     path: String,
     bytes: Result<Vec<u8>, String>,
+    reading: Reading,
+}
+
+impl Read {
+    /// A file that says itself what it holds, as far as is known.
+    fn new(name: String, path: String, bytes: Result<Vec<u8>, String>) -> Self {
+        Self {
+            name,
+            path,
+            bytes,
+            reading: Reading::default(),
+        }
+    }
 }
 
 /// Files on their way.
@@ -72,12 +82,27 @@ impl Files {
         let read = self.receiver.try_recv().ok()?;
         let bytes = read.bytes.as_ref().ok();
         self.arrived = bytes.map(|b| Recent::new(&read.name, &read.path, b));
-        Some((read.name, read.bytes))
+        Some(Arrival {
+            name: read.name,
+            bytes: read.bytes,
+            reading: read.reading,
+        })
     }
 
-    /// The file of this name was what its page takes: it may be opened again.
-    pub fn taken(&mut self, name: &str) {
-        self.opened.extend(self.arrived.take_if(|r| r.name == name));
+    /// Where the file of this name comes from, while it is not known yet whether it will be taken.
+    pub fn origin(&mut self, name: &str) -> Option<Recent> {
+        self.arrived.take_if(|r| r.name == name)
+    }
+
+    /// What is taken next comes from there.
+    pub fn comes_from(&mut self, origin: Option<Recent>) {
+        self.arrived = origin;
+    }
+
+    /// The file of this name was what its page takes: it may be opened again, and read in the same way.
+    pub fn taken(&mut self, name: &str, reading: &Reading) {
+        let taken = self.arrived.take_if(|r| r.name == name);
+        self.opened.extend(taken.map(|r| r.read_as(reading)));
     }
 
     /// What has been opened since it was last asked for.
@@ -90,9 +115,19 @@ impl Files {
         let (sender, ctx, recent) = (self.sender.clone(), ctx.clone(), recent.clone());
         let read = move || {
             let bytes = recent.read();
-            let Recent { name, path, .. } = recent;
+            let Recent {
+                name,
+                path,
+                reading,
+                ..
+            } = recent;
             // A page that is gone needs no file.
-            let _ = sender.send(Read { name, path, bytes });
+            let _ = sender.send(Read {
+                name,
+                path,
+                bytes,
+                reading,
+            });
             ctx.request_repaint();
         };
         #[cfg(not(target_arch = "wasm32"))]
@@ -112,13 +147,13 @@ impl Files {
         #[cfg(not(target_arch = "wasm32"))]
         std::thread::spawn(move || {
             let bytes = file.bytes();
-            let _ = sender.send(Read { name, path, bytes });
+            let _ = sender.send(Read::new(name, path, bytes));
             ctx.request_repaint();
         });
         #[cfg(target_arch = "wasm32")]
         wasm_bindgen_futures::spawn_local(async move {
             let bytes = file.bytes_async().await;
-            let _ = sender.send(Read { name, path, bytes });
+            let _ = sender.send(Read::new(name, path, bytes));
             ctx.request_repaint();
         });
     }
@@ -135,7 +170,7 @@ impl Files {
                 #[cfg(target_arch = "wasm32")]
                 let path = String::new();
                 let name = file.file_name();
-                let _ = sender.send(Read { name, path, bytes });
+                let _ = sender.send(Read::new(name, path, bytes));
                 ctx.request_repaint();
             }
         };

@@ -22,6 +22,7 @@ mod motion;
 mod notice;
 mod packed;
 mod pages;
+mod reading;
 mod recent;
 mod save;
 mod shortcuts;

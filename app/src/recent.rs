@@ -1,10 +1,13 @@
 //! Files that were opened before. Natively their paths are kept; a browser gives none, so that there the text
 //! of small files is kept instead.
 
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD_NO_PAD as LETTERS;
 use serde::{Deserialize, Serialize};
 
 use crate::hook::Targets;
 use crate::language::tr;
+use crate::reading::Reading;
 
 /// Files that are remembered.
 const MOST: usize = 8;
@@ -22,24 +25,37 @@ pub struct Recent {
     pub path: String,
     /// What was in it; empty where it can be read again.
     text: String,
+    /// Whether it is no text, but stands there in base64.
+    #[serde(default)]
+    binary: bool,
+    /// What it does not say itself.
+    #[serde(default)]
+    pub reading: Reading,
 }
 
 impl Recent {
     /// A file that was read.
     pub fn new(name: &str, path: &str, bytes: &[u8]) -> Self {
         let again = cfg!(not(target_arch = "wasm32")) && !path.is_empty();
+        let (path, text, binary) = match str::from_utf8(bytes) {
+            _ if again => (path, String::new(), false),
+            Ok(text) => ("", text.to_owned(), false),
+            Err(_) => ("", LETTERS.encode(bytes), true),
+        };
         Self {
             name: name.to_owned(),
-            path: if again {
-                path.to_owned()
-            } else {
-                String::new()
-            },
-            text: if again {
-                String::new()
-            } else {
-                String::from_utf8_lossy(bytes).into_owned()
-            },
+            path: path.to_owned(),
+            text,
+            binary,
+            reading: Reading::default(),
+        }
+    }
+
+    /// The same file, which is read so.
+    pub fn read_as(self, reading: &Reading) -> Self {
+        Self {
+            reading: reading.clone(),
+            ..self
         }
     }
 
@@ -48,6 +64,9 @@ impl Recent {
     /// # Errors
     /// Why it cannot be read any more.
     pub fn read(&self) -> Result<Vec<u8>, String> {
+        if self.binary {
+            return LETTERS.decode(&self.text).map_err(|e| e.to_string());
+        }
         if self.path.is_empty() {
             return Ok(self.text.clone().into_bytes());
         }
@@ -129,6 +148,23 @@ mod tests {
             recents.note(Recent::new(&i.to_string(), "", b""));
         }
         assert_eq!(recents.0.len(), MOST);
+    }
+
+    #[test]
+    fn what_is_no_text_comes_back_as_it_was() {
+        let bytes = [b"MATLAB 5.0".as_slice(), &[0, 255, 128]].concat();
+        let reading = Reading {
+            map: "t=time [s]".to_owned(),
+            ..Reading::default()
+        };
+        let recent = Recent::new("x.mat", "", &bytes).read_as(&reading);
+        let kept = serde_json::to_string(&recent).expect("JSON");
+        let again: Recent = serde_json::from_str(&kept).expect("the same");
+        assert_eq!((again.read(), &again.reading), (Ok(bytes), &reading));
+        // As it was kept before there was a mapping.
+        let old = r#"{"name":"a.csv","path":"","text":"t [s]"}"#;
+        let old: Recent = serde_json::from_str(old).expect("a file");
+        assert_eq!(old, Recent::new("a.csv", "", b"t [s]"));
     }
 
     #[test]

@@ -96,8 +96,8 @@ impl Task for TuneTask {
 pub enum GapTask {
     /// Of a simulated drive, recorded as a rig would.
     Simulated(Box<DriveInput>),
-    /// Of a file: its name and its text.
-    File(String, String),
+    /// Of a measurement.
+    Measured(Box<Measurement>),
 }
 
 /// What the motor tells about the gap.

@@ -6,7 +6,6 @@ use hysteron_core::crew::Crew;
 use hysteron_core::criticism::{ExperimentJob, NextExperiment, Progress, StepJob, StepReport};
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
-use hysteron_core::measurement::import_csv;
 use hysteron_core::mystery::{Reveal, make};
 use hysteron_core::tuning::{TuningReport, tune};
 use hysteron_core::user_model::UserModel;
@@ -120,10 +119,7 @@ impl Work for GapTask {
                 record(&input, &Recorder::default()).map_err(|e| e.to_string()),
                 false,
             ),
-            Self::File(name, text) => (
-                import_csv(&name, text.as_bytes(), None).map_err(|e| e.to_string()),
-                true,
-            ),
+            Self::Measured(measurement) => (Ok(*measurement), true),
         };
         say(match read {
             Ok(measurement) => News::Report(Box::new(GapReport {

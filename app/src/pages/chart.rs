@@ -448,10 +448,15 @@ fn line_of(name: &str, value: &str) -> String {
     }
 }
 
-/// A number with so many significant digits, and an exponent only where it needs one.
+/// A number with so many significant digits, as it is read on the screen.
 fn read_out(value: f64, digits: i32) -> String {
+    tr_number(significant(value, digits))
+}
+
+/// A number with so many significant digits, and an exponent only where it needs one.
+pub(super) fn significant(value: f64, digits: i32) -> String {
     let size = value.abs();
-    let text = if size == 0.0 {
+    if size == 0.0 {
         "0".to_owned()
     } else if (1e-4..1e6).contains(&size) {
         let decimals = (digits - 1 - size.log10().floor() as i32).max(0) as usize;
@@ -464,8 +469,7 @@ fn read_out(value: f64, digits: i32) -> String {
         }
     } else {
         format!("{value:.3e}")
-    };
-    tr_number(text)
+    }
 }
 
 /// The place that the playback has reached.

@@ -11,6 +11,7 @@ mod side;
 mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
+use hysteron_core::measurement::import;
 
 use super::playback::Playback;
 use super::{Desk, Hint, View};
@@ -18,12 +19,13 @@ pub use settings::is_built_in;
 
 use crate::document::parsed;
 use crate::export::Table;
-use crate::files::{self, Files};
+use crate::files::Files;
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::pages::controls::claim_ui;
+use crate::reading::Reading;
 use crate::recent::{Recent, Recents};
 use crate::tasks::{GapReport, GapTask};
 use crate::theme;
@@ -65,6 +67,8 @@ pub struct Backlash {
     files: Files,
     /// Name of the measurement that is open, or about to be.
     file: Option<String>,
+    /// How the file that was opened last is read.
+    reading: Reading,
     message: Option<String>,
 }
 
@@ -82,6 +86,7 @@ impl Default for Backlash {
             estimation: None,
             files: Files::default(),
             file: None,
+            reading: Reading::default(),
             message: None,
         }
     }
@@ -141,13 +146,28 @@ impl Backlash {
 
     /// Opens a measurement from the bytes of a file; a bad one leaves everything as it was.
     fn open_bytes(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        if let Some(refused) = files::refused(name, bytes) {
-            self.message = Some(refused);
-            return;
-        }
-        let text = String::from_utf8_lossy(bytes).into_owned();
+        self.open_as(ctx, name, bytes, &Reading::default());
+    }
+
+    /// The same of a file that was opened before, with what it does not say itself.
+    fn open_as(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8], reading: &Reading) {
+        let options = reading.options().unwrap_or_default();
+        let measurement = match import(name, bytes, &options) {
+            Ok(measurement) => measurement,
+            Err(error) if error.problem.is_about_columns() => {
+                self.message = Some(format!(
+                    "{error}. Open it in Compare, which asks for its columns; then it can be opened here too."
+                ));
+                return;
+            }
+            Err(error) => {
+                self.message = Some(error.to_string());
+                return;
+            }
+        };
         self.simulation = None;
-        let task = GapTask::File(name.to_owned(), text);
+        self.reading = reading.clone();
+        let task = GapTask::Measured(Box::new(measurement));
         self.estimation = Some((None, Job::run(ctx, task)));
         self.file = Some(name.to_owned());
         self.playback.clock = 0.0;
@@ -156,9 +176,10 @@ impl Backlash {
 
     /// Takes what jobs and files have brought.
     fn take_news(&mut self, ctx: &egui::Context) {
-        while let Some((name, bytes)) = self.files.arrived() {
-            match bytes {
-                Ok(bytes) => self.open_bytes(ctx, &name, &bytes),
+        while let Some(arrival) = self.files.arrived() {
+            let name = &arrival.name;
+            match &arrival.bytes {
+                Ok(bytes) => self.open_as(ctx, name, bytes, &arrival.reading),
                 Err(error) => self.message = Some(format!("{name}: cannot be read ({error})")),
             }
         }
@@ -193,7 +214,7 @@ impl Backlash {
                 Ok(scene) => {
                     self.scene = Some(scene);
                     self.file = self.open_file();
-                    self.files.taken(&measurement.name);
+                    self.files.taken(&measurement.name, &self.reading);
                     self.figure = None;
                 }
                 Err(error) => self.keep(error),

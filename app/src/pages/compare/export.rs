@@ -61,8 +61,12 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
 /// What to type for the same diagnosis.
 fn command(page: &Compare, file: &str) -> String {
     let mut command = format!("hysteron diagnose {}", report::shell_word(file));
-    let file = page.model_file.iter().map(|name| ("--model", name));
-    for (option, value) in file.chain(page.own.iter().map(|line| ("--effect", line))) {
+    let model = page
+        .model_file
+        .iter()
+        .map(|name| ("--model", name.as_str()));
+    let own = page.own.iter().map(|line| ("--effect", line.as_str()));
+    for (option, value) in page.reading.arguments().chain(model).chain(own) {
         command.extend([" ", option, " ", &report::shell_word(value)]);
     }
     command

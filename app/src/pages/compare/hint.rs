@@ -8,6 +8,9 @@ use crate::pages::{Command, Hint};
 
 impl Compare {
     pub(super) fn next(&self) -> Hint {
+        if self.form.is_some() {
+            return Hint::say("Say which column is what, then open the file.");
+        }
         if self.measurement.is_none() {
             let sentence = "Begin with a drive that loses its swing: one effect is missing.";
             return Hint::open(sentence, "v1;compare;compare.file=drive-02");

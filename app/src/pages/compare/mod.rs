@@ -2,11 +2,13 @@
 
 mod answer;
 mod atlas;
+mod choice;
 mod experiment;
 mod export;
 mod fingerprint;
 mod hint;
 mod history;
+mod mapping;
 mod missing;
 mod open;
 mod own;
@@ -38,6 +40,7 @@ use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::reading::Reading;
 use crate::recent::Recent;
 use crate::save::save;
 use crate::tasks::ExperimentTask;
@@ -54,6 +57,10 @@ const ALIVE: std::time::Duration = std::time::Duration::from_millis(100);
 /// The page.
 pub struct Compare {
     measurement: Option<Arc<Measurement>>,
+    /// What its file does not say itself.
+    reading: Reading,
+    /// The form for a file that is not open yet.
+    form: Option<mapping::Form>,
     source: export::Source,
     /// What the user knows of the model.
     model: Option<UserModel>,
@@ -100,6 +107,8 @@ impl Default for Compare {
     fn default() -> Self {
         Self {
             measurement: None,
+            reading: Reading::default(),
+            form: None,
             source: export::Source::default(),
             model: None,
             model_file: None,
@@ -150,6 +159,11 @@ enum Command {
     /// Opens a file once more.
     Reopen(Recent),
     Close,
+    /// Which column of a file is what.
+    Choose(Box<choice::Choice>),
+    /// Opens the file with what was chosen, or leaves it.
+    OpenMapped,
+    CancelMapping,
     Add(EffectId),
     Undo,
     Redo,
@@ -183,10 +197,11 @@ enum Command {
 impl Compare {
     /// Takes what jobs and files have brought.
     pub fn update(&mut self, ctx: &egui::Context) {
-        while let Some((name, bytes)) = self.files.arrived() {
-            match bytes {
-                Ok(bytes) => self.open(ctx, &name, &bytes),
-                Err(error) => self.message = Some(format!("{name}: cannot be read ({error})")),
+        while let Some(arrival) = self.files.arrived() {
+            let name = &arrival.name;
+            match &arrival.bytes {
+                Ok(bytes) => self.open_as(ctx, name, bytes, &arrival.reading),
+                Err(error) => self.refuse(format!("{name}: cannot be read ({error})")),
             }
         }
         if let Some(text) = self.saved.1.try_iter().last() {
@@ -228,7 +243,9 @@ impl Compare {
     pub fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         let mut commands = Vec::new();
         let targets = &mut desk.targets;
-        if self.measurement.is_some() {
+        if self.form.is_some() {
+            egui::CentralPanel::default().show(ui, |ui| self.form_ui(ui, targets, &mut commands));
+        } else if self.measurement.is_some() {
             let narrow = ui.available_width() < layout::NARROW;
             if narrow {
                 egui::CentralPanel::default().show(ui, |ui| {
@@ -356,6 +373,13 @@ impl Compare {
                     ..Self::default()
                 };
             }
+            Command::Choose(choice) => {
+                if let Some(form) = &mut self.form {
+                    form.choice = *choice;
+                }
+            }
+            Command::OpenMapped => self.open_mapped(ctx),
+            Command::CancelMapping => self.form = None,
             Command::Add(effect) => {
                 let mut effects = self.effects.clone();
                 effects.push(effect);
@@ -412,6 +436,7 @@ impl Compare {
         serde_json::json!({
             "busy": self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
             "progress": self.progress.0,
+            "mapping": self.form.as_ref().map(mapping::Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
             "effects": report.map(|r| r.step.effects.clone()),
             "error": report.map(|r| r.step.error),

@@ -2,43 +2,101 @@
 
 use std::sync::Arc;
 
-use hysteron_core::measurement::import_csv;
+use hysteron_core::measurement::{Measurement, import};
 use hysteron_core::mystery::{Mystery, seal_of};
 use hysteron_core::user_model::UserModel;
 
+use super::mapping::Form;
 use super::reveal::Sealed;
 use super::{Compare, Look, export, own};
-use crate::files;
 use crate::jobs::Job;
+use crate::reading::Reading;
 
 impl Compare {
     /// Opens a measurement, or a model (TOML), from the bytes of a file; a bad one leaves everything as it was.
     pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
+        self.open_as(ctx, name, bytes, &Reading::default());
+    }
+
+    /// The same of a file that was opened before, with what it does not say itself.
+    pub(super) fn open_as(
+        &mut self,
+        ctx: &egui::Context,
+        name: &str,
+        bytes: &[u8],
+        reading: &Reading,
+    ) {
         if name.to_ascii_lowercase().ends_with(".toml") {
             return self.open_model(ctx, name, bytes);
         }
-        if let Some(refused) = files::refused(name, bytes) {
-            self.message = Some(refused);
-            return;
-        }
-        match import_csv(name, bytes, None) {
-            Ok(measurement) => {
-                self.files.taken(name);
-                self.message = measurement.warnings.first().cloned();
-                self.measurement = Some(Arc::new(measurement));
-                self.source = export::Source::of(bytes);
-                self.sealed = seal_of(bytes).map(Sealed::new);
-                if self.look == Look::Reveal {
-                    self.look = Look::default();
+        let options = reading.options().unwrap_or_default();
+        match import(name, bytes, &options) {
+            Ok(measurement) => self.take_measurement(ctx, measurement, bytes, reading),
+            Err(error) => {
+                let origin = self.files.origin(name);
+                match Form::new(bytes, &error, origin) {
+                    Some(form) => self.form = Some(form),
+                    None => self.refuse(error.to_string()),
                 }
-                let kind = self.measurement.as_ref().map(|m| m.kind);
-                if self.model.as_ref().is_some_and(|m| Some(m.kind) != kind) {
-                    self.forget_model();
-                }
-                self.restart(ctx);
             }
-            Err(error) => self.message = Some(error.to_string()),
         }
+    }
+
+    /// Says why a file is not taken, where it is seen.
+    pub(super) fn refuse(&mut self, sentence: String) {
+        let place = match &mut self.form {
+            Some(form) => &mut form.error,
+            None => &mut self.message,
+        };
+        *place = Some(sentence);
+    }
+
+    /// Opens the file of the form with what was chosen in it, or says there why it cannot be.
+    pub(super) fn open_mapped(&mut self, ctx: &egui::Context) {
+        let Some(mut form) = self.form.take() else {
+            return;
+        };
+        let reading = form.choice.reading(&form.columns);
+        let read = reading.options().and_then(|options| {
+            import(&form.file, &form.bytes, &options).map_err(|e| e.to_string())
+        });
+        match read {
+            Ok(measurement) => {
+                self.files.comes_from(form.origin);
+                self.take_measurement(ctx, measurement, &form.bytes, &reading);
+            }
+            Err(error) => {
+                form.error = Some(error);
+                self.form = Some(form);
+            }
+        }
+    }
+
+    fn take_measurement(
+        &mut self,
+        ctx: &egui::Context,
+        measurement: Measurement,
+        bytes: &[u8],
+        reading: &Reading,
+    ) {
+        self.form = None;
+        self.files.taken(&measurement.name, reading);
+        self.reading = reading.clone();
+        self.message = measurement.warnings.first().cloned();
+        if self
+            .model
+            .as_ref()
+            .is_some_and(|m| m.kind != measurement.kind)
+        {
+            self.forget_model();
+        }
+        self.measurement = Some(Arc::new(measurement));
+        self.source = export::Source::of(bytes);
+        self.sealed = seal_of(bytes).map(Sealed::new);
+        if self.look == Look::Reveal {
+            self.look = Look::default();
+        }
+        self.restart(ctx);
     }
 
     /// Opens a mystery that came in a link.
@@ -55,9 +113,9 @@ impl Compare {
             .map_err(|_| "a model must be UTF-8 text".to_owned())
             .and_then(|text| UserModel::from_toml(text).map_err(|e| e.to_string()));
         match (read, &self.measurement) {
-            (Err(error), _) => self.message = Some(format!("{name}, {error}")),
+            (Err(error), _) => self.refuse(format!("{name}, {error}")),
             (Ok(model), Some(measurement)) if model.kind != measurement.kind => {
-                self.message = Some(format!(
+                self.refuse(format!(
                     "{name} is the model of a {}, but {} is the measurement of a {}.",
                     model.kind.name(),
                     measurement.name,
@@ -65,7 +123,7 @@ impl Compare {
                 ));
             }
             (Ok(model), _) => {
-                self.files.taken(name);
+                self.files.taken(name, &Reading::default());
                 self.message = None;
                 self.forget_model();
                 self.model = Some(model);

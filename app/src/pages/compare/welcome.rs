@@ -156,14 +156,14 @@ impl Compare {
                 });
             }
             ui.add_space(12.0);
-            ui.label(tr("Or your own: drop a CSV file anywhere on this window, or"));
+            ui.label(tr("Or your own: drop a CSV or MATLAB file anywhere on this window, or"));
             if ui.button(tr("Open a file ...")).clicked() {
                 commands.push(Command::OpenDialog);
             }
             if let Some(recent) = recent.ui(ui, measurement, targets) {
                 commands.push(Command::Reopen(recent));
             }
-            ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process."));
+            ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process. Of any other file you say which column is what."));
         });
     }
 }

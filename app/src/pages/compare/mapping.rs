@@ -1,0 +1,287 @@
+//! A form for a file that does not say what its columns are: which column is what, in which unit.
+
+use egui::Ui;
+use hysteron_core::measurement::{FoundColumn, ImportError, Kind, Problem, columns};
+
+use super::choice::{Channel, Choice, Chosen};
+use super::{Command, Compare};
+use crate::hook::Targets;
+use crate::language::tr;
+use crate::pages::chart::significant;
+use crate::recent::Recent;
+use crate::theme;
+
+/// Columns that a measurement has at least: time, input, output.
+const FEWEST: usize = 3;
+
+/// Widths of the names of channels, and of the lists of columns and of units, points.
+const TITLE_WIDTH: f32 = 104.0;
+const COLUMN_WIDTH: f32 = 220.0;
+const UNIT_WIDTH: f32 = 90.0;
+
+/// Width of the form in a wide window, points.
+const WIDEST: f32 = 940.0;
+
+/// Significant digits of the values that are shown.
+const DIGITS: i32 = 4;
+
+/// A file whose columns are to be understood.
+pub(super) struct Form {
+    pub file: String,
+    pub bytes: Vec<u8>,
+    /// Where the file is, if it can be opened again.
+    pub origin: Option<Recent>,
+    /// Why it is asked.
+    reason: String,
+    pub columns: Vec<FoundColumn>,
+    pub choice: Choice,
+    /// Why it cannot be read as was chosen, or why another file was refused meanwhile.
+    pub error: Option<String>,
+}
+
+impl Form {
+    /// The form for a file that was refused; `None` where no mapping would make a measurement of it.
+    pub fn new(bytes: &[u8], refused: &ImportError, origin: Option<Recent>) -> Option<Self> {
+        if !refused.problem.is_about_columns() {
+            return None;
+        }
+        let columns = columns(&refused.file, bytes).ok()?;
+        (columns.len() >= FEWEST).then(|| Self {
+            file: refused.file.clone(),
+            bytes: bytes.to_vec(),
+            origin,
+            reason: match refused.problem {
+                // What the command line says goes on about options.
+                Problem::NotMapped { .. } => {
+                    "A file of MATLAB does not say what its columns are.".to_owned()
+                }
+                _ => refused.to_string(),
+            },
+            choice: Choice::likeliest(&columns),
+            columns,
+            error: None,
+        })
+    }
+
+    pub fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "file": self.file,
+            "reason": self.reason,
+            "missing": self.choice.missing(),
+            "reading": self.choice.reading(&self.columns),
+            "error": self.error,
+        })
+    }
+
+    fn ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+        ui.set_max_width(ui.available_width().min(WIDEST));
+        theme::answer_ui(ui, "Which column is what?");
+        ui.strong(&self.file);
+        ui.label(tr(&self.reason));
+        let mut choice = self.choice.clone();
+        ui.horizontal_wrapped(|ui| {
+            for (kind, name) in [(Kind::Drive, "A drive"), (Kind::Process, "A process")] {
+                ui.radio_value(&mut choice.kind, kind, tr(name));
+            }
+        });
+        for (i, channel) in choice.channels() {
+            let kind = choice.kind;
+            egui::Frame::group(ui.style()).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                self.channel_ui(ui, channel, kind, &mut choice.chosen[i]);
+            });
+        }
+        if choice.is_electric() {
+            torque_constant_ui(ui, &mut choice.torque_constant);
+        }
+        if let Some(error) = &self.error {
+            ui.colored_label(ui.visuals().warn_fg_color, tr(error));
+        }
+        let missing = choice.missing();
+        if !missing.is_empty() {
+            let missing = missing.join(", ");
+            ui.label(tr(format!("Still to choose: {missing}.")));
+        }
+        ui.horizontal_wrapped(|ui| {
+            let open = ui.add_enabled(missing.is_empty(), egui::Button::new(tr("Open it")));
+            targets.note("map:open", ui, &open);
+            let cancel = ui.button(tr("Cancel"));
+            targets.note("map:cancel", ui, &cancel);
+            // Commands are carried out in their order: first what was typed, then what is asked of it.
+            if choice != self.choice {
+                // What is being typed stays as it is.
+                if choice.columns() != self.choice.columns() {
+                    choice.suit(&self.columns);
+                }
+                commands.push(Command::Choose(Box::new(choice)));
+            }
+            if open.clicked() {
+                commands.push(Command::OpenMapped);
+            }
+            if cancel.clicked() {
+                commands.push(Command::CancelMapping);
+            }
+        });
+    }
+
+    /// A channel: its column, its unit, its direction, and what stands in the column.
+    fn channel_ui(&self, ui: &mut Ui, channel: &Channel, kind: Kind, chosen: &mut Chosen) {
+        ui.horizontal_wrapped(|ui| {
+            let title = title_ui(ui, channel.title);
+            let before = chosen.column;
+            self.column_ui(ui, channel, title.id, &mut chosen.column);
+            if chosen.column != before {
+                // The next column says its own.
+                chosen.unit.clear();
+            }
+            if chosen.column.is_some() {
+                unit_ui(ui, channel, kind, chosen);
+                if !channel.turn.is_empty() {
+                    ui.checkbox(&mut chosen.turned, tr(channel.turn));
+                }
+            }
+        });
+        if let Some(column) = chosen.column.and_then(|i| self.columns.get(i)) {
+            ui.small(tr(values(column, chosen.unit.trim())));
+        }
+    }
+
+    /// The list of columns.
+    fn column_ui(
+        &self,
+        ui: &mut Ui,
+        channel: &Channel,
+        title: egui::Id,
+        chosen: &mut Option<usize>,
+    ) {
+        let nothing = if channel.is_optional() {
+            "none"
+        } else {
+            "choose ..."
+        };
+        let present = chosen.and_then(|i| self.columns.get(i));
+        let list = egui::ComboBox::from_id_salt(channel.title)
+            .selected_text(present.map_or_else(|| tr(nothing), name_of))
+            .width(COLUMN_WIDTH)
+            .truncate()
+            .show_ui(ui, |ui| {
+                ui.selectable_value(chosen, None, tr(nothing));
+                for (i, column) in self.columns.iter().enumerate() {
+                    ui.selectable_value(chosen, Some(i), name_of(column));
+                }
+            });
+        list.response.labelled_by(title);
+    }
+}
+
+/// The name of a channel, as wide as that of any other.
+fn title_ui(ui: &mut Ui, title: &str) -> egui::Response {
+    let size = egui::vec2(TITLE_WIDTH, ui.spacing().interact_size.y);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let title = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_width(TITLE_WIDTH);
+        ui.strong(tr(title))
+    });
+    title.inner
+}
+
+/// The name of a field, which goes to the next line as a whole.
+fn label_ui(ui: &mut Ui, name: &str) -> egui::Response {
+    ui.add(egui::Label::new(tr(name)).extend())
+}
+
+/// A column as it is called in the lists.
+fn name_of(column: &FoundColumn) -> String {
+    let mut name = column.name.clone();
+    if column.address != name {
+        let place = tr(&column.address);
+        name = if name.is_empty() {
+            place
+        } else {
+            format!("{name} ({place})")
+        };
+    }
+    match &column.unit {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name,
+    }
+}
+
+/// What stands in a column, in one line.
+fn values(column: &FoundColumn, unit: &str) -> String {
+    let numbers = &column.numbers;
+    let Some([least, largest]) = numbers.range.map(|r| r.map(|v| significant(v, DIGITS))) else {
+        return format!("{} values, none of which is finite", numbers.count);
+    };
+    let first: Vec<String> = numbers
+        .first
+        .iter()
+        .map(|v| significant(*v, DIGITS))
+        .collect();
+    let (count, first) = (numbers.count, first.join(", "));
+    if unit.is_empty() {
+        format!("{count} values from {least} to {largest}; the first are {first}")
+    } else {
+        format!("{count} values from {least} to {largest} {unit}; the first are {first}")
+    }
+}
+
+/// The unit: of a list, or of the user's own where any will do.
+fn unit_ui(ui: &mut Ui, channel: &Channel, kind: Kind, chosen: &mut Chosen) {
+    let units = channel.units(kind);
+    let label = label_ui(ui, channel.unit);
+    if units.is_empty() {
+        ui.add(egui::TextEdit::singleline(&mut chosen.unit).desired_width(UNIT_WIDTH))
+            .labelled_by(label.id);
+        return;
+    }
+    let shown = match chosen.unit.as_str() {
+        "" => tr("choose ..."),
+        unit => unit.to_owned(),
+    };
+    let list = egui::ComboBox::from_id_salt(channel.unit)
+        .selected_text(shown)
+        .width(UNIT_WIDTH)
+        .show_ui(ui, |ui| {
+            // What the file says may be spelled in another way than usual.
+            let own =
+                Some(chosen.unit.clone()).filter(|u| !u.is_empty() && !units.contains(&u.as_str()));
+            let usual = units.iter().map(|unit| (*unit).to_owned());
+            for unit in own.into_iter().chain(usual) {
+                let text = unit.clone();
+                ui.selectable_value(&mut chosen.unit, unit, text);
+            }
+        });
+    list.response.labelled_by(label.id);
+    if channel.is_counted(kind, chosen) {
+        let label = label_ui(ui, channel.resolution);
+        ui.add(
+            egui::TextEdit::singleline(&mut chosen.resolution)
+                .hint_text(tr("4096/rev or 0.001 mm"))
+                .desired_width(UNIT_WIDTH * 2.0),
+        )
+        .labelled_by(label.id);
+    }
+}
+
+fn torque_constant_ui(ui: &mut Ui, constant: &mut String) {
+    ui.horizontal_wrapped(|ui| {
+        let label = label_ui(ui, "Torque constant, if it is known");
+        ui.add(
+            egui::TextEdit::singleline(constant)
+                .hint_text(tr("0.05 N m/A"))
+                .desired_width(UNIT_WIDTH * 2.0),
+        )
+        .labelled_by(label.id);
+    });
+    ui.small(tr("Without it inertia, friction and loads stand in multiples of it; times and gaps do not depend on it."));
+}
+
+impl Compare {
+    /// The form, in place of what is open.
+    pub(super) fn form_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+        if let Some(form) = &self.form {
+            theme::scroll("compare_mapping").show(ui, |ui| form.ui(ui, targets, commands));
+        }
+    }
+}
