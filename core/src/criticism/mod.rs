@@ -12,6 +12,7 @@ mod fit;
 mod job;
 mod judge;
 mod knowledge;
+mod leap;
 mod locate;
 mod missing;
 mod next_experiment;

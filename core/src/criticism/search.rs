@@ -57,7 +57,7 @@ pub(super) struct Ground {
 }
 
 /// Values and states of the windows from which a fit starts.
-type Point = (Vec<f64>, Vec<Start>);
+pub(super) type Point = (Vec<f64>, Vec<Start>);
 
 /// A search that goes on piece by piece.
 pub(super) struct Search {
@@ -281,7 +281,8 @@ impl Search {
         Self::from_points(structure, points, f64::INFINITY)
     }
 
-    fn from_points(structure: Structure, points: Vec<Point>, present: f64) -> Self {
+    /// A search from these points.
+    pub(super) fn from_points(structure: Structure, points: Vec<Point>, present: f64) -> Self {
         let few = points.len() <= SHORTLIST;
         let (pending, shortlist) = if few {
             let points = points.into_iter();

@@ -42,6 +42,9 @@ const DAMPING_GROWTH: f64 = 6.0;
 const MAX_STALLS: usize = 2;
 const RESTART_DAMPING: f64 = 1e-3;
 
+/// A fit is stuck where its last step should have lowered the cost by more than this share of it, and did not.
+const STUCK: f64 = 1e-4;
+
 /// Share of their size by which values may differ that say the same.
 const SAME_PLACE: f64 = 0.01;
 
@@ -111,6 +114,10 @@ pub(super) struct Fit {
     iterations: usize,
     stalls: usize,
     pub done: bool,
+    /// Values from which it began.
+    origin: Vec<f64>,
+    /// Share of the cost by which the first step of the last iteration should have lowered it.
+    hope: f64,
     /// Inverse covariance of the values for unit noise, from the last iteration.
     information: DMatrix<f64>,
 }
@@ -130,10 +137,12 @@ impl Fit {
         let p = values.len();
         let mut fit = Self {
             structure,
+            origin: values.clone(),
             values,
             starts,
             motion,
             cost,
+            hope: 0.0,
             damping: FIRST_DAMPING,
             held: usize::MAX,
             iterations: 0,
@@ -172,10 +181,11 @@ impl Fit {
                 self.damping *= 10.0;
                 continue;
             };
-            if shortened
-                && share * self.hoped_fall(data, &gradient, &windows, &values, &starts)
-                    < COST_TOLERANCE * present
-            {
+            let fall = share * self.hoped_fall(data, &gradient, &windows, &values, &starts);
+            let hope = fall / present.max(f64::MIN_POSITIVE);
+            if !shortened {
+                self.hope = hope;
+            } else if hope < COST_TOLERANCE {
                 break;
             }
             let (starts, motion) = self.motion_from(data, &values, starts, scale, present, scales);
@@ -204,6 +214,18 @@ impl Fit {
             }
         }
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
+    }
+
+    /// Whether it stopped short of the least cost: its steps should have lowered it and did not, as where the motion
+    /// bends sharply all along a valley.
+    pub fn is_stuck(&self) -> bool {
+        self.done && (self.hope > STUCK || self.iterations >= MAX_ITERATIONS)
+    }
+
+    /// Values as many times farther on as they have come: from beyond, the way back along a valley may be smooth.
+    pub fn beyond(&self, times: f64) -> Vec<f64> {
+        let pairs = self.values.iter().zip(&self.origin);
+        pairs.map(|(to, from)| to + times * (to - from)).collect()
     }
 
     /// Motion with these values and starts; a load that they leave alone is not followed again.

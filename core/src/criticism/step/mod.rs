@@ -19,10 +19,11 @@ use crate::user_model::UserModel;
 /// Error of a perfect model in noise units.
 pub(super) const NOISE_FLOOR: f64 = 1.0;
 
-/// Times that a model is fitted once more from where an effect on top of it led, and the share of its cost below
-/// which that is another valley.
+/// Times that a model is fitted once more, the share of its cost below which that is another valley, and the one below
+/// which it is taken.
 const MAX_VISITS: usize = 2;
 const BETTER_VALLEY: f64 = 0.92;
+const BETTER: f64 = 0.9999;
 
 /// What a step is doing.
 enum Stage {
@@ -30,7 +31,7 @@ enum Stage {
     Build { search: Search, next: usize },
     /// Trying every effect on top.
     Try(Race),
-    /// Fitting the model once more from where an effect on top of it led.
+    /// Fitting the model once more from where an effect on top of it led, or from beyond where it was stuck.
     Revisit(Search),
     /// Trying to do without each effect.
     Remove { index: usize, search: Search },
@@ -277,11 +278,14 @@ impl StepJob {
             Stage::Revisit(search) => {
                 let again = self.finished(&search);
                 match (again, &self.model) {
-                    (Some(again), Some(model))
-                        if again.fit.cost < BETTER_VALLEY * model.fit.cost =>
-                    {
+                    (Some(again), Some(model)) if again.fit.cost < BETTER * model.fit.cost => {
+                        let other_valley = again.fit.cost < BETTER_VALLEY * model.fit.cost;
                         self.model = Some(again);
-                        self.try_stage()
+                        if other_valley {
+                            self.try_stage()
+                        } else {
+                            self.remove_stage(0)
+                        }
                     }
                     _ => self.remove_stage(0),
                 }
@@ -322,15 +326,22 @@ impl StepJob {
     }
 
     /// Where the model with an effect on top costs much less, the model itself may have stopped in a worse valley than it
-    /// need have: it is fitted again from where the effect led.
+    /// need have: it is fitted again from where the effect led. One to which nothing is to be added, but which is stuck,
+    /// is fitted again from beyond where it stopped.
     fn revisit_stage(&mut self) -> Stage {
         let search = self.model.as_ref().and_then(|model| {
             let costs = self.tried.iter().map(|(_, with)| &with.fit);
             let best = costs.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
             let bends = !model.fit.structure.effects.is_empty();
             let lower = best.cost < BETTER_VALLEY * model.fit.cost;
-            (bends && lower && self.visits < MAX_VISITS)
-                .then(|| Search::revisiting(&model.fit, best))
+            if !bends || self.visits >= MAX_VISITS {
+                return None;
+            }
+            if lower {
+                return Some(Search::revisiting(&model.fit, best));
+            }
+            let stuck = model.fit.is_stuck() && self.suggestion(model).is_none();
+            stuck.then(|| Search::leaping(&model.fit))
         });
         self.visits += usize::from(search.is_some());
         search.map_or_else(|| self.remove_stage(0), Stage::Revisit)
