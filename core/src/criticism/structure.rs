@@ -7,9 +7,9 @@ use crate::measurement::Kind;
 use crate::model::Model;
 use crate::user_model::Status;
 
-/// Share of a parameter, or of its typical size, by which it is moved for a finite difference: large
-/// enough to average over the kinks that switching makes in the error, small against its curvature.
-const RELATIVE_STEP: f64 = 1e-3;
+/// Share of a parameter, or of its typical size, by which it is moved for a sensitivity: the motion is exact, so that
+/// the difference is the derivative to some six digits.
+const RELATIVE_STEP: f64 = 1e-6;
 
 /// Share of the typical size that stands in for a parameter near 0.
 const ZERO_SHARE: f64 = 0.01;

@@ -14,26 +14,7 @@ use crate::model::Start;
 /// Step for differences with respect to where a load is, in its standard deviations.
 const LOAD_DIFFERENCE: f64 = 0.1;
 
-/// Smallest step for finite differences, as a share of the first one.
-const LEAST_DIFFERENCE: f64 = 1e-4;
-
 impl Fit {
-    /// Steps for finite differences: as large as the uncertainty of a value, once that is known, so that
-    /// curvature does not bend the derivative by more than the noise does.
-    pub(super) fn difference_steps(&self, data: &Data, scales: &Scales) -> Vec<f64> {
-        let mut steps = self.structure.difference_steps(&self.values, scales);
-        if self.iterations > 1 && self.stalls == 0 {
-            let count = data.len() as f64;
-            let level = (self.cost / count).sqrt().max(1.0);
-            for (j, step) in steps.iter_mut().enumerate() {
-                let uncertain = level / self.information[(j, j)].max(f64::MIN_POSITIVE).sqrt();
-                let size = uncertain.max(LEAST_DIFFERENCE * step.abs()).min(step.abs());
-                *step = size.copysign(*step);
-            }
-        }
-        steps
-    }
-
     /// The most by which a step may lower the squared residuals, as far as they are linear: twice the
     /// gradient along it.
     pub(super) fn hoped_fall(
@@ -285,4 +266,73 @@ fn difference(mut moved: Motion, base: &Motion, step: f64, spans: &[(usize, usiz
         }
     }
     moved
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use super::*;
+    use crate::criticism::session::Session;
+    use crate::criticism::structure::Structure;
+    use crate::measurement::import_csv;
+    use crate::user_model::UserModel;
+
+    /// Body of the drive, kg m^2 and N m s/rad, its torque, N m, and the time between samples, s.
+    const BODY: [f64; 2] = [9e-4, 2e-2];
+    const TORQUE: f64 = 0.3;
+    const STEP: f64 = 1e-3;
+
+    /// Sample from which the torque is the other way round.
+    const TURN: i32 = 200;
+
+    /// `dv/dJ` and `dv/dd` of `v = u/d (1 - exp(-d t/J))`, in the time `t` from rest under a constant torque.
+    fn exact([inertia, damping]: [f64; 2], t: f64) -> [f64; 2] {
+        let fading = libm::exp(-damping * t / inertia);
+        let by_inertia = -TORQUE * t / (inertia * inertia) * fading;
+        let by_damping = TORQUE / damping * (t / inertia * fading - (1.0 - fading) / damping);
+        [by_inertia, by_damping]
+    }
+
+    #[test]
+    fn sensitivities_are_those_of_the_closed_form_to_five_digits() {
+        let mut csv = "t [s],u [N m],v1 [rad/s]\n".to_owned();
+        let [inertia, damping] = BODY;
+        let mut v = 0.0;
+        for i in 0..400 {
+            let torque = if i < TURN { TORQUE } else { -TORQUE };
+            // A little noise, or there would be no scale.
+            let noise = 1e-4 * f64::from(i * 7919 % 13 - 6);
+            writeln!(csv, "{},{torque},{}", STEP * f64::from(i), v + noise).unwrap();
+            let rest = torque / damping;
+            v = rest + (v - rest) * libm::exp(-damping * STEP / inertia);
+        }
+        let measurement = import_csv("step", csv.as_bytes(), None).unwrap();
+        let session = Session::new(&measurement, &UserModel::blank(measurement.kind)).unwrap();
+        let (data, scales) = (&session.data, &session.scales);
+        let structure = Structure::new(data.kind, Vec::new(), session.knowledge.clone());
+        let starts = data.guessed_starts();
+        let fit = Fit::new(data, structure, BODY.to_vec(), starts, scales);
+        let steps = fit.structure.difference_steps(&fit.values, scales);
+        let columns = fit.columns(data, &steps, scales);
+        let spans = data.spans();
+        let driven = spans.iter().filter(|span| span.1 <= TURN as usize);
+        assert!(driven.clone().count() >= 5, "{spans:?}");
+        for ((from, to), start) in driven.zip(&fit.starts) {
+            for i in from + 1..*to {
+                let t = STEP * (i - from) as f64;
+                // What it had at first fades as it would by itself.
+                let left = start.velocity * libm::exp(-damping * t / inertia) * t / inertia;
+                let own = [left * damping / inertia, -left];
+                for (k, (driven, own)) in exact(BODY, t).into_iter().zip(own).enumerate() {
+                    let (exact, found) = (driven + own, columns[k].velocity[i]);
+                    let size = driven.abs().max(own.abs());
+                    assert!(
+                        (found - exact).abs() < 1e-5 * size,
+                        "{k}, {i}: {found}, {exact}"
+                    );
+                }
+            }
+        }
+    }
 }

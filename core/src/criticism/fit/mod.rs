@@ -161,7 +161,7 @@ impl Fit {
         }
         self.iterations += 1;
         let p = self.values.len();
-        let steps = self.difference_steps(data, scales);
+        let steps = self.structure.difference_steps(&self.values, scales);
         let columns = self.columns(data, &steps, scales);
         let scale = oddness(data, &self.motion);
         let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns, p, scale);
@@ -209,7 +209,6 @@ impl Fit {
         if !lowered {
             self.damping = RESTART_DAMPING;
             if !self.mend_odd_windows(data, scales) {
-                // Once more with long difference steps, which see past the kinks around a stall.
                 self.stalls += 1;
             }
         }
