@@ -57,8 +57,8 @@ pub fn usual_units(role: Role) -> &'static [&'static str] {
     }
 }
 
-/// What an encoder counts.
-pub(super) const COUNTS: &str = "counts";
+/// What an encoder counts: a unit that needs its resolution.
+pub const COUNTS: &str = "counts";
 
 /// Whether this is a unit of a current or a voltage, which a torque constant makes a torque or a force.
 pub fn electric(unit: &str) -> bool {

@@ -1,11 +1,10 @@
 //! Which column is what, as someone chooses it: a plain value, and the mapping that it stands for.
 
-use hysteron_core::measurement::{FoundColumn, Kind, Quantity, Role, electric, guess, usual_units};
+use hysteron_core::measurement::{
+    COUNTS, FoundColumn, Kind, Quantity, Role, electric, guess, usual_units,
+};
 
 use crate::reading::Reading;
-
-/// What an encoder counts: a unit that needs its resolution.
-const COUNTS: &str = "counts";
 
 /// A channel that a column can be.
 pub(super) struct Channel {
