@@ -74,6 +74,30 @@ fn a_link_diagnoses_a_measurement_with_its_effects() {
 }
 
 #[test]
+fn what_a_link_sets_is_set_while_its_file_is_still_read() {
+    let mut there = app("explore", WIDE);
+    let ctx = there.ctx.clone();
+    let texts = [
+        "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02",
+        "v1;compare;compare.file=drive-02;compare.look=places",
+    ];
+    for text in texts {
+        assert_eq!(there.state_mut().open_link(&ctx, text), Ok(()));
+        assert_eq!(state(&there)["link"], text);
+        assert_eq!(state(&there)["busy"], true);
+    }
+    let magic = "v1;compare;compare.file=drive-02;compare.effects=%5B%22magic%22%5D";
+    let refused = there.state_mut().open_link(&ctx, magic);
+    assert!(refused.is_err_and(|e| e.contains("does not exist")));
+    finish(&mut there);
+    assert_eq!(state(&there)["link"], texts[1]);
+    assert!(
+        state(&there)["error"].as_f64().is_some_and(|e| e > 2.0),
+        "no friction"
+    );
+}
+
+#[test]
 fn a_link_opens_a_measured_drifting_test_and_back() {
     let mut there = app("explore", WIDE);
     let ctx = there.ctx.clone();

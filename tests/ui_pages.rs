@@ -93,12 +93,12 @@ fn adding_coulomb_friction_to_drive_02_lowers_the_error_to_the_noise() {
 fn a_bad_file_gives_one_sentence_and_loses_nothing() {
     let mut harness = app("compare");
     harness.get_by_label("Open drive-02").click();
-    harness.step();
+    finish(&mut harness);
     let ctx = harness.ctx.clone();
     harness
         .state_mut()
         .open(&ctx, "notes.csv", b"this is no measurement\n");
-    harness.step();
+    finish(&mut harness);
     let state = state(&harness);
     assert_eq!(state["file"], "drive-02", "the open measurement stays");
     let message = state["message"].as_str().expect("a sentence");
@@ -109,7 +109,7 @@ fn a_bad_file_gives_one_sentence_and_loses_nothing() {
 fn a_model_from_a_file_is_where_compare_begins() {
     let mut harness = app("compare");
     harness.get_by_label("Open drive-02").click();
-    harness.step();
+    finish(&mut harness);
     let ctx = harness.ctx.clone();
     let mut open = |text: &str| {
         harness.state_mut().open(&ctx, "rig.toml", text.as_bytes());

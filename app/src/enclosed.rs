@@ -1,36 +1,51 @@
 //! Measurements that come with the app, packed by `build.rs`.
 
+use hysteron_core::measurement::Kind;
+
+use crate::content::Content;
+use crate::packed::unpack;
+
 /// A measurement.
 pub struct Enclosed {
     /// Its name.
     pub id: &'static str,
+    /// What was measured.
+    pub kind: Kind,
     packed: &'static [u8],
 }
 
 macro_rules! enclosed {
-    ($id:literal) => {
+    ($kind:ident, $id:literal) => {
         Enclosed {
             id: $id,
+            kind: Kind::$kind,
             packed: include_bytes!(concat!(env!("OUT_DIR"), "/", $id, ".packed")),
         }
     };
 }
 
-pub const DRIVE_02: Enclosed = enclosed!("drive-02");
-pub const DRIVE_03: Enclosed = enclosed!("drive-03");
-pub const DRIVE_10: Enclosed = enclosed!("drive-10");
-pub const DRIVE_12: Enclosed = enclosed!("drive-12");
-pub const PROCESS_02: Enclosed = enclosed!("process-02");
+pub const DRIVE_02: Enclosed = enclosed!(Drive, "drive-02");
+pub const DRIVE_03: Enclosed = enclosed!(Drive, "drive-03");
+pub const DRIVE_10: Enclosed = enclosed!(Drive, "drive-10");
+pub const DRIVE_12: Enclosed = enclosed!(Drive, "drive-12");
+pub const PROCESS_02: Enclosed = enclosed!(Process, "process-02");
 
 impl Enclosed {
     /// Its text.
     pub fn csv(&self) -> Vec<u8> {
-        crate::packed::unpack(self.packed).unwrap_or_default()
+        unpack(self.packed).unwrap_or_default()
+    }
+
+    /// The same, for where it is read.
+    pub fn content(&self) -> Content {
+        Content::Packed(self.packed.to_vec().into())
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use hysteron_core::measurement::{ImportOptions, import};
+
     use super::*;
 
     #[test]
@@ -39,6 +54,9 @@ mod tests {
         for enclosed in [DRIVE_02, DRIVE_03, DRIVE_10, DRIVE_12, PROCESS_02] {
             let file = std::fs::read(format!("{folder}/{}.csv", enclosed.id)).expect("the file");
             assert!(enclosed.csv() == file, "{}", enclosed.id);
+            let options = ImportOptions::default();
+            let read = import(enclosed.id, &file, &options).expect("a measurement");
+            assert_eq!(read.kind, enclosed.kind, "{}", enclosed.id);
         }
     }
 }

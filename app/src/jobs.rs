@@ -86,18 +86,26 @@ mod platform {
 
 #[cfg(target_arch = "wasm32")]
 mod platform {
-    use std::cell::RefCell;
+    use std::cell::{Cell, RefCell};
     use std::rc::Rc;
 
+    use js_sys::{Array, Uint8Array};
     use wasm_bindgen::prelude::*;
     use web_sys::{ErrorEvent, MessageEvent, Worker, WorkerOptions, WorkerType};
 
-    use crate::tasks::News;
     pub use crate::tasks::Task as Runs;
+    use crate::tasks::{News, READY};
+    use crate::wire::{pack, unpack};
+
+    thread_local! {
+        /// A worker that has finished its task: the next one need not wait for another to start.
+        static IDLE: Cell<Option<Worker>> = const { Cell::new(None) };
+    }
 
     pub struct Job<R> {
         worker: Option<Worker>,
         news: Rc<RefCell<Vec<News<R>>>>,
+        finished: Rc<Cell<bool>>,
         _handlers: Option<(
             Closure<dyn FnMut(MessageEvent)>,
             Closure<dyn FnMut(ErrorEvent)>,
@@ -106,33 +114,37 @@ mod platform {
 
     pub fn start<T: Runs>(ctx: egui::Context, task: T) -> Job<T::Report> {
         let news = Rc::new(RefCell::new(Vec::new()));
-        let options = WorkerOptions::new();
-        options.set_type(WorkerType::Module);
-        let Ok(worker) = Worker::new_with_options("./worker.js", &options) else {
+        let finished = Rc::new(Cell::new(false));
+        let idle = IDLE.take();
+        let (found, worker) = (idle.is_some(), idle.map_or_else(start_worker, Some));
+        let Some(worker) = worker else {
             news.borrow_mut().push(News::Failed(
                 "the browser refuses to start a worker".to_owned(),
             ));
             return Job {
-                worker: None,
+                worker,
                 news,
+                finished,
                 _handlers: None,
             };
         };
         let (inbox, outbox, repaint) = (Rc::clone(&news), worker.clone(), ctx.clone());
+        let (done, mut waiting) = (Rc::clone(&finished), Some(task));
+        if found && let Some(task) = waiting.take() {
+            give(&worker, &task, &news);
+        }
         let on_message = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
-            let Some(text) = event.data().as_string() else {
-                return;
-            };
-            if text == crate::tasks::READY {
-                if let Ok(text) = serde_json::to_string(&(T::NAME, &task)) {
-                    // The worker is there: it has just spoken.
-                    let _ = outbox.post_message(&JsValue::from_str(&text));
+            let data = event.data();
+            if data == READY {
+                // For the task, or for another after it.
+                match waiting.take() {
+                    Some(task) => give(&outbox, &task, &inbox),
+                    None => done.set(true),
                 }
-                return;
+            } else {
+                let said = unpack(&Uint8Array::new(&data).to_vec());
+                inbox.borrow_mut().push(said.unwrap_or_else(News::Failed));
             }
-            let said =
-                serde_json::from_str(&text).unwrap_or_else(|error| News::Failed(error.to_string()));
-            inbox.borrow_mut().push(said);
             repaint.request_repaint();
         });
         let (inbox, repaint) = (Rc::clone(&news), ctx);
@@ -148,7 +160,28 @@ mod platform {
         Job {
             worker: Some(worker),
             news,
+            finished,
             _handlers: Some((on_message, on_error)),
+        }
+    }
+
+    fn start_worker() -> Option<Worker> {
+        let options = WorkerOptions::new();
+        options.set_type(WorkerType::Module);
+        Worker::new_with_options("./worker.js", &options).ok()
+    }
+
+    /// Hands a task to a worker that listens.
+    fn give<T: Runs>(worker: &Worker, task: &T, news: &RefCell<Vec<News<T::Report>>>) {
+        match pack(task) {
+            Ok(bytes) => {
+                let bytes = Uint8Array::from(bytes.as_slice());
+                let message = Array::of2(&JsValue::from_str(T::NAME), &bytes);
+                let moved = Array::of1(&bytes.buffer());
+                // It is there: it has spoken.
+                let _ = worker.post_message_with_transfer(&message, &moved);
+            }
+            Err(error) => news.borrow_mut().push(News::Failed(error)),
         }
     }
 
@@ -160,7 +193,18 @@ mod platform {
 
     impl<R> Drop for Job<R> {
         fn drop(&mut self) {
-            if let Some(worker) = &self.worker {
+            let Some(worker) = self.worker.take() else {
+                return;
+            };
+            worker.set_onmessage(None);
+            worker.set_onerror(None);
+            // One is kept; another, or one that still works, is not.
+            let surplus = if self.finished.get() {
+                IDLE.replace(Some(worker))
+            } else {
+                Some(worker)
+            };
+            if let Some(worker) = surplus {
                 worker.terminate();
             }
         }

@@ -6,6 +6,7 @@ mod bar;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 mod colors;
+mod content;
 #[cfg(not(target_arch = "wasm32"))]
 mod cores;
 mod document;
@@ -29,6 +30,8 @@ mod shortcuts;
 mod start;
 mod tasks;
 mod theme;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod wire;
 #[cfg(not(target_arch = "wasm32"))]
 mod work;
 mod zoom;

@@ -1,17 +1,20 @@
 //! Long computations by name: what they need, and what they say meanwhile. What they do is in `work.rs`: on
-//! the web it is the worker that does it, which gets its tasks as JSON text.
+//! the web it is the worker that does it.
 
 use hysteron_core::backlash::GapEstimate;
 use hysteron_core::criticism::{FittedModel, Limits, NextExperiment, StepReport};
 use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, Tile};
-use hysteron_core::measurement::Measurement;
+use hysteron_core::measurement::{FoundColumn, Measurement};
 use hysteron_core::mystery::{Answer, Mystery, Request, Reveal};
 use hysteron_core::tuning::{TuningInput, TuningReport};
 use hysteron_core::user_model::UserModel;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+
+use crate::content::Content;
+use crate::reading::Reading;
 
 /// What a task says while it runs.
 #[derive(Debug, Serialize, Deserialize)]
@@ -35,6 +38,56 @@ pub trait Task: Serialize + DeserializeOwned + Send + 'static {
     const NAME: &'static str;
     /// What it hands over.
     type Report: Serialize + DeserializeOwned + Send + 'static;
+}
+
+/// Reads a measurement.
+#[derive(Serialize, Deserialize)]
+pub struct ReadTask {
+    /// Name of the file.
+    pub file: String,
+    /// What is in it.
+    pub content: Content,
+    /// What it does not say itself.
+    pub reading: Reading,
+}
+
+/// What was read.
+#[derive(Serialize, Deserialize)]
+pub enum ReadReport {
+    /// A measurement.
+    Measurement(Box<Opened>),
+    /// A table that does not say what its columns are.
+    Unclear {
+        /// What is not understood.
+        reason: String,
+        /// What there is.
+        columns: Vec<FoundColumn>,
+    },
+}
+
+/// A measurement, and what else is known of its file.
+#[derive(Serialize, Deserialize)]
+pub struct Opened {
+    /// What was measured.
+    pub measurement: Measurement,
+    /// Where it comes from.
+    pub source: Source,
+    /// The truth about it, sealed, if it is a mystery.
+    pub seal: Option<Vec<u8>>,
+}
+
+/// The very file that was read.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Source {
+    /// Its length.
+    pub bytes: usize,
+    /// Its fingerprint.
+    pub sha256: String,
+}
+
+impl Task for ReadTask {
+    const NAME: &'static str = "read";
+    type Report = ReadReport;
 }
 
 /// Criticises the baseline with effects on a measurement.
@@ -96,8 +149,8 @@ impl Task for TuneTask {
 pub enum GapTask {
     /// Of a simulated drive, recorded as a rig would.
     Simulated(Box<DriveInput>),
-    /// Of a measurement.
-    Measured(Box<Measurement>),
+    /// Of a measurement that is to be read.
+    Measured(Box<ReadTask>),
 }
 
 /// What the motor tells about the gap.
@@ -148,6 +201,6 @@ impl Task for RevealTask {
     type Report = Reveal;
 }
 
-/// What the worker says first, when it listens.
+/// What the worker says whenever it listens: first, and after each task.
 #[cfg(target_arch = "wasm32")]
 pub const READY: &str = "ready";

@@ -1,18 +1,25 @@
 //! What long computations do. The same code runs on a thread natively and in the worker on the web; the page
 //! itself has none of it, which keeps it small.
 
+use std::borrow::Cow;
+use std::fmt;
+
 use hysteron_core::backlash::estimate_gap;
 use hysteron_core::crew::Crew;
 use hysteron_core::criticism::{ExperimentJob, NextExperiment, Progress, StepJob, StepReport};
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
-use hysteron_core::mystery::{Reveal, make};
+use hysteron_core::measurement::{ImportError, Measurement, Problem, columns, import};
+use hysteron_core::mystery::{Reveal, make, seal_of};
+use hysteron_core::report::sha256;
 use hysteron_core::tuning::{TuningReport, tune};
 use hysteron_core::user_model::UserModel;
 
+use crate::content::Content;
+use crate::packed::unpack;
 use crate::tasks::{
-    ExperimentTask, GapReport, GapTask, Made, MapTask, MysteryTask, News, RevealTask, StepTask,
-    Task, TuneTask,
+    ExperimentTask, GapReport, GapTask, Made, MapTask, MysteryTask, News, Opened, ReadReport,
+    ReadTask, RevealTask, Source, StepTask, Task, TuneTask,
 };
 
 /// Where a task says its news; false when nobody listens any more and it should end.
@@ -22,6 +29,103 @@ pub type Say<'a, R> = &'a mut dyn FnMut(News<R>) -> bool;
 pub trait Work: Task {
     /// Runs until it is finished or nobody listens.
     fn run(self, say: Say<'_, Self::Report>);
+}
+
+impl Work for ReadTask {
+    fn run(self, say: Say<'_, ReadReport>) {
+        let bytes = bytes_of(&self.content);
+        let report = match self.read(&bytes) {
+            Ok(measurement) => Ok(ReadReport::Measurement(Box::new(Opened {
+                measurement,
+                source: Source {
+                    bytes: bytes.len(),
+                    sha256: sha256(&bytes),
+                },
+                seal: seal_of(&bytes),
+            }))),
+            Err(refused) => self.ask(&refused, &bytes).ok_or(refused),
+        };
+        say(match report {
+            Ok(report) => News::Report(Box::new(report)),
+            Err(refused) => News::Failed(refused.to_string()),
+        });
+    }
+}
+
+/// The bytes of a file.
+fn bytes_of(content: &Content) -> Cow<'_, [u8]> {
+    match content {
+        Content::Plain(bytes) => Cow::Borrowed(bytes),
+        Content::Packed(bytes) => Cow::Owned(unpack(bytes).unwrap_or_default()),
+        Content::Mystery(mystery) => Cow::Owned(mystery.csv().into_bytes()),
+    }
+}
+
+/// Columns that a measurement has at least: time, input, output.
+const FEWEST: usize = 3;
+
+/// Why a file is not read.
+enum Refused {
+    /// How it was to be read makes no sense.
+    Reading(String),
+    File(ImportError),
+}
+
+impl Refused {
+    /// Whether someone who knows the columns of the file could have it read.
+    fn is_about_columns(&self) -> bool {
+        matches!(self, Self::File(error) if error.problem.is_about_columns())
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reading(error) => error.fmt(f),
+            Self::File(error) => error.fmt(f),
+        }
+    }
+}
+
+impl ReadTask {
+    fn read(&self, bytes: &[u8]) -> Result<Measurement, Refused> {
+        let options = self.reading.options().map_err(Refused::Reading)?;
+        import(&self.file, bytes, &options).map_err(Refused::File)
+    }
+
+    /// Asks for the columns of a file that was refused, if that can help.
+    fn ask(&self, refused: &Refused, bytes: &[u8]) -> Option<ReadReport> {
+        let Refused::File(error) = refused else {
+            return None;
+        };
+        if !refused.is_about_columns() {
+            return None;
+        }
+        let columns = columns(&self.file, bytes).ok()?;
+        (columns.len() >= FEWEST).then(|| ReadReport::Unclear {
+            reason: match error.problem {
+                // What the command line says goes on about options.
+                Problem::NotMapped { .. } => {
+                    "A file of MATLAB does not say what its columns are.".to_owned()
+                }
+                _ => error.to_string(),
+            },
+            columns,
+        })
+    }
+
+    /// A measurement of which a gap is to be estimated.
+    fn measured(&self) -> Result<Measurement, String> {
+        self.read(&bytes_of(&self.content)).map_err(|refused| {
+            if refused.is_about_columns() {
+                format!(
+                    "{refused}. Open it in Compare, which asks for its columns; then it can be opened here too."
+                )
+            } else {
+                refused.to_string()
+            }
+        })
+    }
 }
 
 impl Work for StepTask {
@@ -119,7 +223,7 @@ impl Work for GapTask {
                 record(&input, &Recorder::default()).map_err(|e| e.to_string()),
                 false,
             ),
-            Self::Measured(measurement) => (Ok(*measurement), true),
+            Self::Measured(task) => (task.measured(), true),
         };
         say(match read {
             Ok(measurement) => News::Report(Box::new(GapReport {

@@ -2,8 +2,24 @@
 //! that its module stays small.
 
 #[cfg(target_arch = "wasm32")]
+#[path = "../content.rs"]
+mod content;
+
+#[cfg(target_arch = "wasm32")]
+#[path = "../packed.rs"]
+mod packed;
+
+#[cfg(target_arch = "wasm32")]
+#[path = "../reading.rs"]
+mod reading;
+
+#[cfg(target_arch = "wasm32")]
 #[path = "../tasks.rs"]
 mod tasks;
+
+#[cfg(target_arch = "wasm32")]
+#[path = "../wire.rs"]
+mod wire;
 
 #[cfg(target_arch = "wasm32")]
 #[path = "../work.rs"]
@@ -21,13 +37,15 @@ fn main() {
 
 #[cfg(target_arch = "wasm32")]
 mod web {
+    use js_sys::{Array, Uint8Array};
     use wasm_bindgen::prelude::*;
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
     use crate::tasks::{
-        ExperimentTask, GapTask, MapTask, MysteryTask, News, READY, RevealTask, StepTask,
+        ExperimentTask, GapTask, MapTask, MysteryTask, News, READY, ReadTask, RevealTask, StepTask,
         Task as _, TuneTask,
     };
+    use crate::wire::{pack, unpack};
     use crate::work::Work;
 
     /// Share of progress below which nothing new is said.
@@ -37,48 +55,52 @@ mod web {
         let scope: DedicatedWorkerGlobalScope = js_sys::global().unchecked_into();
         let answer = scope.clone();
         let handler = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
-            let Some(text) = event.data().as_string() else {
+            let Ok(message) = event.data().dyn_into::<Array>() else {
                 return;
             };
-            if let Err(error) = work(&answer, &text) {
-                send(&answer, &News::<()>::Failed(error.to_string()));
+            if let Err(error) = work(&answer, &message) {
+                send(&answer, &News::<()>::Failed(error));
             }
+            ready(&answer);
         });
         scope.set_onmessage(Some(handler.as_ref().unchecked_ref()));
         handler.forget();
+        ready(&scope);
+    }
+
+    fn ready(scope: &DedicatedWorkerGlobalScope) {
+        // A page that is gone needs no answer; here and below.
         let _ = scope.post_message(&JsValue::from_str(READY));
     }
 
     fn send<R: serde::Serialize>(scope: &DedicatedWorkerGlobalScope, news: &News<R>) {
-        if let Ok(text) = serde_json::to_string(news) {
-            // A page that is gone needs no answer.
-            let _ = scope.post_message(&JsValue::from_str(&text));
+        if let Ok(bytes) = pack(news) {
+            let bytes = Uint8Array::from(bytes.as_slice());
+            let moved = Array::of1(&bytes.buffer());
+            let _ = scope.post_message_with_transfer(&bytes, &moved);
         }
     }
 
     /// A message is the task's name and the task; one line for each kind of task.
-    fn work(scope: &DedicatedWorkerGlobalScope, text: &str) -> Result<(), serde_json::Error> {
-        let (name, task): (String, serde_json::Value) = serde_json::from_str(text)?;
+    fn work(scope: &DedicatedWorkerGlobalScope, message: &Array) -> Result<(), String> {
+        let name = message.get(0).as_string().unwrap_or_default();
+        let task = Uint8Array::new(&message.get(1)).to_vec();
         match name.as_str() {
-            StepTask::NAME => run::<StepTask>(scope, task),
-            ExperimentTask::NAME => run::<ExperimentTask>(scope, task),
-            MapTask::NAME => run::<MapTask>(scope, task),
-            GapTask::NAME => run::<GapTask>(scope, task),
-            MysteryTask::NAME => run::<MysteryTask>(scope, task),
-            RevealTask::NAME => run::<RevealTask>(scope, task),
-            TuneTask::NAME => run::<TuneTask>(scope, task),
-            _ => Err(serde::de::Error::custom(format!(
-                "no task is called {name}"
-            ))),
+            ReadTask::NAME => run::<ReadTask>(scope, &task),
+            StepTask::NAME => run::<StepTask>(scope, &task),
+            ExperimentTask::NAME => run::<ExperimentTask>(scope, &task),
+            MapTask::NAME => run::<MapTask>(scope, &task),
+            GapTask::NAME => run::<GapTask>(scope, &task),
+            MysteryTask::NAME => run::<MysteryTask>(scope, &task),
+            RevealTask::NAME => run::<RevealTask>(scope, &task),
+            TuneTask::NAME => run::<TuneTask>(scope, &task),
+            _ => Err(format!("no task is called {name}")),
         }
     }
 
-    fn run<T: Work>(
-        scope: &DedicatedWorkerGlobalScope,
-        task: serde_json::Value,
-    ) -> Result<(), serde_json::Error> {
+    fn run<T: Work>(scope: &DedicatedWorkerGlobalScope, task: &[u8]) -> Result<(), String> {
         let mut said = -1.0;
-        serde_json::from_value::<T>(task)?.run(&mut |news| {
+        unpack::<T>(task)?.run(&mut |news| {
             if let News::Progress(fraction, _) = &news {
                 if (fraction - said).abs() <= PROGRESS_STEP {
                     return true;

@@ -1,5 +1,7 @@
 //! What the columns of a file look like, before it is known what they are.
 
+use serde::{Deserialize, Serialize};
+
 use super::MIN_SAMPLES;
 use super::csv::survey;
 use super::error::{ImportError, Problem};
@@ -10,7 +12,7 @@ use super::mat::{self, Format};
 const FIRST: usize = 3;
 
 /// A column of a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FoundColumn {
     /// Its name in the file; empty where it has none.
     pub name: String,
@@ -25,7 +27,7 @@ pub struct FoundColumn {
 }
 
 /// The numbers of a column.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Numbers {
     /// How many there are.
     pub count: usize,

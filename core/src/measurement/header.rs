@@ -1,5 +1,7 @@
 //! The header: which column is what, in which unit.
 
+use serde::{Deserialize, Serialize};
+
 use super::error::Problem;
 use super::mapping::{ImportOptions, Mapping};
 use super::unit::{self, ACCEPTED, Measures};
@@ -51,7 +53,7 @@ pub(super) struct Column {
 }
 
 /// What a column can be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Role {
     /// The times of the samples.
     Time,

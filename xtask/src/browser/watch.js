@@ -1,7 +1,7 @@
-// What the page does with its time, noted from inside: frames, tasks, answers to inputs, workers.
+// What the page does with its time, noted from inside: frames, tasks, answers to inputs, what workers were given.
 (() => {
   const fresh = () => ({
-    frames: 0, frame: 0, frame_at: 0, task: 0, task_at: 0, answers: 0, answer: 0, answer_at: 0, workers: 0,
+    frames: 0, frame: 0, frame_at: 0, task: 0, task_at: 0, answers: 0, answer: 0, answer_at: 0, tasks: 0,
     since: performance.now(),
   });
   let watch = fresh();
@@ -61,6 +61,6 @@
   }).observe({ type: "longtask" });
   const Started = window.Worker;
   window.Worker = class extends Started {
-    constructor(...what) { super(...what); watch.workers += 1; }
+    postMessage(...what) { super.postMessage(...what); watch.tasks += 1; }
   };
 })();

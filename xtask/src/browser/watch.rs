@@ -100,7 +100,7 @@ impl Busy {
     /// What was noted since then, while a diagnosis ran.
     ///
     /// # Errors
-    /// Where no worker was started, or nothing was drawn.
+    /// Where no worker was given anything, or nothing was drawn.
     pub fn read(&mut self, session: &Session) -> Result<(), String> {
         if self.note(session)? == 0 {
             return Err("the diagnosis did not run in a worker".to_owned());
@@ -108,7 +108,7 @@ impl Busy {
         Ok(())
     }
 
-    /// What was noted since then, and how many workers were started.
+    /// What was noted since then, and how many tasks workers were given.
     fn note(&mut self, session: &Session) -> Result<u64, String> {
         // Tasks are told a little later.
         std::thread::sleep(Duration::from_millis(200));
@@ -126,7 +126,7 @@ impl Busy {
         self.frame = self.frame.or(longest("frame"));
         self.task = self.task.or(longest("task"));
         self.answer = self.answer.or(longest("answer"));
-        Ok(count("workers"))
+        Ok(count("tasks"))
     }
 
     /// How long an answer takes while nothing runs: what of it is the renderer's.

@@ -11,12 +11,13 @@ mod side;
 mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
-use hysteron_core::measurement::import;
 
 use super::playback::Playback;
 use super::{Desk, Hint, View};
+use built_in::BuiltIn;
 pub use settings::is_built_in;
 
+use crate::content::Content;
 use crate::document::parsed;
 use crate::export::Table;
 use crate::files::Files;
@@ -27,7 +28,7 @@ use crate::layout;
 use crate::pages::controls::claim_ui;
 use crate::reading::Reading;
 use crate::recent::{Recent, Recents};
-use crate::tasks::{GapReport, GapTask};
+use crate::tasks::{GapReport, GapTask, ReadTask};
 use crate::theme;
 use design::Design;
 use scene::{Scene, Shown};
@@ -144,42 +145,35 @@ impl Backlash {
         }
     }
 
-    /// Opens a measurement from the bytes of a file; a bad one leaves everything as it was.
-    fn open_bytes(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        self.open_as(ctx, name, bytes, &Reading::default());
-    }
-
-    /// The same of a file that was opened before, with what it does not say itself.
-    fn open_as(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8], reading: &Reading) {
-        let options = reading.options().unwrap_or_default();
-        let measurement = match import(name, bytes, &options) {
-            Ok(measurement) => measurement,
-            Err(error) if error.problem.is_about_columns() => {
-                self.message = Some(format!(
-                    "{error}. Open it in Compare, which asks for its columns; then it can be opened here too."
-                ));
-                return;
-            }
-            Err(error) => {
-                self.message = Some(error.to_string());
-                return;
-            }
-        };
+    /// Opens a measurement; a bad one leaves everything as it was.
+    fn open_as(&mut self, ctx: &egui::Context, name: &str, content: Content, reading: Reading) {
         self.simulation = None;
-        self.reading = reading.clone();
-        let task = GapTask::Measured(Box::new(measurement));
+        let task = GapTask::Measured(Box::new(ReadTask {
+            file: name.to_owned(),
+            content,
+            reading: reading.clone(),
+        }));
         self.estimation = Some((None, Job::run(ctx, task)));
+        self.reading = reading;
         self.file = Some(name.to_owned());
         self.playback.clock = 0.0;
         self.message = None;
     }
 
+    fn open_built_in(&mut self, ctx: &egui::Context, built_in: &BuiltIn) {
+        let file = &built_in.file;
+        self.open_as(ctx, file.id, file.content(), Reading::default());
+    }
+
     /// Takes what jobs and files have brought.
     fn take_news(&mut self, ctx: &egui::Context) {
         while let Some(arrival) = self.files.arrived() {
-            let name = &arrival.name;
-            match &arrival.bytes {
-                Ok(bytes) => self.open_as(ctx, name, bytes, &arrival.reading),
+            let name = arrival.name;
+            match arrival.bytes {
+                Ok(bytes) => {
+                    let content = Content::Plain(bytes.into());
+                    self.open_as(ctx, &name, content, arrival.reading);
+                }
                 Err(error) => self.message = Some(format!("{name}: cannot be read ({error})")),
             }
         }
@@ -377,7 +371,8 @@ impl View for Backlash {
     }
 
     fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        self.open_bytes(ctx, name, bytes);
+        let content = Content::Plain(bytes.to_vec().into());
+        self.open_as(ctx, name, content, Reading::default());
     }
 
     fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {

@@ -69,7 +69,7 @@ impl Backlash {
         self.speed = settings.speed;
         self.message = None;
         if let Some(built_in) = file {
-            self.open_bytes(ctx, built_in.file.id, &built_in.file.csv());
+            self.open_built_in(ctx, built_in);
         } else if settings.file.is_none() && self.file.is_some() {
             self.close();
         }

@@ -83,7 +83,7 @@ impl Backlash {
             self.files.reopen(ui.ctx(), &recent);
         }
         if let Some(built_in) = chosen {
-            self.open_bytes(ui.ctx(), built_in.file.id, &built_in.file.csv());
+            self.open_built_in(ui.ctx(), built_in);
         }
     }
 

@@ -10,11 +10,24 @@ use crate::theme;
 
 impl Compare {
     pub(super) fn message_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        self.reading_ui(ui, commands);
         if let Some(message) = &self.message {
             ui.horizontal_wrapped(|ui| {
                 ui.colored_label(ui.visuals().warn_fg_color, tr(message));
                 if ui.small_button(tr("Dismiss")).clicked() {
                     commands.push(Command::Dismiss);
+                }
+            });
+        }
+    }
+
+    /// Which file is being read.
+    pub(super) fn reading_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        if let Some(opening) = &self.opening {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(tr(format!("Reading {} ...", opening.file)));
+                if ui.small_button(tr("Cancel")).clicked() {
+                    commands.push(Command::CancelReading);
                 }
             });
         }

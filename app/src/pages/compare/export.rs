@@ -12,22 +12,6 @@ use crate::save::Document;
 /// Samples of an input that is saved, at most.
 const MOST_SAMPLES: f64 = 2e6;
 
-/// Where the measurement on screen comes from.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Source {
-    bytes: usize,
-    sha256: String,
-}
-
-impl Source {
-    pub fn of(bytes: &[u8]) -> Self {
-        Self {
-            bytes: bytes.len(),
-            sha256: report::sha256(bytes),
-        }
-    }
-}
-
 /// The model on screen as a report.
 pub(super) fn report(page: &Compare) -> Option<Document> {
     let (measurement, last) = (page.measurement.as_ref()?, page.report()?);

@@ -11,7 +11,7 @@ impl Compare {
         if self.form.is_some() {
             return Hint::say("Say which column is what, then open the file.");
         }
-        if self.measurement.is_none() {
+        if self.measurement.is_none() && self.opening.is_none() {
             let sentence = "Begin with a drive that loses its swing: one effect is missing.";
             return Hint::open(sentence, "v1;compare;compare.file=drive-02");
         }

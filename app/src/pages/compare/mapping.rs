@@ -1,18 +1,16 @@
 //! A form for a file that does not say what its columns are: which column is what, in which unit.
 
 use egui::Ui;
-use hysteron_core::measurement::{FoundColumn, ImportError, Kind, Problem, columns};
+use hysteron_core::measurement::{FoundColumn, Kind};
 
 use super::choice::{Channel, Choice, Chosen};
 use super::{Command, Compare};
+use crate::content::Content;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::pages::chart::significant;
 use crate::recent::Recent;
 use crate::theme;
-
-/// Columns that a measurement has at least: time, input, output.
-const FEWEST: usize = 3;
 
 /// Widths of the names of channels, and of the lists of columns and of units, points.
 const TITLE_WIDTH: f32 = 104.0;
@@ -28,7 +26,7 @@ const DIGITS: i32 = 4;
 /// A file whose columns are to be understood.
 pub(super) struct Form {
     pub file: String,
-    pub bytes: Vec<u8>,
+    pub content: Content,
     /// Where the file is, if it can be opened again.
     pub origin: Option<Recent>,
     /// Why it is asked.
@@ -40,27 +38,23 @@ pub(super) struct Form {
 }
 
 impl Form {
-    /// The form for a file that was refused; `None` where no mapping would make a measurement of it.
-    pub fn new(bytes: &[u8], refused: &ImportError, origin: Option<Recent>) -> Option<Self> {
-        if !refused.problem.is_about_columns() {
-            return None;
-        }
-        let columns = columns(&refused.file, bytes).ok()?;
-        (columns.len() >= FEWEST).then(|| Self {
-            file: refused.file.clone(),
-            bytes: bytes.to_vec(),
+    /// The form for a file that was refused for this `reason`, with these columns in it.
+    pub fn new(
+        file: String,
+        content: Content,
+        origin: Option<Recent>,
+        reason: String,
+        columns: Vec<FoundColumn>,
+    ) -> Self {
+        Self {
+            file,
+            content,
             origin,
-            reason: match refused.problem {
-                // What the command line says goes on about options.
-                Problem::NotMapped { .. } => {
-                    "A file of MATLAB does not say what its columns are.".to_owned()
-                }
-                _ => refused.to_string(),
-            },
+            reason,
             choice: Choice::likeliest(&columns),
             columns,
             error: None,
-        })
+        }
     }
 
     pub fn hook_state(&self) -> serde_json::Value {
@@ -281,7 +275,10 @@ impl Compare {
     /// The form, in place of what is open.
     pub(super) fn form_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
         if let Some(form) = &self.form {
-            theme::scroll("compare_mapping").show(ui, |ui| form.ui(ui, targets, commands));
+            theme::scroll("compare_mapping").show(ui, |ui| {
+                form.ui(ui, targets, commands);
+                self.reading_ui(ui, commands);
+            });
         }
     }
 }

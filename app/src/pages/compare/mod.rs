@@ -43,10 +43,10 @@ use crate::layout;
 use crate::reading::Reading;
 use crate::recent::Recent;
 use crate::save::save;
-use crate::tasks::ExperimentTask;
+use crate::tasks::{ExperimentTask, Source};
 use crate::theme;
 use answer::times_noise;
-use welcome::BUILT_IN;
+use welcome::{BUILT_IN, BuiltIn};
 
 /// Height of the plots over time in a narrow window, points.
 const NARROW_PLOTS: f32 = 220.0;
@@ -61,7 +61,9 @@ pub struct Compare {
     reading: Reading,
     /// The form for a file that is not open yet.
     form: Option<mapping::Form>,
-    source: export::Source,
+    source: Source,
+    /// The file that is being read.
+    opening: Option<open::Opening>,
     /// What the user knows of the model.
     model: Option<UserModel>,
     /// The file that says it.
@@ -109,7 +111,8 @@ impl Default for Compare {
             measurement: None,
             reading: Reading::default(),
             form: None,
-            source: export::Source::default(),
+            source: Source::default(),
+            opening: None,
             model: None,
             model_file: None,
             own: Vec::new(),
@@ -164,6 +167,8 @@ enum Command {
     /// Opens the file with what was chosen, or leaves it.
     OpenMapped,
     CancelMapping,
+    /// Leaves the file that is being read.
+    CancelReading,
     Add(EffectId),
     Undo,
     Redo,
@@ -198,16 +203,17 @@ impl Compare {
     /// Takes what jobs and files have brought.
     pub fn update(&mut self, ctx: &egui::Context) {
         while let Some(arrival) = self.files.arrived() {
-            let name = &arrival.name;
-            match &arrival.bytes {
-                Ok(bytes) => self.open_as(ctx, name, bytes, &arrival.reading),
+            let name = arrival.name;
+            match arrival.bytes {
+                Ok(bytes) => self.open_as(ctx, &name, bytes, arrival.reading),
                 Err(error) => self.refuse(format!("{name}: cannot be read ({error})")),
             }
         }
+        self.take_opened(ctx);
         if let Some(text) = self.saved.1.try_iter().last() {
             self.message = Some(text);
         }
-        if self.job.is_some() {
+        if self.job.is_some() || self.opening.is_some() {
             // The page shows that it lives, also where the job says nothing new for a while.
             ctx.request_repaint_after(ALIVE);
         }
@@ -353,8 +359,8 @@ impl Compare {
     fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
         match command {
             Command::OpenBuiltIn(index) => {
-                if let Some(built_in) = BUILT_IN.get(index) {
-                    self.open(ctx, built_in.file.id, &built_in.file.csv());
+                if let Some(BuiltIn { file, .. }) = BUILT_IN.get(index) {
+                    self.opening = Some(open::Opening::new(ctx, file.id, file.content()));
                 }
             }
             Command::Reopen(recent) => self.files.reopen(ctx, &recent),
@@ -379,7 +385,8 @@ impl Compare {
                 }
             }
             Command::OpenMapped => self.open_mapped(ctx),
-            Command::CancelMapping => self.form = None,
+            Command::CancelMapping => (self.form, self.opening) = (None, None),
+            Command::CancelReading => self.opening = None,
             Command::Add(effect) => {
                 let mut effects = self.effects.clone();
                 effects.push(effect);
@@ -434,7 +441,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
+            "busy": self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
             "progress": self.progress.0,
             "mapping": self.form.as_ref().map(mapping::Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
@@ -540,7 +547,7 @@ impl View for Compare {
     }
 
     fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        Self::open(self, ctx, name, bytes);
+        self.open_as(ctx, name, bytes.to_vec(), Reading::default());
     }
 
     fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {

@@ -2,42 +2,108 @@
 
 use std::sync::Arc;
 
-use hysteron_core::measurement::{Measurement, import};
-use hysteron_core::mystery::{Mystery, seal_of};
+use hysteron_core::measurement::FoundColumn;
 use hysteron_core::user_model::UserModel;
 
 use super::mapping::Form;
 use super::reveal::Sealed;
-use super::{Compare, Look, export, own};
-use crate::jobs::Job;
+use super::settings::Awaited;
+use super::{Compare, Look, own};
+use crate::content::Content;
+use crate::jobs::{Job, News};
 use crate::reading::Reading;
+use crate::recent::Recent;
+use crate::tasks::{Opened, ReadReport, ReadTask};
+
+/// A file that is being read.
+pub(super) struct Opening {
+    pub file: String,
+    content: Content,
+    reading: Reading,
+    /// Where it is, if it can be opened again.
+    origin: Option<Recent>,
+    /// What a link sets as soon as it is open.
+    pub then: Option<Awaited>,
+    job: Job<ReadTask>,
+}
+
+impl Opening {
+    /// A file that says itself what its columns are.
+    pub fn new(ctx: &egui::Context, file: &str, content: Content) -> Self {
+        Self::read_as(ctx, file, content, Reading::default())
+    }
+
+    /// The same, with what a link sets as soon as it is open.
+    pub fn with(self, awaited: Awaited) -> Self {
+        Self {
+            then: Some(awaited),
+            ..self
+        }
+    }
+
+    fn read_as(ctx: &egui::Context, file: &str, content: Content, reading: Reading) -> Self {
+        let task = ReadTask {
+            file: file.to_owned(),
+            content: content.clone(),
+            reading: reading.clone(),
+        };
+        Self {
+            file: file.to_owned(),
+            content,
+            reading,
+            origin: None,
+            then: None,
+            job: Job::run(ctx, task),
+        }
+    }
+}
 
 impl Compare {
     /// Opens a measurement, or a model (TOML), from the bytes of a file; a bad one leaves everything as it was.
-    pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        self.open_as(ctx, name, bytes, &Reading::default());
-    }
-
-    /// The same of a file that was opened before, with what it does not say itself.
     pub(super) fn open_as(
         &mut self,
         ctx: &egui::Context,
         name: &str,
-        bytes: &[u8],
-        reading: &Reading,
+        bytes: Vec<u8>,
+        reading: Reading,
     ) {
         if name.to_ascii_lowercase().ends_with(".toml") {
-            return self.open_model(ctx, name, bytes);
+            return self.open_model(ctx, name, &bytes);
         }
-        let options = reading.options().unwrap_or_default();
-        match import(name, bytes, &options) {
-            Ok(measurement) => self.take_measurement(ctx, measurement, bytes, reading),
-            Err(error) => {
-                let origin = self.files.origin(name);
-                match Form::new(bytes, &error, origin) {
-                    Some(form) => self.form = Some(form),
-                    None => self.refuse(error.to_string()),
-                }
+        let content = Content::Plain(bytes.into());
+        self.opening = Some(Opening {
+            origin: self.files.origin(name),
+            ..Opening::read_as(ctx, name, content, reading)
+        });
+    }
+
+    /// Takes what was read of a file.
+    pub(super) fn take_opened(&mut self, ctx: &egui::Context) {
+        let Some(mut opening) = self.opening.take() else {
+            return;
+        };
+        match opening.job.news().pop() {
+            Some(News::Report(report)) => match *report {
+                ReadReport::Measurement(opened) => self.take_measurement(ctx, *opened, opening),
+                ReadReport::Unclear { reason, columns } => self.ask(opening, reason, columns),
+            },
+            Some(News::Failed(error)) => self.refuse(error),
+            Some(News::Progress(..)) | None => self.opening = Some(opening),
+        }
+    }
+
+    /// Asks which column of a file is what, unless that is what was asked.
+    fn ask(&mut self, opening: Opening, reason: String, columns: Vec<FoundColumn>) {
+        match &mut self.form {
+            Some(form) if form.file == opening.file => form.error = Some(reason),
+            form => {
+                let Opening {
+                    file,
+                    content,
+                    origin,
+                    ..
+                } = opening;
+                *form = Some(Form::new(file, content, origin, reason, columns));
             }
         }
     }
@@ -51,37 +117,28 @@ impl Compare {
         *place = Some(sentence);
     }
 
-    /// Opens the file of the form with what was chosen in it, or says there why it cannot be.
+    /// Opens the file of the form with what was chosen in it.
     pub(super) fn open_mapped(&mut self, ctx: &egui::Context) {
-        let Some(mut form) = self.form.take() else {
-            return;
-        };
-        let reading = form.choice.reading(&form.columns);
-        let read = reading.options().and_then(|options| {
-            import(&form.file, &form.bytes, &options).map_err(|e| e.to_string())
-        });
-        match read {
-            Ok(measurement) => {
-                self.files.comes_from(form.origin);
-                self.take_measurement(ctx, measurement, &form.bytes, &reading);
-            }
-            Err(error) => {
-                form.error = Some(error);
-                self.form = Some(form);
-            }
+        if let Some(form) = &mut self.form {
+            form.error = None;
+            let reading = form.choice.reading(&form.columns);
+            self.opening = Some(Opening {
+                origin: form.origin.clone(),
+                ..Opening::read_as(ctx, &form.file, form.content.clone(), reading)
+            });
         }
     }
 
-    fn take_measurement(
-        &mut self,
-        ctx: &egui::Context,
-        measurement: Measurement,
-        bytes: &[u8],
-        reading: &Reading,
-    ) {
+    fn take_measurement(&mut self, ctx: &egui::Context, opened: Opened, opening: Opening) {
+        let Opened {
+            measurement,
+            source,
+            seal,
+        } = opened;
         self.form = None;
-        self.files.taken(&measurement.name, reading);
-        self.reading = reading.clone();
+        self.files.comes_from(opening.origin);
+        self.files.taken(&measurement.name, &opening.reading);
+        self.reading = opening.reading;
         self.message = measurement.warnings.first().cloned();
         if self
             .model
@@ -91,19 +148,15 @@ impl Compare {
             self.forget_model();
         }
         self.measurement = Some(Arc::new(measurement));
-        self.source = export::Source::of(bytes);
-        self.sealed = seal_of(bytes).map(Sealed::new);
+        self.source = source;
+        self.sealed = seal.map(Sealed::new);
         if self.look == Look::Reveal {
             self.look = Look::default();
         }
-        self.restart(ctx);
-    }
-
-    /// Opens a mystery that came in a link.
-    pub(super) fn open_mystery(&mut self, ctx: &egui::Context, mystery: &Mystery, link: &str) {
-        self.open(ctx, &mystery.name(), mystery.csv().as_bytes());
-        if let Some(sealed) = &mut self.sealed {
-            sealed.link = Some(link.to_owned());
+        self.forget_steps();
+        match opening.then {
+            Some(awaited) => self.take_awaited(ctx, awaited),
+            None => self.start(ctx),
         }
     }
 
@@ -161,6 +214,11 @@ impl Compare {
 
     /// Begins with the first model again.
     pub(super) fn restart(&mut self, ctx: &egui::Context) {
+        self.forget_steps();
+        self.start(ctx);
+    }
+
+    fn forget_steps(&mut self) {
         self.effects.clear();
         self.reports.clear();
         self.shown = None;
@@ -169,7 +227,6 @@ impl Compare {
         self.limits = None;
         self.search = None;
         self.finding = 0;
-        self.start(ctx);
     }
 
     /// Shows the step of the present effects: at once if it is known, else by a job.

@@ -1,16 +1,19 @@
 //! What is set on the page: the measurement by its name, and what was added to the model.
 
 use hysteron_core::effect::{self, EffectId};
+use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::Mystery;
 use hysteron_core::user_model::UserModel;
 use serde::{Deserialize, Serialize};
 
+use super::open::Opening;
 use super::{BUILT_IN, Command, Compare, Look};
+use crate::content::Content;
 
 /// Effects that a link may add.
 const MOST_EFFECTS: usize = 12;
 
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settings {
     /// Name of the measurement that is open, unless it is the next.
@@ -37,8 +40,27 @@ pub fn is_built_in(name: &str) -> bool {
     BUILT_IN.iter().any(|b| b.file.id == name)
 }
 
+/// What a link sets as soon as its measurement is open.
+#[derive(Clone)]
+pub(super) struct Awaited {
+    settings: Settings,
+    meant: Meant,
+    kind: Kind,
+}
+
+/// What settings name.
+#[derive(Clone)]
+struct Meant {
+    model: Option<UserModel>,
+    effects: Vec<EffectId>,
+    fingerprint: Option<EffectId>,
+}
+
 impl Compare {
     pub(super) fn set_to(&self) -> Settings {
+        if let Some(awaited) = self.opening.as_ref().and_then(|o| o.then.as_ref()) {
+            return awaited.settings.clone();
+        }
         let mystery = self.sealed.as_ref().and_then(|s| s.link.clone());
         let file = self.measurement.as_ref().filter(|_| mystery.is_none());
         Settings {
@@ -56,24 +78,7 @@ impl Compare {
 
     pub(super) fn take(&mut self, ctx: &egui::Context, settings: &Settings) -> Result<(), String> {
         let present = self.set_to();
-        let same_file = settings.file == present.file;
-        let built_in = match &settings.file {
-            Some(name) if !same_file => {
-                let found = BUILT_IN.iter().find(|b| b.file.id == name);
-                Some(found.ok_or_else(|| crate::document::not_enclosed(name))?)
-            }
-            _ => None,
-        };
-        if settings.file.is_some() && settings.mystery.is_some() {
-            return Err("A link may open a file or a mystery, not both.".to_owned());
-        }
-        let mystery = match &settings.mystery {
-            Some(text) if settings.mystery != present.mystery => {
-                let read = Mystery::from_link(text).map_err(|e| e.to_string())?;
-                Some((read, text))
-            }
-            _ => None,
-        };
+        let other = settings.other_file(&present)?;
         if let Some(name) = &settings.model
             && settings.model != present.model
         {
@@ -83,71 +88,130 @@ impl Compare {
             return Err(format!("A link may add {MOST_EFFECTS} effects."));
         }
         if settings.file.is_none() && settings.mystery.is_none() {
-            if self.measurement.is_some() {
+            if self.measurement.is_some() || self.opening.is_some() {
                 self.carry_out(ctx, Command::Close);
             }
             return Ok(());
         }
-        if let Some(built_in) = built_in {
+        if let Some((file, kind, content)) = other {
+            let then = Awaited::of(settings, kind)?;
             self.carry_out(ctx, Command::Close);
-            self.open(ctx, built_in.file.id, &built_in.file.csv());
+            self.opening = Some(Opening::new(ctx, &file, content).with(then));
+            return Ok(());
         }
-        if let Some((mystery, text)) = &mystery {
-            self.carry_out(ctx, Command::Close);
-            self.open_mystery(ctx, mystery, text);
+        if let Some(awaited) = self.opening.as_mut().and_then(|o| o.then.as_mut()) {
+            *awaited = Awaited::of(settings, awaited.kind)?;
+            return Ok(());
         }
         if settings.model != present.model {
             self.forget_model();
             self.restart(ctx);
         }
-        self.take_own(&settings.own)?;
-        let effects = settings.effects.iter().map(|id| self.effect(id));
-        let effects: Vec<EffectId> = effects.collect::<Result<_, _>>()?;
-        let fingerprint = settings.fingerprint.as_ref().map(|id| self.effect(id));
-        let fingerprint = fingerprint.transpose()?;
-        if effects != self.effects {
-            self.go_to(ctx, effects);
+        let model = match (&self.measurement, &self.model_file) {
+            (Some(measurement), None) if settings.own != self.own => {
+                model_of(&settings.own, measurement.kind)?
+            }
+            (Some(_), Some(name)) if settings.own != self.own => {
+                return Err(crate::document::not_enclosed(name));
+            }
+            _ => self.model.clone(),
+        };
+        self.adopt(ctx, settings, settings.meant(model)?);
+        Ok(())
+    }
+
+    /// Sets what was to be set as soon as the measurement is open, which it is now.
+    pub(super) fn take_awaited(&mut self, ctx: &egui::Context, awaited: Awaited) {
+        let Awaited {
+            settings, meant, ..
+        } = awaited;
+        if let Some(sealed) = &mut self.sealed {
+            sealed.link.clone_from(&settings.mystery);
+        }
+        self.adopt(ctx, &settings, meant);
+        if self.job.is_none() {
+            self.start(ctx);
+        }
+    }
+
+    fn adopt(&mut self, ctx: &egui::Context, settings: &Settings, meant: Meant) {
+        if self.own != settings.own {
+            // A formula may have changed under its name.
+            self.reports
+                .retain(|effects, _| effects.iter().all(|e| effect::find(*e).is_some()));
+            self.own.clone_from(&settings.own);
+        }
+        self.model = meant.model;
+        if meant.effects != self.effects {
+            self.go_to(ctx, meant.effects);
         }
         self.finding = settings.finding;
-        self.fingerprint = fingerprint;
+        self.fingerprint = meant.fingerprint;
         self.look = match settings.look {
             Look::Reveal if self.sealed.is_none() => Look::default(),
             look => look,
         };
         self.before = settings.before;
-        Ok(())
+    }
+}
+
+impl Awaited {
+    fn of(settings: &Settings, kind: Kind) -> Result<Self, String> {
+        Ok(Self {
+            meant: settings.meant(model_of(&settings.own, kind)?)?,
+            settings: settings.clone(),
+            kind,
+        })
+    }
+}
+
+impl Settings {
+    /// The measurement, if it is another than is open at `present`: its name, what it is of, and what is in it.
+    fn other_file(&self, present: &Self) -> Result<Option<(String, Kind, Content)>, String> {
+        match (&self.file, &self.mystery) {
+            (Some(_), Some(_)) => Err("A link may open a file or a mystery, not both.".to_owned()),
+            (Some(name), None) if self.file != present.file => {
+                let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
+                let file = &built_in
+                    .ok_or_else(|| crate::document::not_enclosed(name))?
+                    .file;
+                Ok(Some((name.clone(), file.kind, file.content())))
+            }
+            (None, Some(text)) if self.mystery != present.mystery => {
+                let mystery = Mystery::from_link(text).map_err(|e| e.to_string())?;
+                let (name, kind) = (mystery.name(), mystery.kind);
+                Ok(Some((name, kind, Content::Mystery(Box::new(mystery)))))
+            }
+            _ => Ok(None),
+        }
     }
 
-    /// Makes the user's own effects these.
-    fn take_own(&mut self, lines: &[String]) -> Result<(), String> {
-        if self.own == lines {
-            return Ok(());
-        }
-        let Some(measurement) = &self.measurement else {
-            return Ok(());
-        };
-        if let Some(name) = &self.model_file {
-            return Err(crate::document::not_enclosed(name));
-        }
-        let mut model = UserModel::blank(measurement.kind);
-        for line in lines {
-            model.add_candidate(line)?;
-        }
-        // A formula may have changed under its name.
-        self.reports
-            .retain(|effects, _| effects.iter().all(|e| effect::find(*e).is_some()));
-        self.model = (!lines.is_empty()).then_some(model);
-        self.own = lines.to_vec();
-        Ok(())
+    /// What it names, where the user's `model` is this.
+    fn meant(&self, model: Option<UserModel>) -> Result<Meant, String> {
+        let effect = |id: &String| effect_of(id, model.as_ref());
+        Ok(Meant {
+            effects: self.effects.iter().map(effect).collect::<Result<_, _>>()?,
+            fingerprint: self.fingerprint.as_ref().map(effect).transpose()?,
+            model,
+        })
     }
+}
 
-    /// An effect of the library, or of the user's own.
-    fn effect(&self, id: &str) -> Result<EffectId, String> {
-        let own = self.model.iter().flat_map(|m| &m.candidates).map(|c| c.id);
-        let library = effect::registry().iter().map(|e| e.id());
-        library
-            .chain(own)
-            .find(|e| e.as_str() == id)
-            .ok_or_else(|| "This link adds an effect that does not exist.".to_owned())
+/// The model of a user who has only effects of their own to add.
+fn model_of(lines: &[String], kind: Kind) -> Result<Option<UserModel>, String> {
+    let mut model = UserModel::blank(kind);
+    for line in lines {
+        model.add_candidate(line)?;
     }
+    Ok((!lines.is_empty()).then_some(model))
+}
+
+/// An effect of the library, or of the user's own.
+fn effect_of(id: &str, model: Option<&UserModel>) -> Result<EffectId, String> {
+    let own = model.iter().flat_map(|m| &m.candidates).map(|c| c.id);
+    let library = effect::registry().iter().map(|e| e.id());
+    library
+        .chain(own)
+        .find(|e| e.as_str() == id)
+        .ok_or_else(|| "This link adds an effect that does not exist.".to_owned())
 }
