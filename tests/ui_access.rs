@@ -7,6 +7,7 @@ mod ui;
 use std::collections::BTreeSet;
 use std::sync::mpsc::channel;
 
+use egui::accesskit::Live;
 use egui::{Key, Role};
 use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
 use hysteron::GivenFile;
@@ -120,6 +121,28 @@ fn every_control_has_a_name_every_number_a_unit_and_every_axis_a_label() {
     }
     assert!(plots > 100, "{plots} plots were seen");
     assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn a_screen_reader_says_which_window_which_plot_and_what_was_found() {
+    let mut harness = app("start", WIDE);
+    for place in PLACES {
+        show(&mut harness, place);
+        let root = harness.root().accesskit_node();
+        assert_eq!(root.label().as_deref(), Some("Hysteron"));
+        let plots = harness.query_all_by_role(Role::Image);
+        let names: Vec<_> = plots.map(|p| p.accesskit_node().label()).collect();
+        let said = |n: &Option<String>| n.as_deref().is_some_and(|n| n.starts_with("Plot: "));
+        assert!(names.iter().all(said), "{place}: {names:?}");
+        let drawn = state(&harness)["plots"].as_array().map_or(0, Vec::len);
+        assert!(names.len() >= drawn, "{place}: {names:?} of {drawn}");
+        // What is said by itself, when it changes.
+        let nodes = harness.root().children_recursive();
+        let spoken = nodes
+            .filter(|n| n.accesskit_node().live() == Live::Polite)
+            .count();
+        assert!((1..=3).contains(&spoken), "{place}: {spoken}");
+    }
 }
 
 /// Asks something of the plot with this menu; the file that it gives.

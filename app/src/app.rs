@@ -156,6 +156,9 @@ impl HysteronApp {
             self.set_calm(ui.ctx(), self.calm);
         }
         self.frame += 1;
+        let window = egui::accesskit_root_id();
+        ui.ctx()
+            .accesskit_node_builder(window, |window| window.set_label("Hysteron"));
         self.fit_to_fingers(ui.ctx());
         language::speak(self.language);
         self.desk.targets.clear();

@@ -1,6 +1,7 @@
 //! What the app has to say in passing, at the foot of the window.
 
 use crate::language::tr;
+use crate::theme;
 
 /// Time that a good word stays, s; a refusal stays until it is dismissed.
 const SECONDS: f64 = 3.0;
@@ -57,7 +58,7 @@ pub fn ui(ctx: &egui::Context, notice: &mut Option<Notice>, foot: f32) {
         .show(ctx, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_max_width(ctx.content_rect().width().min(560.0) - 32.0);
-                ui.label(tr(&shown.text));
+                theme::tell(&ui.label(tr(&shown.text)));
                 if shown.until.is_none() {
                     gone |= ui.button(tr("Dismiss")).clicked();
                 }

@@ -188,7 +188,16 @@ const RING: f32 = 2.0;
 
 /// The large answer of a page.
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
-    ui.add(egui::Label::new(egui::RichText::new(tr(text)).size(24.0).strong()).wrap());
+    let text = egui::RichText::new(tr(text)).size(24.0).strong();
+    let answer = ui.add(egui::Label::new(text).wrap());
+    tell(&answer);
+}
+
+/// Has a screen reader say a text whenever it changes, as soon as it says nothing else.
+pub fn tell(text: &egui::Response) {
+    text.ctx.accesskit_node_builder(text.id, |node| {
+        node.set_live(egui::accesskit::Live::Polite);
+    });
 }
 
 /// A curve's colour as text, which needs more contrast: lighter on a dark ground, darker on a light one.

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut, RangeInclusive};
 
-use egui::IdSalt;
+use egui::{IdSalt, WidgetInfo};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory,
     PlotPoint, PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
@@ -236,6 +236,9 @@ impl<'a> Chart<'a> {
             (draw(&mut pen), pen.table)
         });
         zoom.note(ui.ctx());
+        let name = tr(format!("Plot: {} over {}", axes[1], axes[0]));
+        let info = || WidgetInfo::labeled(egui::Role::Image, true, &name);
+        shown.response.widget_info(info);
         let (inner, table) = shown.inner;
         chart_menu::ui(ui, id, &axes, start, shown.response.rect, table);
         PlotResponse {

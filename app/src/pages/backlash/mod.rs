@@ -256,7 +256,7 @@ impl Backlash {
     fn answer_ui(&mut self, ui: &mut egui::Ui) {
         if let Some(message) = self.message.clone() {
             ui.horizontal_wrapped(|ui| {
-                ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+                theme::tell(&ui.colored_label(ui.visuals().warn_fg_color, tr(message)));
                 if ui.small_button(tr("Dismiss")).clicked() {
                     self.message = None;
                 }

@@ -13,7 +13,7 @@ impl Compare {
         self.reading_ui(ui, commands);
         if let Some(message) = &self.message {
             ui.horizontal_wrapped(|ui| {
-                ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+                theme::tell(&ui.colored_label(ui.visuals().warn_fg_color, tr(message)));
                 if ui.small_button(tr("Dismiss")).clicked() {
                     commands.push(Command::Dismiss);
                 }
