@@ -26,6 +26,9 @@ const QUANTISED: f64 = 1.25;
 /// Values that are looked at to find the step of a quantised channel.
 const QUANTUM_SAMPLES: usize = 4000;
 
+/// Most counts that the least step between two values may be.
+const MOST_COUNTS: u32 = 16;
+
 /// Standard deviation of the noise in `values`, in their unit; above 0 unless all are equal.
 ///
 /// `input` is as long and tells when the signal may have kinks.
@@ -91,16 +94,20 @@ fn quantum(values: &[f64]) -> f64 {
     // The printed values are rounded, so the median of the single steps is better than the least.
     let mut single: Vec<f64> = steps.iter().copied().filter(|d| *d < 1.5 * least).collect();
     single.sort_by(f64::total_cmp);
-    let step = single[single.len() / 2];
+    let least = single[single.len() / 2];
+    // What runs on fast may never stop on two neighbouring counts.
+    let mut parts = (1..=MOST_COUNTS).map(|n| least / f64::from(n));
+    let step = parts.find(|step| is_whole(&steps, *step));
+    step.unwrap_or(0.0)
+}
+
+/// Whether nearly all of these steps are whole multiples of one.
+fn is_whole(steps: &[f64], step: f64) -> bool {
     let whole = steps.iter().filter(|d| {
         let ratio = *d / step;
         (ratio - ratio.round()).abs() < 0.02 * ratio.clamp(1.0, 5.0)
     });
-    if whole.count() as f64 > 0.95 * steps.len() as f64 {
-        step
-    } else {
-        0.0
-    }
+    whole.count() as f64 > 0.95 * steps.len() as f64
 }
 
 /// Evenly spread over 0 to 1 and without pattern, the same on every machine (finaliser of `SplitMix64`).
@@ -179,6 +186,24 @@ mod tests {
     fn differences_have_binomial_weights() {
         assert_eq!(binomials(2), [1.0, -2.0, 1.0]);
         assert_eq!(binomials(3), [1.0, -3.0, 3.0, -1.0]);
+    }
+
+    #[test]
+    fn a_count_is_found_where_no_two_neighbouring_counts_were_seen() {
+        let step = 2.0 * std::f64::consts::PI / f64::from(1 << 20);
+        for (stride, least) in [(293.0, 2.0), (299.5, 3.0), (1201.0, 5.0)] {
+            // Coasting, but for a turn that passes a few counts twice.
+            let mut values: Vec<f64> = (0..3000)
+                .map(|i| (stride * f64::from(i)).round() * step)
+                .collect();
+            let last = values[2999];
+            values.push(last + least * step);
+            values.extend((1..900).map(|i| last + 5e3 * step * f64::from(i)));
+            let found = quantum(&values);
+            assert!((found / step - 1.0).abs() < 1e-9, "{stride}: {found}");
+        }
+        let smooth: Vec<f64> = (0..3000).map(|i| libm::sin(f64::from(i) * 0.7)).collect();
+        assert_eq!(quantum(&smooth), 0.0);
     }
 
     #[test]
