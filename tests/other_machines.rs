@@ -119,6 +119,47 @@ fn a_tachometer_gives_away_cogging() {
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
+/// Pushed to and fro, and left to coast for as long after each push.
+fn pushed(inertia: f64) -> DriveRig {
+    DriveRig {
+        inertia,
+        viscous: 1.715e-3,
+        excitation: Excitation::Staircase { top: 0.3 },
+        seed: 2,
+        ..DriveRig::default()
+    }
+}
+
+#[test]
+fn what_acts_only_while_a_machine_is_pushed_is_found() {
+    for (inertia, drag, asymmetry) in [(9e-4, 6e-5, 0.08), (9.53e-4, 6e-5, 0.05)] {
+        let rig = DriveRig {
+            quadratic_drag: drag,
+            gain_asymmetry: asymmetry,
+            ..pushed(inertia)
+        };
+        let d = diagnose(&rig);
+        let mut found = classes(&d);
+        found.sort();
+        assert_eq!(found, [["gain_asymmetry"], ["quadratic_drag"]]);
+        assert!(d.verdict.complete, "{inertia}: {}", d.verdict.text);
+    }
+}
+
+/// It hardly ever turns round, so that its encoder may never be seen on two neighbouring counts.
+#[test]
+fn what_a_machine_runs_away_from_is_found() {
+    for (inertia, load) in [(9e-4, 0.025), (9.53e-4, 0.0168)] {
+        let rig = DriveRig {
+            constant_load: load,
+            ..pushed(inertia)
+        };
+        let d = diagnose(&rig);
+        assert_eq!(classes(&d), [["constant_load"]]);
+        assert!(d.verdict.complete, "{inertia}: {}", d.verdict.text);
+    }
+}
+
 #[test]
 fn nothing_is_missing_where_nothing_is() {
     for (rate, samples, excitation) in [

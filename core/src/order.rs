@@ -16,9 +16,14 @@ pub fn drop_marked<T>(values: &mut Vec<T>, marked: &[bool]) {
 
 /// Median; the order of the values is lost. 0 without values.
 pub fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
+    quantile(values, 0.5)
+}
+
+/// The value below which this share of the values lies; their order is lost. 0 without values.
+pub fn quantile(values: &mut [f64], share: f64) -> f64 {
+    let Some(last) = values.len().checked_sub(1) else {
         return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let place = ((values.len() as f64 * share) as usize).min(last);
+    *values.select_nth_unstable_by(place, f64::total_cmp).1
 }

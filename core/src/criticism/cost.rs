@@ -2,7 +2,7 @@
 
 use super::data::Data;
 use super::fit::Motion;
-use crate::order::median;
+use crate::order::quantile;
 
 /// Whether a window has a block that is used for fitting.
 pub(super) fn informed_windows(data: &Data) -> Vec<bool> {
@@ -50,17 +50,19 @@ fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
     windows
 }
 
-/// Mean square from which a window is odd, given how far off all are: this many times the median one, so
-/// that a model which is wrong everywhere is fitted everywhere.
+/// Mean square from which a window is odd, in times of that which so many windows stay below: a model that is wrong in
+/// more windows than the rest is wrong there too, and is fitted to them, though the input may rest in all others.
 const ODD_TIMES: f64 = 3.0;
+const USUAL: f64 = 0.75;
 
+/// Mean square from which a window is odd, given how far off all are.
 pub(super) fn oddness(data: &Data, motion: &Motion) -> f64 {
     let mut squares: Vec<f64> = fitted_windows(data, motion)
         .into_iter()
         .filter(|(_, n)| *n > 0.0)
         .map(|(cost, n)| cost / n)
         .collect();
-    ODD_MEAN_SQUARE.max(ODD_TIMES * median(&mut squares))
+    ODD_MEAN_SQUARE.max(ODD_TIMES * quantile(&mut squares, USUAL))
 }
 
 /// Squared residuals as if every window were as far off as usual: the mean over windows of
