@@ -6,7 +6,7 @@ mod support;
 use std::f64::consts::TAU;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
-use hysteron_core::rig::{DriveRig, Excitation, Friction, Recorded};
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Recorded, Stranger};
 use support::diagnosis::{classes, finish};
 
 /// Friction and load of these machines, N m.
@@ -144,6 +144,20 @@ fn what_acts_only_while_a_machine_is_pushed_is_found() {
         assert_eq!(found, [["gain_asymmetry"], ["quadratic_drag"]]);
         assert!(d.verdict.complete, "{inertia}: {}", d.verdict.text);
     }
+}
+
+/// A spring to the ground is like a joint whose load is too heavy to be moved, which nobody has.
+#[test]
+fn a_spring_to_the_ground_is_no_joint() {
+    let rig = DriveRig {
+        viscous: 2.1155e-3,
+        stranger: Some(Stranger::Spring { stiffness: 0.05 }),
+        ..pushed(8.3548e-4)
+    };
+    let d = diagnose(&rig);
+    assert!(d.verdict.unknown, "{}", d.verdict.text);
+    let joint = |class: &Vec<&str>| class.contains(&"joint_compliance");
+    assert!(!classes(&d).iter().any(joint), "{}", d.verdict.text);
 }
 
 /// It hardly ever turns round, so that its encoder may never be seen on two neighbouring counts.

@@ -107,7 +107,7 @@ impl Contender {
         self.stage = match (self.stage, &mut self.search) {
             (Stage::FirstHeat | Stage::SecondHeat, Some(search)) => {
                 if !search.iterate(data, scales) {
-                    self.take_result(session);
+                    self.take_result(track, session);
                     return;
                 }
                 if self.stage == Stage::FirstHeat {
@@ -116,7 +116,7 @@ impl Contender {
                     Stage::Over
                 }
             }
-            _ => return self.take_result(session),
+            _ => return self.take_result(track, session),
         };
     }
 
@@ -137,23 +137,32 @@ impl Contender {
     }
 
     /// Another iteration, of those that may win.
-    fn go_on(&mut self, session: &Session) {
+    fn go_on(&mut self, track: &Track, session: &Session) {
         let (data, scales) = (&session.data, &session.scales);
         if let Some(search) = &mut self.search
             && !search.iterate(data, scales)
         {
-            self.take_result(session);
+            self.take_result(track, session);
         }
     }
 
     /// Takes what it has come to, and sees whether that leaves nothing but noise.
-    fn take_result(&mut self, session: &Session) {
+    fn take_result(&mut self, track: &Track, session: &Session) {
         let search = self.search.as_ref();
-        self.result = search.and_then(|s| s.finish(&session.data, &session.scales));
+        let result = search.and_then(|s| s.finish(&session.data, &session.scales));
+        // A wall is none of the effects, though a load that cannot be moved is like one.
+        self.result =
+            result.filter(|fit| !meets_wall(fit, session) || meets_wall(&track.fit, session));
         let plain = |fit: &Fit| is_plain_noise(&score(&session.data, fit));
         self.explains = self.result.as_ref().is_some_and(plain);
         self.stage = Stage::Closed;
     }
+}
+
+/// Whether a fit takes the body to swing against a load that does not move.
+fn meets_wall(fit: &Fit, session: &Session) -> bool {
+    let load = fit.structure.model(&fit.values).load;
+    load.is_some_and(|load| load.stands_still(fit.values[0], session.scales.duration))
 }
 
 /// Whether the effect at this place of a fit contains `part`.
@@ -374,7 +383,7 @@ impl Race {
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
         match next {
-            Some((_, contender)) => contender.go_on(session),
+            Some((_, contender)) => contender.go_on(&self.track, session),
             None if !self.parts_known => {
                 self.parts_known = true;
                 self.judge_waiting();

@@ -53,6 +53,18 @@ pub struct Load {
     pub coupling: Coupling,
 }
 
+/// A load this many times as heavy as the body does not move.
+const HEAVIEST: f64 = 1e3;
+
+impl Load {
+    /// Whether it stands still while a body of this inertia moves for so long (s), by its weight or by its viscous
+    /// friction: then it is no load but a wall, and what is before it a spring to the ground.
+    pub fn stands_still(&self, inertia: f64, duration: f64) -> bool {
+        let heaviest = HEAVIEST * inertia.abs();
+        self.inertia > heaviest || self.viscous * duration > heaviest
+    }
+}
+
 /// Times the noise of a joint's load by which it may be off: encoders do not err at random, and between samples the body
 /// moves in a way of its own.
 const WIDELY: f64 = 10.0;
