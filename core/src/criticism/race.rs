@@ -150,19 +150,19 @@ impl Contender {
     fn take_result(&mut self, track: &Track, session: &Session) {
         let search = self.search.as_ref();
         let result = search.and_then(|s| s.finish(&session.data, &session.scales));
-        // A wall is none of the effects, though a load that cannot be moved is like one.
-        self.result =
-            result.filter(|fit| !meets_wall(fit, session) || meets_wall(&track.fit, session));
+        // A spring to the ground is none of the effects, though a joint whose load cannot be moved is like one.
+        self.result = result
+            .filter(|fit| !tied_to_ground(fit, session) || tied_to_ground(&track.fit, session));
         let plain = |fit: &Fit| is_plain_noise(&score(&session.data, fit));
         self.explains = self.result.as_ref().is_some_and(plain);
         self.stage = Stage::Closed;
     }
 }
 
-/// Whether a fit takes the body to swing against a load that does not move.
-fn meets_wall(fit: &Fit, session: &Session) -> bool {
+/// Whether a fit holds the body to the ground.
+fn tied_to_ground(fit: &Fit, session: &Session) -> bool {
     let load = fit.structure.model(&fit.values).load;
-    load.is_some_and(|load| load.stands_still(fit.values[0], session.scales.duration))
+    load.is_some_and(|load| load.ties_to_ground(fit.values[0], session.scales.duration))
 }
 
 /// Whether the effect at this place of a fit contains `part`.

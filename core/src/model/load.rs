@@ -57,11 +57,12 @@ pub struct Load {
 const HEAVIEST: f64 = 1e3;
 
 impl Load {
-    /// Whether it stands still while a body of this inertia moves for so long (s), by its weight or by its viscous
-    /// friction: then it is no load but a wall, and what is before it a spring to the ground.
-    pub fn stands_still(&self, inertia: f64, duration: f64) -> bool {
+    /// Whether its joint holds a body of this inertia to the ground, since it does not move within so long (s), by its
+    /// weight or by its viscous friction; what is met behind a gap may well be a wall.
+    pub fn ties_to_ground(&self, inertia: f64, duration: f64) -> bool {
         let heaviest = HEAVIEST * inertia.abs();
-        self.inertia > heaviest || self.viscous * duration > heaviest
+        let still = self.inertia > heaviest || self.viscous * duration > heaviest;
+        still && self.coupling.half_gap == 0.0
     }
 }
 
