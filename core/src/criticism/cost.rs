@@ -53,7 +53,7 @@ fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
 /// Mean square from which a window is odd, in times of that which so many windows stay below: a model that is wrong in
 /// more windows than the rest is wrong there too, and is fitted to them, though the input may rest in all others.
 const ODD_TIMES: f64 = 3.0;
-const USUAL: f64 = 0.75;
+const USUAL: f64 = 0.6;
 
 /// Mean square from which a window is odd, given how far off all are.
 pub(super) fn oddness(data: &Data, motion: &Motion) -> f64 {
