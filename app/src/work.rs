@@ -72,9 +72,12 @@ enum Refused {
 }
 
 impl Refused {
-    /// Whether someone who knows the columns of the file could have it read.
-    fn is_about_columns(&self) -> bool {
-        matches!(self, Self::File(error) if error.problem.is_about_columns())
+    /// What is wrong where someone who knows the columns of the file could have it read.
+    fn about_columns(&self) -> Option<&ImportError> {
+        match self {
+            Self::File(error) if error.problem.is_about_columns() => Some(error),
+            _ => None,
+        }
     }
 }
 
@@ -95,12 +98,7 @@ impl ReadTask {
 
     /// Asks for the columns of a file that was refused, if that can help.
     fn ask(&self, refused: &Refused, bytes: &[u8]) -> Option<ReadReport> {
-        let Refused::File(error) = refused else {
-            return None;
-        };
-        if !refused.is_about_columns() {
-            return None;
-        }
+        let error = refused.about_columns()?;
         let columns = columns(&self.file, bytes).ok()?;
         (columns.len() >= FEWEST).then(|| ReadReport::Unclear {
             reason: match error.problem {
@@ -117,7 +115,7 @@ impl ReadTask {
     /// A measurement of which a gap is to be estimated.
     fn measured(&self) -> Result<Measurement, String> {
         self.read(&bytes_of(&self.content)).map_err(|refused| {
-            if refused.is_about_columns() {
+            if refused.about_columns().is_some() {
                 format!(
                     "{refused}. Open it in Compare, which asks for its columns; then it can be opened here too."
                 )
