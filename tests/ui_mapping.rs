@@ -306,6 +306,15 @@ fn cancel_keeps_what_was_open() {
 }
 
 #[test]
+fn another_file_of_the_same_name_has_a_form_of_its_own() {
+    let mut harness = app("compare", WIDE);
+    open(&mut harness, "log.csv", b"a,b\n0,1\n1,2\n2,1\n");
+    open(&mut harness, "log.csv", b"when,what\n0,1\n1,2\n2,1\n");
+    assert_eq!(form(&harness)["error"], Value::Null);
+    harness.get_by_label_contains("when,what");
+}
+
+#[test]
 fn a_wrong_mapping_says_so_and_can_be_mended() {
     let mut harness = app("compare", TALL);
     open(&mut harness, "log.mat", &matrix());

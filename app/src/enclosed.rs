@@ -3,7 +3,7 @@
 use hysteron_core::measurement::Kind;
 
 use crate::content::Content;
-use crate::packed::unpack;
+use crate::packed::{unpack, unpack_rows};
 
 /// A measurement.
 pub struct Enclosed {
@@ -36,6 +36,11 @@ impl Enclosed {
         unpack(self.packed).unwrap_or_default()
     }
 
+    /// How its text begins: the head, and at most so many rows.
+    pub fn beginning(&self, most_rows: usize) -> Vec<u8> {
+        unpack_rows(self.packed, most_rows).unwrap_or_default()
+    }
+
     /// The same, for where it is read.
     pub fn content(&self) -> Content {
         Content::Packed(self.packed.to_vec().into())
@@ -54,6 +59,8 @@ mod tests {
         for enclosed in [DRIVE_02, DRIVE_03, DRIVE_10, DRIVE_12, PROCESS_02] {
             let file = std::fs::read(format!("{folder}/{}.csv", enclosed.id)).expect("the file");
             assert!(enclosed.csv() == file, "{}", enclosed.id);
+            let five = file.split_inclusive(|b| *b == b'\n').take(6);
+            assert_eq!(enclosed.beginning(5), five.collect::<Vec<_>>().concat());
             let options = ImportOptions::default();
             let read = import(enclosed.id, &file, &options).expect("a measurement");
             assert_eq!(read.kind, enclosed.kind, "{}", enclosed.id);

@@ -30,6 +30,11 @@ pub enum Kind {
 
 /// The file of a packed table.
 pub fn unpack(deflated: &[u8]) -> Option<Vec<u8>> {
+    unpack_rows(deflated, usize::MAX)
+}
+
+/// Its head, and at most so many rows.
+pub fn unpack_rows(deflated: &[u8], most: usize) -> Option<Vec<u8>> {
     let bytes = miniz_oxide::inflate::decompress_to_vec(deflated).ok()?;
     let mut reader = Reader(&bytes);
     let head = reader.text()?.to_owned();
@@ -38,7 +43,7 @@ pub fn unpack(deflated: &[u8]) -> Option<Vec<u8>> {
     let mut columns: Vec<Column> = columns.collect::<Option<_>>()?;
     let mut csv = head;
     csv.push('\n');
-    for row in 0..rows {
+    for row in 0..rows.min(most) {
         for (i, column) in columns.iter_mut().enumerate() {
             if i > 0 {
                 csv.push(',');

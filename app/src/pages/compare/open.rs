@@ -24,6 +24,8 @@ pub(super) struct Opening {
     origin: Option<Recent>,
     /// What a link sets as soon as it is open.
     pub then: Option<Awaited>,
+    /// Whether the form says what its columns are.
+    from_form: bool,
     job: Job<ReadTask>,
 }
 
@@ -53,6 +55,7 @@ impl Opening {
             reading,
             origin: None,
             then: None,
+            from_form: false,
             job: Job::run(ctx, task),
         }
     }
@@ -95,7 +98,7 @@ impl Compare {
     /// Asks which column of a file is what, unless that is what was asked.
     fn ask(&mut self, opening: Opening, reason: String, columns: Vec<FoundColumn>) {
         match &mut self.form {
-            Some(form) if form.file == opening.file => form.error = Some(reason),
+            Some(form) if opening.from_form => form.error = Some(reason),
             form => {
                 let Opening {
                     file,
@@ -124,6 +127,7 @@ impl Compare {
             let reading = form.choice.reading(&form.columns);
             self.opening = Some(Opening {
                 origin: form.origin.clone(),
+                from_form: true,
                 ..Opening::read_as(ctx, &form.file, form.content.clone(), reading)
             });
         }

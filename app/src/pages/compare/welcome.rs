@@ -10,9 +10,10 @@ use crate::layout;
 use crate::recent::{Recents, measurement};
 use crate::theme;
 
-/// Height of the picture on a card, points, and how often the input switches in it.
+/// Height of the picture on a card, points, how often the input switches in it, and most samples.
 const GLIMPSE: f32 = 90.0;
 const GLIMPSE_SWITCHES: usize = 12;
+const GLIMPSE_SAMPLES: usize = 1000;
 
 /// A measurement that comes with the app.
 pub(super) struct BuiltIn {
@@ -102,7 +103,7 @@ fn glimpse_ui(ui: &mut egui::Ui, built_in: &'static BuiltIn) {
     let id = egui::Id::unique(("glimpse", built_in.file.id));
     let known = ui.data(|data| data.get_temp::<Arc<Glimpse>>(id));
     let glimpse = known.unwrap_or_else(|| {
-        let glimpse = Arc::new(Glimpse::of(&built_in.file.csv()));
+        let glimpse = Arc::new(Glimpse::of(&built_in.file.beginning(GLIMPSE_SAMPLES)));
         ui.data_mut(|data| data.insert_temp(id, glimpse.clone()));
         glimpse
     });
