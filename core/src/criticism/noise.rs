@@ -20,6 +20,9 @@ const QUANTILE: f64 = 0.3;
 /// The same quantile of the absolute value of a standard normal variable.
 const NORMAL_QUANTILE: f64 = 0.385_320_466_407_567_6;
 
+/// Share of the differences that lies in quieter groups than the one that decides.
+const QUIET: f64 = 0.4;
+
 /// Excess of the variance over that of quantisation up to which it is quantisation alone.
 const QUANTISED: f64 = 1.25;
 
@@ -145,25 +148,30 @@ fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<f64>
         let difference: f64 = window.iter().zip(&signs).map(|(v, c)| v * c).sum();
         by_group[groups[i + order]].push(difference.abs() / gain);
     }
-    let mut levels: Vec<f64> = by_group
+    let mut levels: Vec<(f64, usize)> = by_group
         .iter_mut()
         .filter(|g| g.len() >= MIN_GROUP)
-        .map(|g| {
-            let k = (QUANTILE * g.len() as f64) as usize;
-            *g.select_nth_unstable_by(k, f64::total_cmp).1 / NORMAL_QUANTILE
-        })
+        .map(|g| (low_quantile(g), g.len()))
         .collect();
     if levels.is_empty() {
         let mut all: Vec<f64> = by_group.concat();
-        if all.is_empty() {
-            return None;
-        }
-        let k = (QUANTILE * all.len() as f64) as usize;
-        return Some(*all.select_nth_unstable_by(k, f64::total_cmp).1 / NORMAL_QUANTILE);
+        return (!all.is_empty()).then(|| low_quantile(&mut all));
     }
-    levels.sort_by(f64::total_cmp);
-    // The least of many estimates is too small by chance, the upper ones may hold kinks.
-    Some(levels[levels.len() * 2 / 5])
+    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // The upper levels may hold kinks. Those of small groups are too small by chance as often as too large.
+    let total: usize = levels.iter().map(|(_, count)| count).sum();
+    let mut below = 0;
+    let level = levels.iter().find(|(_, count)| {
+        below += count;
+        below as f64 > QUIET * total as f64
+    });
+    level.map(|(level, _)| *level)
+}
+
+/// The noise that these absolute differences show; there must be some.
+fn low_quantile(differences: &mut [f64]) -> f64 {
+    let k = (QUANTILE * differences.len() as f64) as usize;
+    *differences.select_nth_unstable_by(k, f64::total_cmp).1 / NORMAL_QUANTILE
 }
 
 /// Signed binomial coefficients of the difference of this order.
@@ -204,6 +212,23 @@ mod tests {
         }
         let smooth: Vec<f64> = (0..3000).map(|i| libm::sin(f64::from(i) * 0.7)).collect();
         assert_eq!(quantum(&smooth), 0.0);
+    }
+
+    #[test]
+    fn noise_is_known_where_a_controller_changes_the_input_now_and_then() {
+        let random = |i: usize, of: usize| dither(i * 13 + of);
+        for of in 0..8 {
+            let mut input = vec![0.0];
+            let mut values = Vec::new();
+            for i in 0..10_000 {
+                let last = input[i];
+                input.push(if random(i, of) < 0.5 { i as f64 } else { last });
+                let normal: f64 = (1..13).map(|k| random(i, of + 20_000 * k)).sum::<f64>() - 6.0;
+                values.push(0.05 * normal + libm::sin(1e-3 * i as f64));
+            }
+            let level = noise_level(&values, &input[1..]);
+            assert!((level / 0.05 - 1.0).abs() < 0.05, "{of}: {level}");
+        }
     }
 
     #[test]
