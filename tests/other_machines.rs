@@ -105,6 +105,21 @@ fn a_tachometer_at_100_hz_gives_away_friction() {
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
+/// Of a velocity alone nobody knows whether the torque or the filter was late, whatever the samples begin with.
+#[test]
+fn a_filter_and_a_slow_amplifier_are_one_to_a_tachometer() {
+    let rig = DriveRig {
+        sensor_lag: 6e-3,
+        excitation: Excitation::Staircase { top: 0.1 },
+        velocity_noise: 2e-3,
+        recorded: Recorded::VelocityOnly,
+        ..machine(1000.0, 10_000, servo(0.0, 1.0, 1.0))
+    };
+    let d = diagnose(&rig);
+    assert_eq!(classes(&d), [["actuator_lag", "sensor_lag"]], "{}", d.verdict.text);
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+}
+
 /// A force that depends on the position, where that is the integral of a noisy velocity.
 #[test]
 fn a_tachometer_gives_away_cogging() {

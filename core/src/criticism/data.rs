@@ -123,6 +123,9 @@ impl Data {
         } else {
             Sensor::Position
         };
+        let velocity = outputs.iter().find(|o| o.is_velocity);
+        let shown = velocity.or(outputs.first());
+        let shown = shown.map_or_else(Vec::new, |o| o.values.clone());
         let position = match measurement.kind {
             Kind::Drive => position_estimate(&measurement.time, &outputs),
             Kind::Process => Vec::new(),
@@ -146,7 +149,8 @@ impl Data {
                 sensor,
                 position,
                 followed,
-            ),
+            )
+            .with_shown(shown),
             input: input.clone(),
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),

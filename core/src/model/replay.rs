@@ -54,6 +54,8 @@ pub struct Excitation {
     /// Sampling time in s, if equal throughout.
     step: Option<f64>,
     slow_sensor: Sensor,
+    /// What a slow sensor showed: the measured values of its output, or empty.
+    shown: Vec<f64>,
     /// Measured position, or an estimate, which hidden states follow; empty for a process.
     position: Vec<f64>,
     /// The noise of what it stands for.
@@ -98,6 +100,7 @@ impl Excitation {
             before,
             step: uniform.then_some(mean),
             slow_sensor,
+            shown: Vec::new(),
             steady: match noise {
                 Some(FollowedNoise::Position(level)) => Some(Steady::new(&position, level)),
                 _ => None,
@@ -107,6 +110,12 @@ impl Excitation {
             seen: None,
             runs: vec![(0, time.len())],
         }
+    }
+
+    /// The same with what a slow sensor showed, which tells its state where a run begins within the record.
+    #[must_use]
+    pub(crate) fn with_shown(self, shown: Vec<f64>) -> Self {
+        Self { shown, ..self }
     }
 
     /// The same with a load that the motor felt.
@@ -172,6 +181,7 @@ impl Excitation {
             time: self.time[..n].to_vec(),
             input: self.input[..n].to_vec(),
             position: self.position.iter().take(n).copied().collect(),
+            shown: self.shown.iter().take(n).copied().collect(),
             steady: self.steady.as_ref().map(|s| s.head(n)),
             seen: self.seen.clone(),
             runs: vec![(0, n)],
@@ -332,7 +342,7 @@ impl Excitation {
     }
 
     /// Passes a signal through a first-order lag, straight between its samples. A run that begins within
-    /// the record begins as if the signal had come the same way before.
+    /// the record begins as if the signal had come the same way before, or so that what was shown comes out best.
     fn slow_down(&self, signal: &mut [f64], lag: f64) {
         for (from, end) in &self.runs {
             let (Some(signal), Some(time)) =
@@ -356,6 +366,11 @@ impl Excitation {
                 slow = now - slope * lag + (slow - before + slope * lag) * decay;
                 before = now;
                 *value = slow;
+            }
+            if *from > 0
+                && let Some(shown) = self.shown.get(*from..*end)
+            {
+                begin_as_shown(signal, shown, time, lag);
             }
         }
     }
@@ -381,6 +396,32 @@ impl Excitation {
                 sum / duration
             })
             .collect()
+    }
+}
+
+/// Share of what a lag began with that is no longer looked at.
+const FADED: f64 = 1e-3;
+
+/// Adds to a lagged signal what it may have begun with, which fades away: so much that it comes nearest to what was
+/// `shown` (least squares).
+fn begin_as_shown(signal: &mut [f64], shown: &[f64], time: &[f64], lag: f64) {
+    let fading = |k: usize| libm::exp((time[0] - time[k]) / lag);
+    let seen = (0..signal.len()).take_while(|k| fading(*k) > FADED);
+    let (product, square) = seen.fold((0.0, 0.0), |(product, square), k| {
+        let share = fading(k);
+        (
+            product + share * (shown[k] - signal[k]),
+            square + share * share,
+        )
+    });
+    // The first sample is shown as it is, so that there is a square.
+    let begun = product / square;
+    for (k, value) in signal.iter_mut().enumerate() {
+        let share = fading(k);
+        if share <= FADED {
+            break;
+        }
+        *value += begun * share;
     }
 }
 
