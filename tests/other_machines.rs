@@ -116,7 +116,40 @@ fn a_filter_and_a_slow_amplifier_are_one_to_a_tachometer() {
         ..machine(1000.0, 10_000, servo(0.0, 1.0, 1.0))
     };
     let d = diagnose(&rig);
-    assert_eq!(classes(&d), [["actuator_lag", "sensor_lag"]], "{}", d.verdict.text);
+    assert_eq!(
+        classes(&d),
+        [["actuator_lag", "sensor_lag"]],
+        "{}",
+        d.verdict.text
+    );
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+}
+
+/// A controller that runs five times as fast as the record: its output rises in five steps from a sample to the next,
+/// of which the record has the first; their mean is (0 + 1 + 2 + 3 + 4)/25 of the way.
+#[test]
+fn a_controller_may_be_faster_than_the_record() {
+    let fast = DriveRig {
+        friction: Friction::dry(FRICTION),
+        encoder: TAU / 4e6,
+        velocity_noise: 0.05,
+        recorded: Recorded::VelocityOnly,
+        ..machine(2500.0, 30_000, servo(12.0, 0.5, 60.0))
+    };
+    let mut record = fast.measure();
+    for values in [
+        &mut record.time,
+        &mut record.input.values,
+        &mut record.outputs[0].values,
+    ] {
+        *values = values.iter().copied().step_by(5).collect();
+    }
+    let d = finish(DiagnosisJob::new(&record).unwrap());
+    check(
+        &d,
+        &["coulomb_friction", "sampled_input"],
+        &[("c", FRICTION), ("h", 0.4)],
+    );
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 

@@ -88,13 +88,16 @@ pub(super) fn is_certain(without: &Scored, with: &Scored, place: usize) -> bool 
     stands_out(without, with, place, CLEAR_ERRORS)
 }
 
+/// Fall of the error on the fitted part, a third of its square, that the few values of an effect do not bring by chance.
+const FITTED_FALL: f64 = 0.2;
+
 /// Whether an effect lowers the error, or that of the usual block, so much that it may be there although chance is not
 /// ruled out while the rest is as correlated as it is; where one effect holds the motion and another lets it loose, the
 /// held-back part may be led astray by the other alone, and the fitted part tells.
 pub(super) fn may_hide(model: &Scored, with: &Scored) -> bool {
     fall(&model.score, &with.score) > LARGE_FALL
         || usual_fall(&model.score, &with.score) > HUGE_FALL
-        || with.score.error_fit < (1.0 - LARGE_FALL) * model.score.error_fit
+        || with.score.error_fit < (1.0 - FITTED_FALL) * model.score.error_fit
 }
 
 /// Whether the parameter that tells of the effect at this place of `with` is this many standard errors off 0.

@@ -15,6 +15,7 @@ mod load_ramp;
 mod presliding_friction;
 mod probe;
 mod quadratic_drag;
+mod sampled_input;
 mod saturation;
 mod second_lag;
 mod sensor_lag;
@@ -105,6 +106,7 @@ pub fn registry() -> &'static [&'static dyn Effect] {
         &backlash::Backlash,
         &joint_compliance::JointCompliance,
         &input_delay::InputDelay,
+        &sampled_input::SampledInput,
         &actuator_lag::ActuatorLag,
         &second_lag::SecondLag,
         &gain_asymmetry::GainAsymmetry,

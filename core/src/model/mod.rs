@@ -94,6 +94,8 @@ pub struct Model {
     pub viscous: f64,
     /// Static maps of the input, in order.
     pub input_maps: Vec<StaticMap>,
+    /// Share of the next sample of the input that acts from a sample to the next, 0 to 1.
+    pub next_input: f64,
     /// Dead time of the input, s; at least 0.
     pub delay: f64,
     /// Time constant of the input lag, s; above 0.
@@ -127,6 +129,7 @@ impl Model {
             inertia,
             viscous,
             input_maps: Vec::new(),
+            next_input: 0.0,
             delay: 0.0,
             lag: None,
             constant_force: 0.0,
@@ -181,6 +184,7 @@ impl std::fmt::Debug for Model {
             .field("inertia", &self.inertia)
             .field("viscous", &self.viscous)
             .field("input_maps", &self.input_maps.len())
+            .field("next_input", &self.next_input)
             .field("delay", &self.delay)
             .field("lag", &self.lag)
             .field("constant_force", &self.constant_force)

@@ -480,7 +480,10 @@ impl<'a> DelayedInput<'a> {
 
     fn value(&self, sample: Option<usize>) -> f64 {
         sample.map_or(self.before, |i| {
-            self.model.map_input(self.excitation.input[i])
+            let input = &self.excitation.input;
+            let next = input.get(i + 1).unwrap_or(&input[i]);
+            let acting = input[i] + self.model.next_input * (next - input[i]);
+            self.model.map_input(acting)
         })
     }
 

@@ -1,0 +1,53 @@
+//! An input that moves on between the samples that were kept of it.
+
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct SampledInput;
+
+/// A straight line between samples acts like the mean of both.
+const STRAIGHT: f64 = 0.5;
+
+impl Effect for SampledInput {
+    fn id(&self) -> EffectId {
+        EffectId::new("sampled_input")
+    }
+
+    fn name(&self) -> &'static str {
+        "Sampled input"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The controller moved its output more often than it was written down: between two samples it was on its way to the next."
+    }
+
+    fn equation(&self) -> &'static str {
+        "u_acting = u_k + h (u_(k+1) - u_k) from sample k to the next"
+    }
+
+    fn source(&self) -> &'static str {
+        "straight line at h = 1/2, first-order hold: Åström and Wittenmark, Computer-Controlled Systems, 1997"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive, Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[ParameterSpec {
+            symbol: "h",
+            label: "share of the next sample",
+            dimension: Dimension::Ratio,
+            range: Range::UnitInterval,
+        }]
+    }
+
+    fn starts(&self, _: &Probe) -> Vec<Vec<f64>> {
+        vec![vec![STRAIGHT]]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.next_input = values[0];
+    }
+}
