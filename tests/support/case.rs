@@ -4,6 +4,8 @@ use hysteron_core::measurement::Measurement;
 use hysteron_core::rig::DriveRig;
 use hysteron_core::rig::process::ProcessRig;
 
+use super::diagnosis::thinned;
+
 /// A hidden effect.
 #[derive(Clone, Debug)]
 pub struct Truth {
@@ -71,6 +73,8 @@ pub enum Hidden {
 #[derive(Clone, Copy, Debug)]
 pub enum Bench {
     Drive(DriveRig),
+    /// A drive of whose record one sample in so many is kept.
+    Sparse(DriveRig, usize),
     Process(ProcessRig),
 }
 
@@ -86,6 +90,11 @@ impl Case {
     /// Known effects on a drive.
     pub fn drive(name: &'static str, truths: Vec<Truth>, rig: DriveRig) -> Self {
         Self::new(name, truths, Bench::Drive(rig))
+    }
+
+    /// Known effects on a drive of whose record one sample in so many is kept.
+    pub fn sparse(name: &'static str, truths: Vec<Truth>, rig: DriveRig, every: usize) -> Self {
+        Self::new(name, truths, Bench::Sparse(rig, every))
     }
 
     /// Known effects on a process.
@@ -126,6 +135,7 @@ impl Case {
     pub fn measure(&self) -> Measurement {
         match &self.bench {
             Bench::Drive(rig) => rig.measure(),
+            Bench::Sparse(rig, every) => thinned(rig.measure(), *every),
             Bench::Process(rig) => rig.measure(),
         }
     }
@@ -145,7 +155,7 @@ impl Case {
     /// The baseline parameters: symbol and true value.
     pub fn baseline(&self) -> [(&'static str, f64); 2] {
         match &self.bench {
-            Bench::Drive(rig) => [("J1", rig.inertia), ("d1", rig.viscous)],
+            Bench::Drive(rig) | Bench::Sparse(rig, _) => [("J1", rig.inertia), ("d1", rig.viscous)],
             Bench::Process(rig) => [("K", rig.gain), ("T", rig.time_constant)],
         }
     }

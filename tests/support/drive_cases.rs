@@ -116,6 +116,7 @@ pub fn drive_cases(seed: u64) -> Vec<Case> {
     cases.extend(mechanics(&mut random));
     cases.extend(pairs(&mut random));
     cases.extend(strangers(&mut random));
+    cases.extend(sparse(&mut random));
     cases
 }
 
@@ -570,4 +571,30 @@ fn strangers(r: &mut Random) -> Vec<Case> {
             Case::unknown(name, Bench::Drive(rig))
         })
         .collect()
+}
+
+/// Records that keep one value of the input in so many: of `n` even steps from one to the next, the mean is
+/// `(0 + 1 + ... + n - 1)/n^2` of the way.
+fn sparse(r: &mut Random) -> Vec<Case> {
+    let kept = |every: usize| (every - 1) as f64 / (2 * every) as f64;
+    let truth = |every| Truth::new("sampled_input", &["h"], kept(every));
+    let record = |rig: DriveRig, every: usize| DriveRig {
+        samples: 10_000 * every,
+        ..rig
+    };
+    let c = r.between(0.03, 0.05);
+    let alone = record(bare(r, MULTISINE), 5);
+    let rubbing = DriveRig {
+        friction: Friction::dry(c),
+        ..record(bare(r, MULTISINE), 4)
+    };
+    vec![
+        Case::sparse("sampled, multisine", vec![truth(5)], alone, 5),
+        Case::sparse(
+            "sampled and Coulomb",
+            vec![truth(4), coulomb(c)],
+            rubbing,
+            4,
+        ),
+    ]
 }

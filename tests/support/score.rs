@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Step};
+use hysteron_core::effect::{EffectId, is_of_record};
 use hysteron_core::measurement::Measurement;
 use serde::Serialize;
 
@@ -126,8 +127,16 @@ fn judge(seed: u64, case: &Case, diagnosis: Result<Diagnosis, String>, seconds: 
     match &case.hidden {
         Hidden::Unknown => outcome.right = verdict.unknown && !verdict.complete,
         Hidden::Known { truths, or } => {
-            let reads = is_truth(truths, &found) || or.iter().any(|r| is_reading(r, or, &found));
-            outcome.right = reads && verdict.complete && !verdict.unknown;
+            // What tells how the record was made is in the model, but not missing from the machine.
+            let of_record = |t: &&Truth| is_of_record(EffectId::new(t.effect));
+            let (of_record, missing): (Vec<&Truth>, Vec<&Truth>) =
+                truths.iter().partition(of_record);
+            let told = of_record.iter().all(|t| {
+                let last = diagnosis.steps.last();
+                last.is_some_and(|s| s.effects.iter().any(|e| e.as_str() == t.effect))
+            });
+            let reads = is_truth(&missing, &found) || or.iter().any(|r| is_reading(r, or, &found));
+            outcome.right = told && reads && verdict.complete && !verdict.unknown;
             if let Some(last) = diagnosis.steps.last().filter(|_| outcome.right) {
                 outcome.effects = truths.iter().filter_map(|t| compare(t, last)).collect();
                 // Where asymmetry is exchangeable with a load, inertia goes with it.
@@ -155,7 +164,7 @@ fn words(classes: &[Vec<&str>]) -> String {
 
 /// Whether each truth stands in exactly one class, all classes are used, and no class holds what it
 /// must not or lacks what is exactly the same.
-fn is_truth(truths: &[Truth], classes: &[Vec<&str>]) -> bool {
+fn is_truth(truths: &[&Truth], classes: &[Vec<&str>]) -> bool {
     let Some((first, rest)) = truths.split_first() else {
         return classes.is_empty();
     };

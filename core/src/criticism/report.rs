@@ -107,7 +107,8 @@ pub struct Step {
 /// What the data say in the end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The missing effects in the order found; each a class that this data cannot tell apart.
+    /// The missing effects in the order found; each a class that this data cannot tell apart. What tells how the record
+    /// was made ([`is_of_record`](crate::effect::is_of_record)) is not among them.
     pub missing: Vec<Vec<EffectId>>,
     /// The residual that is left is noise.
     pub complete: bool,

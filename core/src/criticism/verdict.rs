@@ -6,7 +6,7 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::Scored;
 use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
-use crate::effect::{self, Effect, EffectId, name_of, shown_unit};
+use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -20,24 +20,21 @@ pub(super) fn verdict(
     complete: bool,
     contradicted: Vec<Contradiction>,
 ) -> Verdict {
-    let missing: Vec<Vec<EffectId>> = wanted
-        .iter()
-        .enumerate()
-        .map(|(place, effect)| {
-            let others = classes.get(place).into_iter().flatten().map(|e| e.id());
-            in_registry_order(std::iter::once(effect.id()).chain(others).collect())
-        })
-        .collect();
-    let ambiguous = missing.iter().any(|class| class.len() > 1);
-    let mut text = if missing.is_empty() {
-        String::new()
-    } else {
-        let list: Vec<String> = missing
-            .iter()
-            .map(|class| describe(class, parameters))
-            .collect();
-        format!("Missing: {}. ", list.join("; "))
+    let class = |(place, effect): (usize, &&'static dyn Effect)| {
+        let others = classes.get(place).into_iter().flatten().map(|e| e.id());
+        let all = std::iter::once(effect.id()).chain(others);
+        in_registry_order(all.filter(|id| !is_of_record(*id)).collect())
     };
+    let of_record: Vec<Vec<EffectId>> = wanted
+        .iter()
+        .filter(|e| e.is_of_record())
+        .map(|e| vec![e.id()])
+        .collect();
+    let missing = wanted.iter().enumerate().map(class);
+    let missing: Vec<Vec<EffectId>> = missing.filter(|class| !class.is_empty()).collect();
+    let ambiguous = missing.iter().any(|class| class.len() > 1);
+    let mut text = listed("Of the record, not of the machine", &of_record, parameters);
+    text.push_str(&listed("Missing", &missing, parameters));
     if !contradicted.is_empty() {
         return contradiction(missing, contradicted, text, model.score.error);
     }
@@ -60,6 +57,15 @@ pub(super) fn verdict(
         contradicted,
         text,
     }
+}
+
+/// `Missing: Coulomb friction, friction level 0.0406 ± 0.0002 N m. `, or nothing where there is none.
+fn listed(what: &str, classes: &[Vec<EffectId>], parameters: &[Parameter]) -> String {
+    if classes.is_empty() {
+        return String::new();
+    }
+    let list: Vec<String> = classes.iter().map(|c| describe(c, parameters)).collect();
+    format!("{what}: {}. ", list.join("; "))
 }
 
 /// The verdict where the data contradict what the user's model holds.
@@ -182,6 +188,7 @@ pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
         step.effects
             .iter()
             .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
+            .filter(|e| !is_of_record(**e))
             .map(|e| vec![*e])
             .collect()
     });

@@ -65,6 +65,12 @@ pub trait Effect: Sync {
         &[]
     }
 
+    /// Whether it tells how the record was made and not what the machine does: it is fitted and said, but nothing is
+    /// missing from the machine.
+    fn is_of_record(&self) -> bool {
+        false
+    }
+
     /// Whether the effect of this id is this one with some values at 0.
     fn has_part(&self, id: EffectId) -> bool {
         self.contains().contains(&id)
@@ -128,6 +134,11 @@ pub fn find(id: EffectId) -> Option<&'static dyn Effect> {
 /// The name of the effect with this id on screen; that of an unknown one, such as a user's own, is its id.
 pub fn name_of(id: EffectId) -> &'static str {
     find(id).map_or(id.as_str(), Effect::name)
+}
+
+/// Whether the effect with this id tells how the record was made ([`Effect::is_of_record`]).
+pub fn is_of_record(id: EffectId) -> bool {
+    find(id).is_some_and(Effect::is_of_record)
 }
 
 /// The effects that make sense for this kind of system.

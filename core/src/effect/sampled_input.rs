@@ -43,6 +43,10 @@ impl Effect for SampledInput {
         }]
     }
 
+    fn is_of_record(&self) -> bool {
+        true
+    }
+
     fn starts(&self, _: &Probe) -> Vec<Vec<f64>> {
         vec![vec![STRAIGHT]]
     }

@@ -78,6 +78,7 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
         .effects
         .iter()
         .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
+        .filter(|e| !effect::is_of_record(**e))
         .map(|id| {
             let main = step.parameters.iter().find(|p| p.effect == Some(*id));
             main.map_or_else(
