@@ -32,6 +32,9 @@ const QUANTUM_SAMPLES: usize = 4000;
 /// Most counts that the least step between two values may be.
 const MOST_COUNTS: u32 = 16;
 
+/// Distance from a whole number of counts up to which many counts are whole.
+const WHOLE: f64 = 0.1;
+
 /// Standard deviation of the noise in `values`, in their unit; above 0 unless all are equal.
 ///
 /// `input` is as long and tells when the signal may have kinks.
@@ -86,29 +89,44 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
 fn quantum(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.iter().take(QUANTUM_SAMPLES).copied().collect();
     sorted.sort_by(f64::total_cmp);
-    let steps: Vec<f64> = sorted
+    let mut steps: Vec<f64> = sorted
         .windows(2)
         .map(|w| w[1] - w[0])
         .filter(|d| *d > 0.0)
         .collect();
-    let Some(least) = steps.iter().copied().min_by(f64::total_cmp) else {
+    steps.sort_by(f64::total_cmp);
+    let Some(least) = steps.first() else {
         return 0.0;
     };
     // The printed values are rounded, so the median of the single steps is better than the least.
-    let mut single: Vec<f64> = steps.iter().copied().filter(|d| *d < 1.5 * least).collect();
-    single.sort_by(f64::total_cmp);
-    let least = single[single.len() / 2];
+    let single = steps.partition_point(|d| *d < 1.5 * least);
+    let least = steps[single / 2];
     // What runs on fast may never stop on two neighbouring counts.
-    let mut parts = (1..=MOST_COUNTS).map(|n| least / f64::from(n));
+    let mut parts = (1..=MOST_COUNTS).map(|n| refined(&steps, least / f64::from(n)));
     let step = parts.find(|step| is_whole(&steps, *step));
     step.unwrap_or(0.0)
+}
+
+/// The step of which these ascending ones are whole multiples, from a rough value: the longer ones, whose number of steps
+/// follows from the shorter ones, tell it to more digits than print rounding leaves of one.
+fn refined(ascending: &[f64], rough: f64) -> f64 {
+    let (mut product, mut square, mut step) = (0.0, 0.0, rough);
+    for length in ascending {
+        let count = (length / step).round();
+        if (length / step - count).abs() < WHOLE {
+            product += length * count;
+            square += count * count;
+            step = product / square;
+        }
+    }
+    step
 }
 
 /// Whether nearly all of these steps are whole multiples of one.
 fn is_whole(steps: &[f64], step: f64) -> bool {
     let whole = steps.iter().filter(|d| {
         let ratio = *d / step;
-        (ratio - ratio.round()).abs() < 0.02 * ratio.clamp(1.0, 5.0)
+        (ratio - ratio.round()).abs() < WHOLE * (0.2 * ratio).clamp(0.2, 1.0)
     });
     whole.count() as f64 > 0.95 * steps.len() as f64
 }
@@ -229,6 +247,19 @@ mod tests {
             let level = noise_level(&values, &input[1..]);
             assert!((level / 0.05 - 1.0).abs() < 0.05, "{of}: {level}");
         }
+    }
+
+    #[test]
+    fn the_step_is_found_where_hardly_two_samples_are_near_each_other() {
+        // A body at 20 rad/s, encoder of 2^20 counts, nine digits printed: neighbours are hundreds of counts apart.
+        let step = std::f64::consts::TAU / f64::from(1 << 20);
+        let printed = |x: f64| (x * 1e8).round() * 1e-8;
+        let values: Vec<f64> = (0..4000)
+            .map(|i| 8.0 * (1e-3 * f64::from(i)).sin() + 1e-3 * f64::from(i * i % 977))
+            .map(|x| printed((x / step).round() * step))
+            .collect();
+        let found = quantum(&values);
+        assert!((found / step - 1.0).abs() < 1e-4, "{found}");
     }
 
     #[test]
