@@ -89,7 +89,7 @@ impl Load {
     /// S on a lightly damped oscillator: S w / (4 zeta), e.g. Crandall and Mark 1963).
     pub(super) fn doubt(&self, noise: FollowedNoise, h: f64) -> [f64; 2] {
         let frequency = (self.coupling.stiffness / self.inertia).sqrt();
-        let damping = (self.coupling.damping + self.viscous) / self.inertia;
+        let damping = self.decay();
         // A load with less damping has not yet forgotten how it began to follow.
         let damping = damping.max(1.0 / (WARM_UP as f64 * h));
         let excited = frequency * frequency * h / (2.0 * damping);
@@ -100,6 +100,21 @@ impl Load {
         // The twist counts from the measured position with its own noise.
         let x = WIDELY * level * (1.0 + excited).sqrt();
         [x, x * frequency]
+    }
+
+    /// Rate at which its swing on a joint loses energy, 1/s: twice the rate at which the swing decays.
+    fn decay(&self) -> f64 {
+        (self.coupling.damping + self.viscous) / self.inertia
+    }
+
+    /// Samples, `h` seconds apart, after which it has forgotten how it began to follow the body.
+    fn warm_up(&self, h: f64) -> usize {
+        if self.coupling.half_gap > 0.0 {
+            return WARM_UP;
+        }
+        // A swing without damping is never forgotten: the cast saturates.
+        let samples = (2.0 * FORGOTTEN / (self.decay() * h)).ceil();
+        (samples as usize).max(WARM_UP)
     }
 
     /// Longest step for the exponential midpoint rule in contact with a body of `inertia`, s.
@@ -136,10 +151,15 @@ pub(super) struct Follower<'m> {
     swing: Option<Swing>,
     /// Sample up to which it has followed.
     sample: usize,
+    /// Samples after which it has forgotten how it began.
+    warm_up: usize,
 }
 
-/// Samples after which a load has forgotten how it began: it is pushed along many times in them.
+/// Samples after which a load behind a gap has forgotten how it began: it is pushed along many times in them.
 const WARM_UP: usize = 1500;
+
+/// Time constants of its decay after which a load on a joint has: less than a thousandth is left.
+const FORGOTTEN: f64 = 7.0;
 
 /// Most steps in an interval of a follower.
 const MAX_FOLLOWER_STEPS: f64 = 32.0;
@@ -167,6 +187,7 @@ impl<'m> Follower<'m> {
             steps: steps as u32,
             swing: Swing::new(load, h),
             sample: 0,
+            warm_up: load.warm_up(h),
         }
     }
 
@@ -180,8 +201,8 @@ impl<'m> Follower<'m> {
     /// Follows up to a sample, not before the last one asked for; `h` tells the time from a sample to the
     /// next. A long way is cut short: the load then begins as if it had gone with the body.
     pub fn reach(&mut self, position: &[f64], sample: usize, h: impl Fn(usize) -> f64) {
-        if sample > self.sample + WARM_UP {
-            self.sample = sample - WARM_UP;
+        if sample > self.sample.saturating_add(self.warm_up) {
+            self.sample = sample - self.warm_up;
             let (from, to) = (position[self.sample], position[self.sample + 1]);
             let v = (to - from) / h(self.sample);
             (self.now.motion.x, self.now.motion.v) = (from, v);
