@@ -44,6 +44,14 @@ const FAR_OFF: f64 = 2.0;
 /// iteration: where it begins is regressed.
 const FIRST_SHARE: f64 = 0.75;
 
+/// Parameters of an effect up to which it is tried before those with more, group by group: those that take long need
+/// not be followed where a simple one explains nearly all.
+const GROUPS: [usize; 2] = [1, 3];
+
+/// The first iteration of an effect must come to within this many times what simpler ones have come to on the scout:
+/// what explains so much less is looked for again when that is in the model.
+const OUTSHONE: f64 = 30.0;
+
 /// What the effects in a race are added to.
 struct Track {
     fit: Fit,
@@ -120,6 +128,11 @@ impl Contender {
         };
     }
 
+    /// Number of its group by its parameters.
+    fn group(&self) -> usize {
+        GROUPS.partition_point(|most| *most < self.effect.parameters().len())
+    }
+
     /// Whether it has had its heats.
     fn over(&self) -> bool {
         matches!(self.stage, Stage::Over | Stage::Closed)
@@ -179,6 +192,8 @@ pub(super) struct Race {
     target: f64,
     /// Cost above which it is not worth going on.
     ceiling: f64,
+    /// Effects up to this group may begin.
+    group: usize,
     /// Effects that need their parts may begin: these are fitted as far as they may win.
     parts_known: bool,
     /// The race is run, and results are taken.
@@ -243,6 +258,7 @@ impl Race {
                 Some(_) => f64::INFINITY,
                 None => WORTHWHILE * fit.cost,
             },
+            group: 0,
             parts_known: false,
             run: false,
         }
@@ -282,9 +298,20 @@ impl Race {
         self.contenders.iter().filter(is_part)
     }
 
-    /// Whether an effect waits for its parts.
+    /// Whether an effect waits for its parts, or for simpler ones.
     fn waits(&self, contender: &Contender) -> bool {
-        !self.parts_known && self.parts_of(contender).next().is_some()
+        contender.group() > self.group
+            || !self.parts_known && self.parts_of(contender).next().is_some()
+    }
+
+    /// Lets effects with more parameters begin; false if all have.
+    fn open_next_group(&mut self) -> bool {
+        let scouted = self.contenders.iter().filter_map(|c| c.search.as_ref());
+        let best = scouted.map(Search::scouted).fold(f64::INFINITY, f64::min);
+        let ground = &mut self.track.ground;
+        ground.reach = ground.reach.min(OUTSHONE * best);
+        self.group += 1;
+        self.group <= GROUPS.len()
     }
 
     /// Whether an effect with fewer parameters leaves nothing but noise, so that this one is not asked for.
@@ -348,6 +375,9 @@ impl Race {
     /// Some work; false when the race is over.
     pub fn advance(&mut self, session: &Session) -> bool {
         let together = self.together();
+        if together != Some(Stage::Scan) && self.group < GROUPS.len() {
+            return self.open_next_group();
+        }
         if together == Some(Stage::Warm) {
             self.compare_warm();
             return true;

@@ -433,6 +433,12 @@ impl Search {
         }
     }
 
+    /// Least cost that the scanned points came to on the scout.
+    pub fn scouted(&self) -> f64 {
+        let costs = self.scanned.iter().map(|(fit, _)| fit.cost);
+        costs.fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether no starting point led to where it is worth going on.
     pub fn given_up(&self) -> bool {
         self.given_up
