@@ -61,12 +61,16 @@ const LEAST_ERRORS: f64 = 1.5;
 /// Fall of the error that speaks for itself.
 const HUGE_FALL: f64 = 0.5;
 
-/// Whether the last effect of `with` helps `model`, and is itself seen.
+/// Whether the last effect of `with` helps `model`, and is itself seen. What only tells how the record was made may be a
+/// trifle: it is not said to be missing from the machine.
 pub(super) fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
-    let last = with.fit.structure.effects.len().checked_sub(1);
+    let effects = &with.fit.structure.effects;
+    let Some((last, _)) = effects.split_last() else {
+        return false;
+    };
     helps(&model.score, &with.score)
-        && matters(&model.score, &with.score, first)
-        && last.is_some_and(|place| is_seen(model, with, place))
+        && (last.is_of_record() || matters(&model.score, &with.score, first))
+        && is_seen(model, with, effects.len() - 1)
 }
 
 /// Whether the effect at this place of `with`, which `model` has not, or only a part of, stands out by itself.

@@ -30,8 +30,8 @@ pub(super) fn verdict(
         .filter(|e| e.is_of_record())
         .map(|e| vec![e.id()])
         .collect();
-    let missing = wanted.iter().enumerate().map(class);
-    let missing: Vec<Vec<EffectId>> = missing.filter(|class| !class.is_empty()).collect();
+    let of_machine = wanted.iter().enumerate().filter(|(_, e)| !e.is_of_record());
+    let missing: Vec<Vec<EffectId>> = of_machine.map(class).collect();
     let ambiguous = missing.iter().any(|class| class.len() > 1);
     let mut text = listed("Of the record, not of the machine", &of_record, parameters);
     text.push_str(&listed("Missing", &missing, parameters));

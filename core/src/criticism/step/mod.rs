@@ -25,10 +25,15 @@ const MAX_VISITS: usize = 2;
 const BETTER_VALLEY: f64 = 0.92;
 const BETTER: f64 = 0.9999;
 
+/// Error, in noise units, up to which little is left.
+const LITTLE_LEFT: f64 = 3.0;
+
 /// What a step is doing.
 enum Stage {
     /// Fitting the model itself, effect by effect; `next` is the one to add then.
     Build { search: Search, next: usize },
+    /// Trying what tells how the record was made, where little is left.
+    Record(Race),
     /// Trying every effect on top.
     Try(Race),
     /// Fitting the model once more from where an effect on top of it led, or from beyond where it was stuck.
@@ -216,7 +221,9 @@ impl StepJob {
                 let (data, scales) = (&session.data, &session.scales);
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
-            Stage::Try(race) | Stage::Swap { race, .. } => !race.advance(session),
+            Stage::Record(race) | Stage::Try(race) | Stage::Swap { race, .. } => {
+                !race.advance(session)
+            }
             Stage::Design(designs) => !designs.first_mut().is_some_and(Design::advance),
             Stage::Report => true,
         };
@@ -266,12 +273,17 @@ impl StepJob {
                     None => self.try_stage(),
                 }
             }
+            Stage::Record(race) => {
+                self.tried = self.scored_all(race);
+                let told = self.model.as_ref().and_then(|model| self.suggestion(model));
+                if told.is_some_and(|(_, with)| is_plain_noise(&with.score)) {
+                    self.revisit_stage()
+                } else {
+                    self.try_all_stage()
+                }
+            }
             Stage::Try(race) => {
-                let fits = race.finish();
-                self.tried = fits
-                    .into_iter()
-                    .map(|(effect, fit)| (effect, self.session.scored(fit)))
-                    .collect();
+                self.tried = self.scored_all(race);
                 self.contradicted = self.contradictions();
                 self.revisit_stage()
             }
@@ -314,8 +326,30 @@ impl StepJob {
         }
     }
 
-    /// A part of an effect that leaves nothing but noise is not widened to the whole.
+    /// What a race came to.
+    fn scored_all(&self, race: Race) -> Vec<(&'static dyn Effect, Scored)> {
+        let scored = |(effect, fit)| (effect, self.session.scored(fit));
+        race.finish().into_iter().map(scored).collect()
+    }
+
+    /// Where little is left, it may be for how the record was made; if so, no other effect is tried before that is in the
+    /// model.
     fn try_stage(&self) -> Stage {
+        let Some(model) = self.model.as_ref() else {
+            return Stage::Report;
+        };
+        let mut of_record = self.others();
+        of_record.retain(|e| e.is_of_record());
+        let little = model.score.error < LITTLE_LEFT && !is_plain_noise(&model.score);
+        if little && !of_record.is_empty() {
+            Stage::Record(Race::new(&self.session, &model.fit, of_record, None))
+        } else {
+            self.try_all_stage()
+        }
+    }
+
+    /// A part of an effect that leaves nothing but noise is not widened to the whole.
+    fn try_all_stage(&self) -> Stage {
         self.model.as_ref().map_or(Stage::Report, |model| {
             let mut others = self.others();
             if is_plain_noise(&model.score) {
@@ -374,8 +408,9 @@ impl StepJob {
         {
             return Stage::Report;
         }
-        // What the user says is in the model is not up for exchange.
-        let mut rest = (place..self.wanted.len()).skip_while(|k| self.is_present(*k));
+        // What the user says is in the model is not up for exchange, nor what is not said of the machine.
+        let kept = |k: &usize| self.is_present(*k) || self.wanted[*k].is_of_record();
+        let mut rest = (place..self.wanted.len()).skip_while(kept);
         let place = rest.next().unwrap_or(self.wanted.len());
         match self.without.get(place) {
             Some(without) => Stage::Swap {
@@ -450,7 +485,7 @@ impl StepJob {
         let wanted = self.wanted.len().max(1) as f64;
         match &self.stage {
             Stage::Build { search, .. } => (0.1 * search.scanned(), "Fitting the model".to_owned()),
-            Stage::Try(race) => {
+            Stage::Record(race) | Stage::Try(race) => {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))
             }
