@@ -14,6 +14,11 @@ const MAX_HALVINGS: u32 = 6;
 /// own size, above which the step is halved.
 const SMOOTH_SHARE: f64 = 0.05;
 
+/// Change of velocity over a step, as a share of the Stribeck speed, above which the step is halved while the friction
+/// level depends on it; and speed, in times of that, above which it no longer does.
+const LEVEL_SHARE: f64 = 0.12;
+const LEVELLED: f64 = 3.0;
+
 /// Steps of a contact in an interval up to which its ends tell whether the contact lasts.
 const SEEN_STEPS: f64 = 5.0;
 
@@ -244,7 +249,9 @@ impl<'m> Engine<'m> {
         } else {
             0
         };
-        halvings = halvings.max(self.smooth_halvings(state, h));
+        halvings = halvings
+            .max(self.smooth_halvings(state, h))
+            .max(self.level_halvings(state, h));
         let step = h / f64::from(1_u32 << halvings);
         for _ in 0..1_u32 << halvings {
             self.midpoint_step(state, w, step);
@@ -335,6 +342,20 @@ impl<'m> Engine<'m> {
                 let change = (force(x + 0.5 * step * v, v) - before).abs();
                 change * step <= SMOOTH_SHARE * (self.model.inertia * v).abs()
             })
+            .unwrap_or(MAX_HALVINGS)
+    }
+
+    /// Halvings that a friction level asks for which falls with the speed.
+    fn level_halvings(&self, state: &State, h: f64) -> u32 {
+        let friction = &self.model.friction;
+        let (v, z) = (state.motion.v.abs(), state.motion.z.abs());
+        let gained = h * (z + friction.breakaway()) / self.model.inertia.abs();
+        if friction.static_excess == 0.0 || v > LEVELLED * friction.stribeck_speed + gained {
+            return 0;
+        }
+        let most = LEVEL_SHARE * friction.stribeck_speed;
+        (0..MAX_HALVINGS)
+            .find(|k| gained / f64::from(1_u32 << k) <= most)
             .unwrap_or(MAX_HALVINGS)
     }
 
