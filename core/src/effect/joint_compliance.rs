@@ -18,9 +18,10 @@ const FINER_STEPS: i32 = 3;
 /// Natural frequencies that are followed.
 const BEST: usize = 3;
 
-/// Share of the unexplained force that a load with this natural frequency would leave, and the effect's
-/// values.
-fn trial(probe: &Probe, omega: f64, damping: f64) -> Option<(f64, f64, Vec<f64>)> {
+/// Share of the unexplained force that a load with this natural frequency would leave beside an input that runs on by the
+/// `changes` of its samples, and the effect's values: below the resonance, the load shows in little more than such a shift
+/// of phase.
+fn trial(probe: &Probe, changes: &[f64], omega: f64, damping: f64) -> Option<(f64, f64, Vec<f64>)> {
     let inertia = probe.scales.inertia.abs();
     let load = Load {
         inertia,
@@ -32,7 +33,10 @@ fn trial(probe: &Probe, omega: f64, damping: f64) -> Option<(f64, f64, Vec<f64>)
             damping: damping * inertia * omega,
         },
     };
-    let fit = probe.regress(&[&probe.load_torque(&load)])?;
+    let torque = probe.load_torque(&load);
+    let beside = probe.regress(&[&torque, changes]);
+    // An input that never changes has no shift.
+    let fit = beside.or_else(|| probe.regress(&[&torque]))?;
     let scale = -fit.coefficients[0];
     (scale > 0.0).then(|| {
         let c = load.coupling;
@@ -103,8 +107,9 @@ impl Effect for JointCompliance {
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
         let stretch = &probe.stretch();
+        let changes = &stretch.input_changes();
         let tried = |guesses: Vec<(f64, f64)>| {
-            let trial = |i: usize| trial(stretch, guesses[i].0, guesses[i].1);
+            let trial = |i: usize| trial(stretch, changes, guesses[i].0, guesses[i].1);
             let trials = stretch.crew.gather(guesses.len(), trial);
             best(trials.into_iter().flatten().collect())
         };

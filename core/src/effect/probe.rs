@@ -527,6 +527,17 @@ impl Probe {
         stretch
     }
 
+    /// By how much the acting input changes from each sample to the next.
+    pub fn input_changes(&self) -> Vec<f64> {
+        let acting = |k: usize| self.acting.get(k).or(self.acting.last());
+        let change = |k| {
+            acting(k + 1)
+                .zip(acting(k))
+                .map_or(0.0, |(to, from)| to - from)
+        };
+        (0..self.input.len()).map(change).collect()
+    }
+
     /// Torque that `load` would put on the motor, moved as measured, where the windows are.
     pub fn load_torque(&self, load: &Load) -> Vec<f64> {
         load_torque(load, &self.position, self.scales.step, &self.spans)
