@@ -157,7 +157,7 @@ pub const SHORT_CROSSINGS: f64 = 8.0;
 pub const BLURRED: f64 = 1.0;
 
 /// Below this share of it the contact cannot be told from a rigid one.
-pub const RIGID_CROSSINGS: f64 = 0.0025;
+pub const RIGID_CROSSINGS: f64 = 0.01;
 
 /// A spring that swings by more than this in a sample, squared radians, is rigid to the measurement.
 pub const STIFFEST: f64 = 0.3;
