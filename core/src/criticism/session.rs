@@ -42,6 +42,9 @@ impl Scored {
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
 
+/// Standard error, in times of what a value may be, at which the record tells nothing of it: no larger one is given.
+const UNTOLD: f64 = 1e3;
+
 /// Tolerance of a half gap that was felt in its standard errors, and the least of these as a share of it.
 const GAP_TOLERANCE: f64 = 3.0;
 const LEAST_GAP_ERROR: f64 = 0.01;
@@ -322,12 +325,13 @@ impl Session {
             let mut least = least.into_iter();
             for (j, spec) in range.zip(effect.parameters()) {
                 let least = least.next().filter(|_| status(j) == Status::Free);
+                let size = fit.values[j].abs().max(self.scales.of(spec.dimension));
                 parameters.push(Parameter {
                     effect: Some(effect.id()),
                     name: spec.symbol.to_owned(),
                     label: spec.label.to_owned(),
                     value: fit.values[j],
-                    std_error: errors[j].max(least.unwrap_or(0.0)),
+                    std_error: errors[j].max(least.unwrap_or(0.0)).min(UNTOLD * size),
                     status: status(j),
                     unit: self.unit_of(Some(spec.dimension)),
                 });
