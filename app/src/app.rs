@@ -223,6 +223,11 @@ impl HysteronApp {
         let ctx = ui.ctx();
         match command {
             Command::Undo | Command::Redo => self.travel(ctx, command == Command::Undo),
+            Command::AskForFile => {
+                if let Some(page) = self.go_to_files() {
+                    page.open_dialog(ctx);
+                }
+            }
             Command::Reset => {
                 // The link of an untouched page is its name.
                 let untouched = format!("{};{}", link::VERSION, self.document().page);

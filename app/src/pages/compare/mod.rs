@@ -550,6 +550,10 @@ impl View for Compare {
         self.open_as(ctx, name, bytes.to_vec(), Reading::default());
     }
 
+    fn open_dialog(&self, ctx: &egui::Context) {
+        self.files.open_dialog(ctx, MEASUREMENT);
+    }
+
     fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {
         self.files.open_dropped(ctx, file);
     }
