@@ -345,11 +345,10 @@ impl HysteronApp {
     /// and what concerns all.
     pub fn hook_state(&self) -> serde_json::Value {
         let front = self.pages.get(self.front);
-        let mut state = front.map_or_else(|| serde_json::json!({}), |p| p.hook_state());
-        let mut busy = false;
-        for page in &self.pages {
-            let own = page.hook_state();
-            busy |= own["busy"] == true;
+        let states: Vec<_> = self.pages.iter().map(|p| p.hook_state()).collect();
+        let busy = states.iter().any(|own| own["busy"] == true);
+        let mut state = states.get(self.front).cloned().unwrap_or_default();
+        for (page, own) in self.pages.iter().zip(states) {
             state[page.id()] = own;
         }
         state["ready"] = true.into();
