@@ -13,6 +13,7 @@ mod missing;
 mod open;
 mod own;
 mod parameters;
+mod parts;
 mod plots;
 mod reveal;
 mod settings;
@@ -78,6 +79,8 @@ pub struct Compare {
     reports: HashMap<Vec<EffectId>, StepReport>,
     /// Effects of the step on screen: the last one finished.
     shown: Option<Vec<EffectId>>,
+    /// How much of it is there.
+    parts: parts::Parts,
     job: Option<Job>,
     progress: (f64, String),
     message: Option<String>,
@@ -120,6 +123,7 @@ impl Default for Compare {
             effects: Vec::new(),
             reports: HashMap::new(),
             shown: None,
+            parts: parts::Parts::default(),
             job: None,
             progress: (0.0, String::new()),
             message: None,
@@ -202,6 +206,7 @@ enum Command {
 impl Compare {
     /// Takes what jobs and files have brought.
     pub fn update(&mut self, ctx: &egui::Context) {
+        self.follow(ctx);
         while let Some(arrival) = self.files.arrived() {
             let name = arrival.name;
             match arrival.bytes {
@@ -306,6 +311,9 @@ impl Compare {
                 command => self.carry_out(ui.ctx(), command),
             }
         }
+        if self.is_behind() {
+            ui.ctx().request_repaint();
+        }
     }
 
     /// What the plots may show.
@@ -348,6 +356,9 @@ impl Compare {
         targets: &mut Targets,
         commands: &mut Vec<Command>,
     ) {
+        if self.parts.fresh {
+            return;
+        }
         match self.look {
             Look::Time => plots::ui(self, ui, height),
             Look::Places => atlas::ui(self, ui),
@@ -387,11 +398,13 @@ impl Compare {
             Command::OpenMapped => self.open_mapped(ctx),
             Command::CancelMapping => (self.form, self.opening) = (None, None),
             Command::CancelReading => self.opening = None,
-            Command::Add(effect) => {
+            Command::Add(effect) if !self.effects.contains(&effect) => {
                 let mut effects = self.effects.clone();
                 effects.push(effect);
                 self.go_to(ctx, effects);
             }
+            // It was on the list of the step before.
+            Command::Add(_) => {}
             Command::Undo => self.step_to(ctx, self.effects.len().saturating_sub(1)),
             Command::Redo => self.step_to(ctx, self.effects.len() + 1),
             Command::Step(n) => self.step_to(ctx, n),
@@ -441,7 +454,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
+            "busy": self.is_behind() || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
             "progress": self.progress.0,
             "mapping": self.form.as_ref().map(mapping::Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),

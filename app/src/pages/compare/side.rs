@@ -5,6 +5,7 @@ use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
 use hysteron_core::effect::name_of;
 
+use super::parts::Part;
 use super::waterfall::{BAR_WIDTH, bar_ui};
 use super::{Command, Compare, Look, experiment, missing, own, parameters, times_noise, waterfall};
 use crate::hook::Targets;
@@ -50,10 +51,15 @@ pub(super) fn findings_ui(
             experiment::ui(page, index, proposal, ui, targets, commands);
         }
     }
+    let Some(report) = page.report_in(Part::List) else {
+        return;
+    };
     missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
     own::ui(page, ui, targets, commands);
-    parameters::ui(report, ui);
+    if let Some(report) = page.report_in(Part::Parameters) {
+        parameters::ui(report, ui);
+    }
 }
 
 pub(super) fn file_ui(
