@@ -186,8 +186,8 @@ enum Command {
     Search(usize, Limits),
     /// Saves the input of a proposal.
     SaveInput(usize),
-    /// The word that opens the seal is being typed.
-    Word(String),
+    /// The word that opens the seal is being typed, and whether it can be read.
+    Word(String, bool),
     /// Opens the seal.
     Reveal,
     /// What the app is to do.
@@ -421,9 +421,9 @@ impl Compare {
                     save(ctx, document, &self.saved.0);
                 }
             }
-            Command::Word(word) => {
+            Command::Word(word, legible) => {
                 if let Some(sealed) = &mut self.sealed {
-                    sealed.word = word;
+                    (sealed.word, sealed.legible) = (word, legible);
                 }
             }
             Command::Reveal => self.reveal(ctx),
