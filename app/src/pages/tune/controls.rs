@@ -43,7 +43,7 @@ impl Tune {
             TuningInput::default().relay.asymmetry,
             1.0,
             -0.6..=0.6,
-            "asymmetry a",
+            "asymmetry a, step 4",
         )
         .on_hover_text(tr(
             "Of the relay in step 4 only: without it a test tells no static gain",
