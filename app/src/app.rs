@@ -9,7 +9,7 @@ use egui::util::undoer::Undoer;
 pub use give::GivenFile;
 
 use crate::address;
-use crate::bar::Bar;
+use crate::bar::{self, Bar};
 use crate::document::Document;
 use crate::language::{self, Language, tr};
 use crate::motion;
@@ -448,11 +448,18 @@ impl HysteronApp {
 
 /// What to try next.
 fn hint_ui(ui: &mut egui::Ui, hint: Hint, desk: &mut Desk) {
-    theme::running_text(ui, |ui| {
-        ui.label(tr(hint.sentence));
-        if hint.commands.is_empty() {
-            return;
-        }
+    let sentence = tr(hint.sentence);
+    if hint.commands.is_empty() {
+        ui.label(sentence);
+        return;
+    }
+    ui.horizontal(|ui| {
+        // The sentence breaks beside the button, which stays on the screen.
+        let room = ui.available_width() - bar::button(ui, "Try it");
+        ui.scope(|ui| {
+            ui.set_max_width(room);
+            ui.add(egui::Label::new(sentence).wrap());
+        });
         let button = ui.button(tr("Try it"));
         desk.targets.note("try", ui, &button);
         if button.clicked() {

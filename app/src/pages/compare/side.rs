@@ -8,6 +8,7 @@ use hysteron_core::effect::name_of;
 use super::parts::Part;
 use super::waterfall::{BAR_WIDTH, bar_ui};
 use super::{Command, Compare, Look, experiment, missing, own, parameters, times_noise, waterfall};
+use crate::bar;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
@@ -124,7 +125,9 @@ pub(super) fn file_ui(
 pub(super) fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if page.job.is_some() {
         ui.horizontal(|ui| {
-            let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(230.0);
+            // What it is doing is a sentence.
+            let width = ui.available_width() - bar::button(ui, "Cancel");
+            let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(width);
             ui.add(bar.text(tr(page.progress.1.clone())));
             if ui.button(tr("Cancel")).clicked() {
                 commands.push(Command::Cancel);
