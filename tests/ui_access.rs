@@ -14,11 +14,10 @@ use hysteron::GivenFile;
 use ui::{App, NARROW, PLACES, TALL, WIDE, app, click, finish, show, state};
 
 /// Numbers that have no unit: the loop of Explore is in units of its own signals, the rest are ratios.
-const PLAIN: [&str; 15] = [
+const PLAIN: [&str; 14] = [
     "gain k",
     "hysteresis ε",
     "asymmetry a",
-    "asymmetry a, step 4",
     "noise σ",
     "restitution",
     "gain before",

@@ -43,7 +43,7 @@ impl Tune {
             TuningInput::default().relay.asymmetry,
             1.0,
             -0.6..=0.6,
-            "asymmetry a, step 4",
+            "asymmetry a",
         )
         .on_hover_text(tr(
             "Of the relay in step 4 only: without it a test tells no static gain",
@@ -125,7 +125,7 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     if let Some(preset) = chosen {
         ui.small(tr(preset.sentence));
     }
-    ui.small(tr("Plant and relay are those of Explore."));
+    ui.small(tr("Plant and relay are those of Explore; the asymmetry is that of step 4."));
 }
 
 fn equations_ui(ui: &mut egui::Ui) {
