@@ -403,8 +403,6 @@ impl Compare {
                 effects.push(effect);
                 self.go_to(ctx, effects);
             }
-            // It was on the list of the step before.
-            Command::Add(_) => {}
             Command::Undo => self.step_to(ctx, self.effects.len().saturating_sub(1)),
             Command::Redo => self.step_to(ctx, self.effects.len() + 1),
             Command::Step(n) => self.step_to(ctx, n),
@@ -427,7 +425,8 @@ impl Compare {
                 }
             }
             Command::Reveal => self.reveal(ctx),
-            Command::Desk(_) => {}
+            // Of the list of the step before; what the app is to do.
+            Command::Add(_) | Command::Desk(_) => {}
             Command::Cancel => {
                 self.job = None;
                 match &self.shown {
