@@ -134,9 +134,10 @@ fn the_finding_that_is_shaded_lies_in_the_plots() {
         assert!(said.contains(&words), "{said:#?}");
     };
     // Seconds after the first periods.
-    harness.get_by_label_contains("48 % of the squared position error lies within 15.2 ms");
+    harness
+        .get_by_label_contains("48\u{a0}% of the squared position error lies within 15.2\u{a0}ms");
     marked(&harness, "48");
-    let other = "41 % of the squared velocity error lies between 1.80 s and 3.00 s";
+    let other = "41\u{a0}% of the squared velocity error lies between 1.80\u{a0}s and 3.00\u{a0}s";
     harness.get_by_label_contains(other).click();
     finish(&mut harness);
     marked(&harness, "41");
@@ -212,4 +213,34 @@ fn the_hint_says_what_is_under_way_needless_or_contradicted() {
         .open(&ctx, "wrong.toml", known.as_bytes());
     finish(&mut harness);
     says(&harness, "Correct the known J1 in your model");
+}
+
+#[test]
+fn a_new_step_comes_part_by_part() {
+    let mut harness = app("compare", WIDE);
+    let ctx = harness.ctx.clone();
+    let link = "v1;compare;compare.file=process-02";
+    assert_eq!(harness.state_mut().open_link(&ctx, link), Ok(()));
+    while state(&harness)["error"].is_null() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        harness.step();
+    }
+    // The answer, the plots, the list: no frame draws all of them for the first time.
+    let parts = |harness: &App| {
+        let plots = state(harness)["plots"].to_string();
+        let list = harness.query_by_label("An effect of your own").is_some();
+        (
+            plots.contains("y - model"),
+            list,
+            state(harness)["busy"] == true,
+        )
+    };
+    assert_eq!(parts(&harness), (false, false, true));
+    harness.step();
+    assert_eq!(parts(&harness), (true, false, true));
+    harness.step();
+    assert_eq!(parts(&harness), (true, true, true));
+    harness.step();
+    assert_eq!(parts(&harness), (true, true, false));
+    harness.get_by_label("Parameters of the model");
 }

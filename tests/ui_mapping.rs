@@ -148,7 +148,8 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     assert!(open_it_is_disabled(&harness));
     map_matrix(&mut harness);
     assert_eq!(missing(&harness), json!([]));
-    harness.get_by_label_contains("10000 values from 0 to 2 s; the first are 0, 0.0002, 0.0004");
+    harness
+        .get_by_label_contains("10000 values from 0 to 2\u{a0}s; the first are 0, 0.0002, 0.0004");
     picture(&mut harness_of(WIDE), "compare_mapping");
     click(&mut harness, "Open it");
     assert_eq!(state(&harness)["file"], "ui-mapping-log.mat");

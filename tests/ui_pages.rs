@@ -197,7 +197,7 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
 fn explore_opens_on_an_oscillating_loop() {
     let mut harness = app("explore");
     harness.step();
-    harness.get_by_label_contains("It oscillates: period 4.788 s");
+    harness.get_by_label_contains("It oscillates: period 4.788\u{a0}s");
     harness.get_by_label("phase-margin point S").click();
     harness.step();
     harness.step();
@@ -305,5 +305,5 @@ fn the_parameter_map_fills_and_a_click_sets_the_loop() {
     harness.step();
     harness.step();
     assert_eq!(state(&harness)["page"], "explore");
-    harness.get_by_label_contains("It oscillates: period 4.788 s");
+    harness.get_by_label_contains("It oscillates: period 4.788\u{a0}s");
 }

@@ -32,7 +32,7 @@ fn the_first_minute_shows_a_running_loop_a_question_and_three_doors() {
     let after = state(&harness)["clock"].as_f64().expect("a clock");
     assert!(after > before, "the loop runs: {before} {after}");
     harness.get_by_label("Why does a thermostat never come to rest?");
-    harness.get_by_label_contains("It oscillates: period 4.788 s");
+    harness.get_by_label_contains("It oscillates: period 4.788\u{a0}s");
     harness.get_by_label("Pause").click();
     harness.step();
     show(&mut harness, "v1;start;start.paused=20");

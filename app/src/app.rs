@@ -9,7 +9,7 @@ use egui::util::undoer::Undoer;
 pub use give::GivenFile;
 
 use crate::address;
-use crate::bar::Bar;
+use crate::bar::{self, Bar};
 use crate::document::Document;
 use crate::language::{self, Language, tr};
 use crate::motion;
@@ -223,6 +223,11 @@ impl HysteronApp {
         let ctx = ui.ctx();
         match command {
             Command::Undo | Command::Redo => self.travel(ctx, command == Command::Undo),
+            Command::AskForFile => {
+                if let Some(page) = self.go_to_files() {
+                    page.open_dialog(ctx);
+                }
+            }
             Command::Reset => {
                 // The link of an untouched page is its name.
                 let untouched = format!("{};{}", link::VERSION, self.document().page);
@@ -340,11 +345,10 @@ impl HysteronApp {
     /// and what concerns all.
     pub fn hook_state(&self) -> serde_json::Value {
         let front = self.pages.get(self.front);
-        let mut state = front.map_or_else(|| serde_json::json!({}), |p| p.hook_state());
-        let mut busy = false;
-        for page in &self.pages {
-            let own = page.hook_state();
-            busy |= own["busy"] == true;
+        let states: Vec<_> = self.pages.iter().map(|p| p.hook_state()).collect();
+        let busy = states.iter().any(|own| own["busy"] == true);
+        let mut state = states.get(self.front).cloned().unwrap_or_default();
+        for (page, own) in self.pages.iter().zip(states) {
             state[page.id()] = own;
         }
         state["ready"] = true.into();
@@ -444,11 +448,18 @@ impl HysteronApp {
 
 /// What to try next.
 fn hint_ui(ui: &mut egui::Ui, hint: Hint, desk: &mut Desk) {
-    theme::running_text(ui, |ui| {
-        ui.label(tr(hint.sentence));
-        if hint.commands.is_empty() {
-            return;
-        }
+    let sentence = tr(hint.sentence);
+    if hint.commands.is_empty() {
+        ui.label(sentence);
+        return;
+    }
+    ui.horizontal(|ui| {
+        // The sentence breaks beside the button, which stays on the screen.
+        let room = ui.available_width() - bar::button(ui, "Try it");
+        ui.scope(|ui| {
+            ui.set_max_width(room);
+            ui.add(egui::Label::new(sentence).wrap());
+        });
         let button = ui.button(tr("Try it"));
         desk.targets.note("try", ui, &button);
         if button.clicked() {

@@ -180,12 +180,14 @@ const SEPARATOR: f32 = 6.0;
 
 /// Width of buttons with their gaps, points.
 fn buttons<'a>(ui: &Ui, names: impl IntoIterator<Item = &'a str>) -> f32 {
+    names.into_iter().map(|name| button(ui, name)).sum()
+}
+
+/// Width of a button with its gap, points.
+pub fn button(ui: &Ui, name: &str) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let around = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
-    names
-        .into_iter()
-        .map(|name| width(ui, name, font.clone()) + around)
-        .sum()
+    width(ui, name, font) + around
 }
 
 fn width(ui: &Ui, name: &str, font: egui::FontId) -> f32 {

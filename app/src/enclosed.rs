@@ -3,7 +3,9 @@
 use hysteron_core::measurement::Kind;
 
 use crate::content::Content;
-use crate::packed::{unpack, unpack_rows};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::packed::unpack;
+use crate::packed::unpack_rows;
 
 /// A measurement.
 pub struct Enclosed {
@@ -32,6 +34,7 @@ pub const PROCESS_02: Enclosed = enclosed!(Process, "process-02");
 
 impl Enclosed {
     /// Its text.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn csv(&self) -> Vec<u8> {
         unpack(self.packed).unwrap_or_default()
     }

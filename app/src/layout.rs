@@ -19,3 +19,38 @@ pub fn side(ui: &egui::Ui, liked: f32) -> f32 {
 pub fn room_for_two(ui: &egui::Ui) -> bool {
     ui.available_width() >= PAIR
 }
+
+/// Cards side by side, all as high as the highest.
+pub fn row(
+    ui: &mut egui::Ui,
+    name: impl std::hash::Hash + std::fmt::Debug,
+    count: usize,
+    mut content: impl FnMut(&mut egui::Ui, usize),
+) {
+    // How high that is was seen in the last frame.
+    let id = egui::Id::unique(name);
+    let height = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
+    let mut highest = 0.0_f32;
+    ui.columns(count, |columns| {
+        for (place, ui) in columns.iter_mut().enumerate() {
+            highest = highest.max(card(ui, height, |ui| content(ui, place)));
+        }
+    });
+    if highest != height {
+        ui.data_mut(|data| data.insert_temp(id, highest));
+        ui.ctx().request_repaint();
+    }
+}
+
+/// A card of this height at least; how high its content is.
+pub fn card(ui: &mut egui::Ui, least: f32, content: impl FnOnce(&mut egui::Ui)) -> f32 {
+    let framed = egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        // A column would stretch the words from edge to edge.
+        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), content);
+        let content = ui.min_rect();
+        ui.expand_to_include_y(content.top() + least);
+        content.height()
+    });
+    framed.inner
+}

@@ -21,7 +21,7 @@ const fn key(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
 }
 
 /// All but those of the pages, which are numbered in the order of their tabs; in the order of the sheet.
-const SHORTCUTS: [Shortcut; 8] = [
+const SHORTCUTS: [Shortcut; 9] = [
     Shortcut {
         keys: &[key(COMMAND, Key::Z)],
         sentence: "Take back the last change",
@@ -31,6 +31,11 @@ const SHORTCUTS: [Shortcut; 8] = [
         keys: &[key(COMMAND_SHIFT, Key::Z), key(COMMAND, Key::Y)],
         sentence: "Do again what was taken back",
         command: Command::Redo,
+    },
+    Shortcut {
+        keys: &[key(COMMAND, Key::O)],
+        sentence: "Open a file",
+        command: Command::AskForFile,
     },
     Shortcut {
         keys: &[key(PLAIN, Key::P)],

@@ -3,6 +3,8 @@
 use crate::HysteronApp;
 #[cfg(target_arch = "wasm32")]
 use crate::language::{self, Language, tr};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::theme;
 
 /// What to say where no window can be opened.
 #[cfg(not(target_arch = "wasm32"))]
@@ -24,7 +26,8 @@ pub fn run_native() -> Result<(), String> {
             .with_app_id("hysteron")
             .with_inner_size([1280.0, 800.0])
             .with_min_inner_size([360.0, 400.0])
-            .with_drag_and_drop(true),
+            .with_drag_and_drop(true)
+            .with_icon(icon()),
         ..Default::default()
     };
     eframe::run_native(
@@ -33,6 +36,28 @@ pub fn run_native() -> Result<(), String> {
         Box::new(|context| Ok(Box::new(HysteronApp::restored(context)))),
     )
     .map_err(|e| format!("{NO_DISPLAY} ({})", one_line(&e.to_string())))
+}
+
+/// The loop of a relay with hysteresis, as on the page's tab.
+#[cfg(not(target_arch = "wasm32"))]
+fn icon() -> egui::IconData {
+    const SIDE: u32 = 32;
+    const GROUND: [u8; 4] = [0x1b, 0x1b, 0x1b, 0xff];
+    let [r, g, b, a] = theme::MEASURED.to_array();
+    let on_line = |x: u32, y: u32| {
+        let near = |v: u32, line: u32| v.abs_diff(line) < 2;
+        (near(y, 24) && (4..22).contains(&x))
+            || (near(y, 8) && (11..28).contains(&x))
+            || ((near(x, 12) || near(x, 20)) && (8..=24).contains(&y))
+    };
+    let pixels = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
+    egui::IconData {
+        rgba: pixels
+            .flat_map(|(x, y)| if on_line(x, y) { [r, g, b, a] } else { GROUND })
+            .collect(),
+        width: SIDE,
+        height: SIDE,
+    }
 }
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -123,12 +123,16 @@ pub fn apply(ctx: &egui::Context) {
         });
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(10.0, 4.0);
+        style.spacing.interact_size.y = ROW;
         style.spacing.slider_width = 150.0;
     });
 }
 
 /// Least height of what is pressed with a finger, points.
 const FINGER: f32 = 40.0;
+
+/// Height of a button of [`apply`]: all that stands in a row with one is as high, so that it stands at the same height.
+const ROW: f32 = 25.0;
 
 /// Makes what is pressed as large as a finger needs it, or as a mouse does.
 pub fn fit_to_fingers(ctx: &egui::Context, fingers: bool) {
@@ -140,7 +144,7 @@ pub fn fit_to_fingers(ctx: &egui::Context, fingers: bool) {
             spacing.icon_width = 22.0;
             spacing.icon_width_inner = 13.0;
         } else {
-            spacing.interact_size.y = usual.interact_size.y;
+            spacing.interact_size.y = ROW;
             spacing.icon_width = usual.icon_width;
             spacing.icon_width_inner = usual.icon_width_inner;
         }
@@ -160,9 +164,17 @@ pub fn running_text<R>(ui: &mut egui::Ui, text: impl FnOnce(&mut egui::Ui) -> R)
     .inner
 }
 
-/// What a page scrolls; by its own name, since pages stand in the same place and would scroll together.
+/// A field for a line of text; it stands in the middle of its height.
+pub fn line(text: &mut String) -> egui::TextEdit<'_> {
+    egui::TextEdit::singleline(text).align(egui::Align2::LEFT_CENTER)
+}
+
+/// What a page scrolls; by its own name, since pages stand in the same place and would scroll together. It is as wide as
+/// its panel: a panel that was made wider stays so when there is little in it.
 pub fn scroll(name: &str) -> egui::ScrollArea {
-    egui::ScrollArea::vertical().id_salt(name)
+    egui::ScrollArea::vertical()
+        .id_salt(name)
+        .auto_shrink([false, true])
 }
 
 /// Draws a ring around what has the keyboard: plots and frameless buttons show nothing of it by themselves. A text

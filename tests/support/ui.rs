@@ -89,11 +89,11 @@ pub fn answer(harness: &App) -> String {
         .to_owned()
 }
 
-/// Every text of the last frame, as it was drawn.
+/// Every text of the last frame, as it was drawn, with usual spaces.
 pub fn texts(harness: &App) -> Vec<String> {
     fn collect(shape: &Shape, texts: &mut Vec<String>) {
         match shape {
-            Shape::Text(text) => texts.push(text.galley.job.text.clone()),
+            Shape::Text(text) => texts.push(text.galley.job.text.replace('\u{a0}', " ")),
             Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, texts)),
             _ => {}
         }

@@ -163,7 +163,9 @@ impl Svg {
             _ => "sans-serif",
         };
         for row in &text.galley.rows {
-            let words: String = row.glyphs.iter().map(|g| g.chr).collect();
+            // Nothing breaks here any more.
+            let space = |c| if c == '\u{a0}' { ' ' } else { c };
+            let words: String = row.glyphs.iter().map(|g| space(g.chr)).collect();
             let Some(first) = row.glyphs.first().filter(|_| !words.trim().is_empty()) else {
                 continue;
             };

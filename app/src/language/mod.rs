@@ -5,12 +5,14 @@
 
 mod catalogue;
 mod number;
+mod tied;
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
 pub use catalogue::{Catalogue, is_plain};
 pub use number::typed_in;
+use tied::tied;
 
 /// A language that the app speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -126,12 +128,13 @@ pub fn speak(language: Language) {
     }
 }
 
-/// A text of the interface in the language that is spoken: the English one where it has no translation.
+/// A text of the interface in the language that is spoken: the English one where it has no translation. Its numbers
+/// stay on a line with their units.
 pub fn tr(text: impl AsRef<str>) -> String {
     let text = text.as_ref();
     let language = spoken();
     if language == Language::English {
-        return text.to_owned();
+        return tied(text.to_owned());
     }
     SPEAKER.with_borrow_mut(|speaker| speaker.say(language, text))
 }
@@ -176,7 +179,8 @@ impl Speaker {
         if self.said.len() >= REMEMBERED {
             self.said.clear();
         }
-        self.said.insert(text.to_owned(), said.text.clone());
-        said.text
+        let tied = tied(said.text);
+        self.said.insert(text.to_owned(), tied.clone());
+        tied
     }
 }

@@ -125,7 +125,7 @@ impl Study {
         ui.horizontal_wrapped(|ui| {
             if let Some(answer) = question.answer {
                 let label = ui.label(tr("Your answer"));
-                let field = egui::TextEdit::singleline(&mut self.typed.1).desired_width(80.0);
+                let field = theme::line(&mut self.typed.1).desired_width(80.0);
                 let field = ui.add(field).labelled_by(label.id);
                 asked |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
                 if !answer.unit.is_empty() {

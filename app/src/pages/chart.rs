@@ -282,7 +282,8 @@ impl<'d> Pen<'_, 'd> {
         if points.is_empty() {
             return;
         }
-        let title = |axis: &String| format!("{}: {axis}", item.name());
+        let name = item.name().replace('\u{a0}', " ");
+        let title = |axis: &String| format!("{name}: {axis}");
         let place = |p: &PlotPoint| {
             if self.decades { 10_f64.powf(p.x) } else { p.x }
         };

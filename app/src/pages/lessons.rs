@@ -29,13 +29,13 @@ impl View for Lessons {
                 let all: Vec<_> = lessons::all().enumerate().collect();
                 if ui.available_width() < layout::NARROW {
                     for (index, lesson) in &all {
-                        lesson_ui(ui, desk, *index, lesson);
+                        layout::card(ui, 0.0, |ui| lesson_ui(ui, desk, *index, lesson));
                     }
                     return;
                 }
-                for row in all.chunks(2) {
-                    ui.columns(2, |columns| {
-                        for (ui, (index, lesson)) in columns.iter_mut().zip(row) {
+                for (number, row) in all.chunks(2).enumerate() {
+                    layout::row(ui, ("lessons", number), 2, |ui, place| {
+                        if let Some((index, lesson)) = row.get(place) {
                             lesson_ui(ui, desk, *index, lesson);
                         }
                     });
@@ -64,25 +64,19 @@ impl View for Lessons {
 
 /// A lesson: its title, how long it takes, and how it begins.
 fn lesson_ui(ui: &mut egui::Ui, desk: &mut Desk, index: usize, lesson: &Lesson) {
-    egui::Frame::group(ui.style()).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        // A column would stretch the words from edge to edge.
-        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
-            let title = format!("{}  {}", index + 1, lesson.title);
-            let button = ui.button(egui::RichText::new(title).size(17.0));
-            desk.targets
-                .note(format!("lesson:{}", lesson.id), ui, &button);
-            if button.clicked() {
-                desk.commands
-                    .push(Command::Lesson(Some(lesson.id.to_owned())));
-            }
-            lesson.beginning_ui(ui);
-            ui.horizontal(|ui| {
-                ui.small(tr(format!("{} minutes", lesson.minutes)));
-                if desk.study.solved.contains(lesson.id) {
-                    ui.colored_label(theme::readable(ui, theme::NOISE), tr("solved"));
-                }
-            });
-        });
+    let title = format!("{}  {}", index + 1, lesson.title);
+    let button = ui.button(egui::RichText::new(title).size(17.0));
+    desk.targets
+        .note(format!("lesson:{}", lesson.id), ui, &button);
+    if button.clicked() {
+        desk.commands
+            .push(Command::Lesson(Some(lesson.id.to_owned())));
+    }
+    lesson.beginning_ui(ui);
+    ui.horizontal(|ui| {
+        ui.small(tr(format!("{} minutes", lesson.minutes)));
+        if desk.study.solved.contains(lesson.id) {
+            ui.colored_label(theme::readable(ui, theme::NOISE), tr("solved"));
+        }
     });
 }

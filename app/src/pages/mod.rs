@@ -73,6 +73,8 @@ pub trait View {
     }
     /// Opens the bytes of a file.
     fn open(&mut self, _ctx: &egui::Context, _name: &str, _bytes: &[u8]) {}
+    /// Asks for a file to open on it.
+    fn open_dialog(&self, _ctx: &egui::Context) {}
     /// Opens a file that was dropped on the window.
     fn open_dropped(&mut self, _ctx: &egui::Context, _file: &egui::DroppedFileHandle) {}
 }
@@ -159,6 +161,8 @@ pub enum Command {
     Save(Box<Document>),
     /// Opens the bytes of a file on the page with this id, and brings it to the front.
     OpenFile(&'static str, String, Vec<u8>),
+    /// Asks for a file, on the page in front if it takes one.
+    AskForFile,
     /// Takes the last change back, or does it again.
     Undo,
     Redo,

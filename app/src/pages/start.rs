@@ -223,13 +223,11 @@ impl Start {
 fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     if ui.available_width() < layout::NARROW {
         for door in &DOORS {
-            door_ui(ui, desk, door);
+            layout::card(ui, 0.0, |ui| door_ui(ui, desk, door));
         }
     } else {
-        ui.columns(DOORS.len(), |columns| {
-            for (column, door) in columns.iter_mut().zip(&DOORS) {
-                door_ui(column, desk, door);
-            }
+        layout::row(ui, "doors", DOORS.len(), |ui, place| {
+            door_ui(ui, desk, &DOORS[place]);
         });
     }
     ui.add_space(6.0);
@@ -244,19 +242,13 @@ fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
 }
 
 fn door_ui(ui: &mut egui::Ui, desk: &mut Desk, door: &Door) {
-    egui::Frame::group(ui.style()).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        // A column would stretch the words from edge to edge.
-        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
-            ui.strong(egui::RichText::new(tr(door.question)).size(17.0));
-            ui.label(tr(door.story));
-            let size = egui::vec2(ui.available_width(), 36.0);
-            let button = ui.add_sized(size, egui::Button::new(tr(door.button)));
-            desk.targets
-                .note(format!("door:{}", door.page), ui, &button);
-            if button.clicked() {
-                desk.commands.push(Command::Go(door.page));
-            }
-        });
-    });
+    ui.strong(egui::RichText::new(tr(door.question)).size(17.0));
+    ui.label(tr(door.story));
+    let size = egui::vec2(ui.available_width(), 36.0);
+    let button = ui.add_sized(size, egui::Button::new(tr(door.button)));
+    desk.targets
+        .note(format!("door:{}", door.page), ui, &button);
+    if button.clicked() {
+        desk.commands.push(Command::Go(door.page));
+    }
 }

@@ -20,7 +20,7 @@ pub use settings::is_built_in;
 use crate::content::Content;
 use crate::document::parsed;
 use crate::export::Table;
-use crate::files::Files;
+use crate::files::{Files, MEASUREMENT};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
@@ -373,6 +373,10 @@ impl View for Backlash {
     fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
         let content = Content::Plain(bytes.to_vec().into());
         self.open_as(ctx, name, content, Reading::default());
+    }
+
+    fn open_dialog(&self, ctx: &egui::Context) {
+        self.files.open_dialog(ctx, MEASUREMENT);
     }
 
     fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {

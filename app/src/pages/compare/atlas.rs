@@ -4,6 +4,7 @@ use egui_plot::{HLine, Line, LineStyle, Span};
 use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
 
 use super::Compare;
+use super::parts::Part;
 use crate::language::tr;
 use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
@@ -19,7 +20,7 @@ const FREQUENCY: &str = "frequency";
 const AXIS_WIDTH: f32 = 44.0;
 
 pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
-    let (Some(report), Some(measurement)) = (page.report(), &page.measurement) else {
+    let (Some(report), Some(measurement)) = (page.report_in(Part::Plots), &page.measurement) else {
         return;
     };
     let mut curves = vec![

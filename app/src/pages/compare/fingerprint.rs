@@ -6,6 +6,7 @@ use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Measurement;
 
 use super::atlas::{axis_label, grid_ui, points, small, words};
+use super::parts::Part;
 use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};
@@ -26,7 +27,7 @@ pub(super) fn ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    let (Some(report), Some(measurement)) = (page.report(), &page.measurement) else {
+    let (Some(report), Some(measurement)) = (page.report_in(Part::Plots), &page.measurement) else {
         return;
     };
     let Some(chosen) = page.chosen() else {

@@ -225,7 +225,7 @@ fn unit_ui(ui: &mut Ui, channel: &Channel, kind: Kind, chosen: &mut Chosen) {
     let units = channel.units(kind);
     let label = label_ui(ui, channel.unit);
     if units.is_empty() {
-        ui.add(egui::TextEdit::singleline(&mut chosen.unit).desired_width(UNIT_WIDTH))
+        ui.add(theme::line(&mut chosen.unit).desired_width(UNIT_WIDTH))
             .labelled_by(label.id);
         return;
     }
@@ -250,7 +250,7 @@ fn unit_ui(ui: &mut Ui, channel: &Channel, kind: Kind, chosen: &mut Chosen) {
     if channel.is_counted(kind, chosen) {
         let label = label_ui(ui, channel.resolution);
         ui.add(
-            egui::TextEdit::singleline(&mut chosen.resolution)
+            theme::line(&mut chosen.resolution)
                 .hint_text(tr("4096/rev or 0.001 mm"))
                 .desired_width(UNIT_WIDTH * 2.0),
         )
@@ -262,7 +262,7 @@ fn torque_constant_ui(ui: &mut Ui, constant: &mut String) {
     ui.horizontal_wrapped(|ui| {
         let label = label_ui(ui, "Torque constant, if it is known");
         ui.add(
-            egui::TextEdit::singleline(constant)
+            theme::line(constant)
                 .hint_text(tr("0.05 N m/A"))
                 .desired_width(UNIT_WIDTH * 2.0),
         )

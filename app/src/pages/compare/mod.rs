@@ -13,6 +13,7 @@ mod missing;
 mod open;
 mod own;
 mod parameters;
+mod parts;
 mod plots;
 mod reveal;
 mod settings;
@@ -78,6 +79,8 @@ pub struct Compare {
     reports: HashMap<Vec<EffectId>, StepReport>,
     /// Effects of the step on screen: the last one finished.
     shown: Option<Vec<EffectId>>,
+    /// How much of it is there.
+    parts: parts::Parts,
     job: Option<Job>,
     progress: (f64, String),
     message: Option<String>,
@@ -120,6 +123,7 @@ impl Default for Compare {
             effects: Vec::new(),
             reports: HashMap::new(),
             shown: None,
+            parts: parts::Parts::default(),
             job: None,
             progress: (0.0, String::new()),
             message: None,
@@ -182,8 +186,8 @@ enum Command {
     Search(usize, Limits),
     /// Saves the input of a proposal.
     SaveInput(usize),
-    /// The word that opens the seal is being typed.
-    Word(String),
+    /// The word that opens the seal is being typed, and whether it can be read.
+    Word(String, bool),
     /// Opens the seal.
     Reveal,
     /// What the app is to do.
@@ -202,6 +206,7 @@ enum Command {
 impl Compare {
     /// Takes what jobs and files have brought.
     pub fn update(&mut self, ctx: &egui::Context) {
+        self.follow(ctx);
         while let Some(arrival) = self.files.arrived() {
             let name = arrival.name;
             match arrival.bytes {
@@ -306,6 +311,9 @@ impl Compare {
                 command => self.carry_out(ui.ctx(), command),
             }
         }
+        if self.is_behind() {
+            ui.ctx().request_repaint();
+        }
     }
 
     /// What the plots may show.
@@ -348,6 +356,9 @@ impl Compare {
         targets: &mut Targets,
         commands: &mut Vec<Command>,
     ) {
+        if self.parts.fresh {
+            return;
+        }
         match self.look {
             Look::Time => plots::ui(self, ui, height),
             Look::Places => atlas::ui(self, ui),
@@ -387,7 +398,7 @@ impl Compare {
             Command::OpenMapped => self.open_mapped(ctx),
             Command::CancelMapping => (self.form, self.opening) = (None, None),
             Command::CancelReading => self.opening = None,
-            Command::Add(effect) => {
+            Command::Add(effect) if !self.effects.contains(&effect) => {
                 let mut effects = self.effects.clone();
                 effects.push(effect);
                 self.go_to(ctx, effects);
@@ -408,13 +419,14 @@ impl Compare {
                     save(ctx, document, &self.saved.0);
                 }
             }
-            Command::Word(word) => {
+            Command::Word(word, legible) => {
                 if let Some(sealed) = &mut self.sealed {
-                    sealed.word = word;
+                    (sealed.word, sealed.legible) = (word, legible);
                 }
             }
             Command::Reveal => self.reveal(ctx),
-            Command::Desk(_) => {}
+            // Of the list of the step before; what the app is to do.
+            Command::Add(_) | Command::Desk(_) => {}
             Command::Cancel => {
                 self.job = None;
                 match &self.shown {
@@ -441,7 +453,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
+            "busy": self.is_behind() || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
             "progress": self.progress.0,
             "mapping": self.form.as_ref().map(mapping::Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
@@ -548,6 +560,10 @@ impl View for Compare {
 
     fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
         self.open_as(ctx, name, bytes.to_vec(), Reading::default());
+    }
+
+    fn open_dialog(&self, ctx: &egui::Context) {
+        self.files.open_dialog(ctx, MEASUREMENT);
     }
 
     fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {

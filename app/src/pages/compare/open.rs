@@ -139,10 +139,19 @@ impl Compare {
             source,
             seal,
         } = opened;
+        let Opening {
+            job,
+            origin,
+            reading,
+            then,
+            ..
+        } = opening;
+        // On the web its worker goes on with the diagnosis.
+        drop(job);
         self.form = None;
-        self.files.comes_from(opening.origin);
-        self.files.taken(&measurement.name, &opening.reading);
-        self.reading = opening.reading;
+        self.files.comes_from(origin);
+        self.files.taken(&measurement.name, &reading);
+        self.reading = reading;
         self.message = measurement.warnings.first().cloned();
         if self
             .model
@@ -152,13 +161,14 @@ impl Compare {
             self.forget_model();
         }
         self.measurement = Some(Arc::new(measurement));
+        self.parts.fresh = true;
         self.source = source;
         self.sealed = seal.map(Sealed::new);
         if self.look == Look::Reveal {
             self.look = Look::default();
         }
         self.forget_steps();
-        match opening.then {
+        match then {
             Some(awaited) => self.take_awaited(ctx, awaited),
             None => self.start(ctx),
         }
@@ -239,6 +249,7 @@ impl Compare {
         let earlier = self.earlier.take();
         if self.reports.contains_key(&self.effects) {
             self.shown = Some(self.effects.clone());
+            self.follow_at_once();
         } else if let Some(measurement) = &self.measurement {
             self.progress = (0.0, "Starting".to_owned());
             // It may be on its way already.

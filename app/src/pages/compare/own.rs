@@ -6,6 +6,7 @@ use hysteron_core::measurement::Kind;
 use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::tr;
+use crate::theme;
 
 /// What is typed.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,12 +61,12 @@ pub(super) fn ui(
         ui.label(tr(variables));
         egui::Grid::new("own effect").num_columns(2).show(ui, |ui| {
             let label = ui.label(tr("Name"));
-            ui.add(egui::TextEdit::singleline(&mut typed.name).desired_width(120.0))
+            ui.add(theme::line(&mut typed.name).desired_width(120.0))
                 .labelled_by(label.id);
             ui.end_row();
             let label = ui.label(tr("F ="));
             ui.add(
-                egui::TextEdit::singleline(&mut typed.formula)
+                theme::line(&mut typed.formula)
                     .desired_width(240.0)
                     .font(egui::TextStyle::Monospace),
             )

@@ -9,6 +9,7 @@ use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
+use super::parts::Part;
 use crate::language::tr;
 use crate::pages::chart::{Chart, Key, Pen, Shape, caption_ui, envelope, extremes};
 use crate::theme;
@@ -48,7 +49,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let Some(measurement) = &page.measurement else {
         return;
     };
-    let report = page.report();
+    let report = page.report_in(Part::Plots);
     let finding = report.and_then(|r| r.step.findings.get(page.finding));
     let count = measurement.outputs.len().max(1) as f32;
     caption_ui(ui, "", &curves(page, report.is_some()));

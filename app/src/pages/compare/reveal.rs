@@ -23,6 +23,8 @@ pub(super) struct Sealed {
     /// The measurement as a text for a link, where it came in one.
     pub link: Option<String>,
     pub word: String,
+    /// Whether the word can be read while it is typed.
+    pub legible: bool,
     job: Option<Job<RevealTask>>,
     message: Option<String>,
     /// The truth beside the model with these effects.
@@ -122,12 +124,15 @@ pub(super) fn ui(
     };
     ui.add_space(6.0);
     ui.label(tr("The truth about this record lies in it, sealed. Add what is missing until only noise is left; then say the word."));
-    let mut word = sealed.word.clone();
+    let (mut word, mut legible) = (sealed.word.clone(), sealed.legible);
     ui.horizontal_wrapped(|ui| {
         let label = ui.label(tr("Word"));
-        let field = egui::TextEdit::singleline(&mut word).desired_width(220.0);
+        let field = theme::line(&mut word)
+            .password(!legible)
+            .desired_width(220.0);
         let field = ui.add(field).labelled_by(label.id);
         targets.note("reveal:word", ui, &field);
+        ui.checkbox(&mut legible, tr("Show the word"));
         let ready = !word.trim().is_empty() && sealed.job.is_none() && page.report().is_some();
         let reveal = ui.add_enabled(ready, egui::Button::new(tr("Reveal the truth")));
         targets.note("reveal", ui, &reveal);
@@ -138,8 +143,8 @@ pub(super) fn ui(
             motion::busy_ui(ui);
         }
     });
-    if word != sealed.word {
-        commands.push(Command::Word(word));
+    if word != sealed.word || legible != sealed.legible {
+        commands.push(Command::Word(word, legible));
     }
     if let Some(message) = &sealed.message {
         ui.colored_label(ui.visuals().warn_fg_color, tr(message));

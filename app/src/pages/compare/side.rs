@@ -5,8 +5,10 @@ use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
 use hysteron_core::effect::name_of;
 
+use super::parts::Part;
 use super::waterfall::{BAR_WIDTH, bar_ui};
 use super::{Command, Compare, Look, experiment, missing, own, parameters, times_noise, waterfall};
+use crate::bar;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
@@ -50,10 +52,15 @@ pub(super) fn findings_ui(
             experiment::ui(page, index, proposal, ui, targets, commands);
         }
     }
+    let Some(report) = page.report_in(Part::List) else {
+        return;
+    };
     missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
     own::ui(page, ui, targets, commands);
-    parameters::ui(report, ui);
+    if let Some(report) = page.report_in(Part::Parameters) {
+        parameters::ui(report, ui);
+    }
 }
 
 pub(super) fn file_ui(
@@ -118,7 +125,9 @@ pub(super) fn file_ui(
 pub(super) fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if page.job.is_some() {
         ui.horizontal(|ui| {
-            let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(230.0);
+            // What it is doing is a sentence.
+            let width = ui.available_width() - bar::button(ui, "Cancel");
+            let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(width);
             ui.add(bar.text(tr(page.progress.1.clone())));
             if ui.button(tr("Cancel")).clicked() {
                 commands.push(Command::Cancel);

@@ -10,8 +10,10 @@ use crate::layout;
 use crate::recent::{Recents, measurement};
 use crate::theme;
 
-/// Height of the picture on a card, points, how often the input switches in it, and most samples.
-const GLIMPSE: f32 = 90.0;
+/// Height of the picture on a card, points, and as a share of the window; how often the input switches in it, and most
+/// samples.
+const GLIMPSE: std::ops::RangeInclusive<f32> = 90.0..=240.0;
+const GLIMPSE_SHARE: f32 = 0.25;
 const GLIMPSE_SWITCHES: usize = 12;
 const GLIMPSE_SAMPLES: usize = 1000;
 
@@ -48,24 +50,18 @@ fn card_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    egui::Frame::group(ui.style()).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        // A column would stretch the words from edge to edge.
-        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
-            ui.strong(egui::RichText::new(tr(built_in.title)).size(17.0));
-            glimpse_ui(ui, built_in);
-            ui.label(tr(built_in.story));
-            let size = egui::vec2(ui.available_width(), 36.0);
-            let button = ui.add_sized(
-                size,
-                egui::Button::new(tr(format!("Open {}", built_in.file.id))),
-            );
-            targets.note(format!("builtin:{}", built_in.file.id), ui, &button);
-            if button.clicked() {
-                commands.push(Command::OpenBuiltIn(index));
-            }
-        });
-    });
+    ui.strong(egui::RichText::new(tr(built_in.title)).size(17.0));
+    glimpse_ui(ui, built_in);
+    ui.label(tr(built_in.story));
+    let size = egui::vec2(ui.available_width(), 36.0);
+    let button = ui.add_sized(
+        size,
+        egui::Button::new(tr(format!("Open {}", built_in.file.id))),
+    );
+    targets.note(format!("builtin:{}", built_in.file.id), ui, &button);
+    if button.clicked() {
+        commands.push(Command::OpenBuiltIn(index));
+    }
 }
 
 /// The beginning of a record: its input, and over it what was measured last.
@@ -107,7 +103,9 @@ fn glimpse_ui(ui: &mut egui::Ui, built_in: &'static BuiltIn) {
         ui.data_mut(|data| data.insert_temp(id, glimpse.clone()));
         glimpse
     });
-    let size = egui::vec2(ui.available_width(), GLIMPSE);
+    let height = GLIMPSE_SHARE * ui.ctx().content_rect().height();
+    let height = height.clamp(*GLIMPSE.start(), *GLIMPSE.end());
+    let size = egui::vec2(ui.available_width(), height);
     let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
     ui.painter()
         .rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
@@ -147,20 +145,22 @@ impl Compare {
             ui.add_space(12.0);
             if ui.available_width() < layout::NARROW {
                 for (index, built_in) in BUILT_IN.iter().enumerate() {
-                    card_ui(ui, index, built_in, targets, commands);
+                    layout::card(ui, 0.0, |ui| {
+                        card_ui(ui, index, built_in, targets, commands);
+                    });
                 }
             } else {
-                ui.columns(BUILT_IN.len(), |columns| {
-                    for (index, (ui, built_in)) in columns.iter_mut().zip(&BUILT_IN).enumerate() {
-                        card_ui(ui, index, built_in, targets, commands);
-                    }
+                layout::row(ui, "measurements", BUILT_IN.len(), |ui, index| {
+                    card_ui(ui, index, &BUILT_IN[index], targets, commands);
                 });
             }
             ui.add_space(12.0);
-            ui.label(tr("Or your own: drop a CSV or MATLAB file anywhere on this window, or"));
-            if ui.button(tr("Open a file ...")).clicked() {
-                commands.push(Command::OpenDialog);
-            }
+            ui.horizontal_wrapped(|ui| {
+                ui.label(tr("Or your own: drop a CSV or MATLAB file anywhere on this window, or"));
+                if ui.button(tr("Open a file ...")).clicked() {
+                    commands.push(Command::OpenDialog);
+                }
+            });
             if let Some(recent) = recent.ui(ui, measurement, targets) {
                 commands.push(Command::Reopen(recent));
             }

@@ -3,6 +3,7 @@
 use hysteron_core::plant::{TransferFunction, parse, presets};
 
 use crate::language::tr;
+use crate::theme;
 
 /// The text that is being typed.
 #[derive(Default)]
@@ -31,7 +32,7 @@ impl PlantEditor {
         let typed = ui
             .horizontal(|ui| {
                 let label = ui.label(tr("P(s) ="));
-                let edit = egui::TextEdit::singleline(&mut self.text)
+                let edit = theme::line(&mut self.text)
                     .font(egui::TextStyle::Monospace)
                     .hint_text("1/(s+1)^3")
                     .desired_width(f32::INFINITY);

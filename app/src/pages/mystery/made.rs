@@ -22,6 +22,8 @@ const MOST_POINTS: usize = 4000;
 /// A mystery, ready to be shown.
 pub(super) struct Product {
     mystery: Mystery,
+    /// Whether it was brought into view.
+    seen: std::cell::Cell<bool>,
     pub name: String,
     /// The text of a link that opens it.
     link: String,
@@ -52,6 +54,7 @@ impl Product {
             samples,
             duration: samples as f64 * step,
             curve: envelope(&time, &values, MOST_POINTS),
+            seen: std::cell::Cell::new(false),
             mystery,
         }
     }
@@ -65,7 +68,12 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
         samples,
         duration,
         curve: points,
+        seen,
     } = product;
+    // The button that made it stands below a long list.
+    if !seen.replace(true) {
+        ui.scroll_to_cursor(Some(egui::Align::TOP));
+    }
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.strong(tr(format!("{name} is made.")));

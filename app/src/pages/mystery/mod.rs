@@ -117,7 +117,7 @@ impl Bench {
         ui.heading(tr("3. Your word seals it"));
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(tr("Word"));
-            let field = egui::TextEdit::singleline(&mut self.word)
+            let field = theme::line(&mut self.word)
                 .password(!self.legible)
                 .desired_width(240.0)
                 .hint_text(tr("a few words are better than one"));

@@ -125,7 +125,9 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     if let Some(preset) = chosen {
         ui.small(tr(preset.sentence));
     }
-    ui.small(tr("Plant and relay are those of Explore."));
+    ui.small(tr(
+        "Plant and relay are those of Explore; the asymmetry is that of step 4.",
+    ));
 }
 
 fn equations_ui(ui: &mut egui::Ui) {
