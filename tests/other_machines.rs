@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Recorded, Stranger};
-use support::diagnosis::{classes, finish, thinned};
+use support::diagnosis::{classes, finish};
+use support::sparse::thinned;
 
 /// Friction and load of these machines, N m.
 const FRICTION: f64 = 0.02;

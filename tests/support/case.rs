@@ -4,7 +4,7 @@ use hysteron_core::measurement::Measurement;
 use hysteron_core::rig::DriveRig;
 use hysteron_core::rig::process::ProcessRig;
 
-use super::diagnosis::thinned;
+use super::sparse::thinned;
 
 /// A hidden effect.
 #[derive(Clone, Debug)]

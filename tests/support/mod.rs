@@ -17,3 +17,4 @@ pub mod drive_cases;
 pub mod process_cases;
 pub mod proposed;
 pub mod score;
+pub mod sparse;
