@@ -210,9 +210,12 @@ fn wait_drawing(
     Ok(state)
 }
 
+/// Clicks on a button where it stands still.
 fn click(session: &Session, target: &str) -> Result<(), String> {
+    let last = Cell::new(Value::Null);
     let state = wait(session, &format!("the button {target}"), |s| {
-        s["targets"][target].is_array()
+        let place = s["targets"][target].clone();
+        place.is_array() && last.replace(place.clone()) == place
     })?;
     let coordinate = |i: usize| state["targets"][target][i].as_f64().unwrap_or(0.0);
     session.click(coordinate(0), coordinate(1))

@@ -72,7 +72,9 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
     } = product;
     // The button that made it stands below a long list.
     if !seen.replace(true) {
-        ui.scroll_to_cursor(Some(egui::Align::TOP));
+        // At once: what moves cannot be clicked.
+        let at_once = egui::style::ScrollAnimation::none();
+        ui.scroll_to_cursor_animation(Some(egui::Align::TOP), at_once);
     }
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
