@@ -19,6 +19,9 @@ const SMOOTH_SHARE: f64 = 0.05;
 const LEVEL_SHARE: f64 = 0.12;
 const LEVELLED: f64 = 3.0;
 
+/// Halvings for it at most: where a trial lets the level change within a sample, more would only take long.
+const LEVEL_HALVINGS: u32 = 2;
+
 /// Steps of a contact in an interval up to which its ends tell whether the contact lasts.
 const SEEN_STEPS: f64 = 5.0;
 
@@ -354,9 +357,9 @@ impl<'m> Engine<'m> {
             return 0;
         }
         let most = LEVEL_SHARE * friction.stribeck_speed;
-        (0..MAX_HALVINGS)
+        (0..LEVEL_HALVINGS)
             .find(|k| gained / f64::from(1_u32 << k) <= most)
-            .unwrap_or(MAX_HALVINGS)
+            .unwrap_or(LEVEL_HALVINGS)
     }
 
     /// Sum of the smooth forces in a state moved to `x` and `v`.

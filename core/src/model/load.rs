@@ -114,7 +114,7 @@ impl Load {
         }
         // A swing without damping is never forgotten: the cast saturates.
         let samples = (2.0 * FORGOTTEN / (self.decay() * h)).ceil();
-        (samples as usize).max(WARM_UP)
+        (samples as usize).clamp(WARM_UP, LONGEST_WARM_UP)
     }
 
     /// Longest step for the exponential midpoint rule in contact with a body of `inertia`, s.
@@ -158,8 +158,10 @@ pub(super) struct Follower<'m> {
 /// Samples after which a load behind a gap has forgotten how it began: it is pushed along many times in them.
 const WARM_UP: usize = 1500;
 
-/// Time constants of its decay after which a load on a joint has: less than a thousandth is left.
-const FORGOTTEN: f64 = 7.0;
+/// Time constants of its decay after which a load on a joint has, all but two hundredths; and samples at most, since a
+/// load that hardly decays would be followed through all of the record.
+const FORGOTTEN: f64 = 4.0;
+const LONGEST_WARM_UP: usize = 4 * WARM_UP;
 
 /// Most steps in an interval of a follower.
 const MAX_FOLLOWER_STEPS: f64 = 32.0;
