@@ -255,7 +255,7 @@ mod tests {
         let step = std::f64::consts::TAU / f64::from(1 << 20);
         let printed = |x: f64| (x * 1e8).round() * 1e-8;
         let values: Vec<f64> = (0..4000)
-            .map(|i| 8.0 * (1e-3 * f64::from(i)).sin() + 1e-3 * f64::from(i * i % 977))
+            .map(|i| 8.0 * libm::sin(1e-3 * f64::from(i)) + 1e-3 * f64::from(i * i % 977))
             .map(|x| printed((x / step).round() * step))
             .collect();
         let found = quantum(&values);
