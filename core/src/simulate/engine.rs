@@ -159,10 +159,12 @@ impl<'a> Engine<'a> {
         self.channels[i].out.input.push([self.now, self.u[i]]);
     }
 
-    /// Runs until `end` s; false if the relay switched too often.
+    /// Runs until `end` s; false if the relay switched too often, or a plant much faster than the run takes too many steps.
     pub fn run(&mut self, end: f64) -> bool {
+        let mut steps = 0;
         // A step that does not move time on is an event, and events are counted.
         while self.now < end {
+            steps += 1;
             let mut limit = end;
             if let Some(change) = self.pending.front() {
                 limit = limit.min(change.time);
@@ -178,7 +180,7 @@ impl<'a> Engine<'a> {
                 } else {
                     self.advance(limit)
                 };
-                if !fine {
+                if !fine || steps > super::MAX_STEPS {
                     for channel in &mut self.channels {
                         channel.out.chattering = true;
                     }

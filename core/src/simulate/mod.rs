@@ -25,6 +25,9 @@ use sliding::Sliding;
 /// Switches after which a run counts as chattering and ends, unless the caller says otherwise.
 pub const MAX_SWITCHES: usize = 20_000;
 
+/// Steps after which a run is cut: the fastest mode of a plant may be a billion times faster than its cycle.
+pub const MAX_STEPS: usize = 3_000_000;
+
 /// Samples that a run may have.
 pub const MAX_SAMPLES: usize = 10_000_000;
 
