@@ -374,3 +374,13 @@ fn bad_input_is_an_error_and_never_a_panic() {
     assert!(run(&plant, &relay, 0.0, &from(&[1.0], 1.0, 0.1)).is_err());
     assert!(run(&plant, &relay, 0.0, &from(&[f64::NAN, 0.0], 1.0, 0.1)).is_err());
 }
+
+#[test]
+fn a_plant_that_swings_millions_of_times_is_cut_and_said_so() {
+    // A swing of 10 million rad/s without damping beside a lag of 1 s, for 10 s.
+    let relay = Relay::default();
+    let plant = space("1/(s + 1) + 1e10/(s^2 + 1e14)");
+    let run = run(&plant, &relay, 0.0, &Options::new(10.0, 0.1)).unwrap();
+    assert!(run.chattering);
+    assert!(run.rises.len() + run.falls.len() < MAX_SWITCHES);
+}
