@@ -304,14 +304,13 @@ impl Race {
             || !self.parts_known && self.parts_of(contender).next().is_some()
     }
 
-    /// Lets effects with more parameters begin; false if all have.
-    fn open_next_group(&mut self) -> bool {
+    /// Lets effects with more parameters begin.
+    fn open_next_group(&mut self) {
         let scouted = self.contenders.iter().filter_map(|c| c.search.as_ref());
         let best = scouted.map(Search::scouted).fold(f64::INFINITY, f64::min);
         let ground = &mut self.track.ground;
         ground.reach = ground.reach.min(OUTSHONE * best);
         self.group += 1;
-        self.group <= GROUPS.len()
     }
 
     /// Whether an effect with fewer parameters leaves nothing but noise, so that this one is not asked for.
@@ -376,7 +375,8 @@ impl Race {
     pub fn advance(&mut self, session: &Session) -> bool {
         let together = self.together();
         if together != Some(Stage::Scan) && self.group < GROUPS.len() {
-            return self.open_next_group();
+            self.open_next_group();
+            return true;
         }
         if together == Some(Stage::Warm) {
             self.compare_warm();
