@@ -20,7 +20,7 @@ pub struct Trajectory {
     pub swings: Vec<[f64; 2]>,
     /// Intervals of time in which an ideal relay held the output on its threshold (Filippov sliding).
     pub sliding: Vec<[f64; 2]>,
-    /// The run was cut because the relay switched without end.
+    /// The run was cut because the relay switched without end, or its plant is so fast that it would take millions of steps.
     pub chattering: bool,
 }
 
