@@ -42,7 +42,7 @@ const FAR_OFF: f64 = 2.0;
 
 /// What stands in for another effect does at least this share of what that does, in squared residuals, after the first
 /// iteration: where it begins is regressed.
-const FIRST_SHARE: f64 = 0.75;
+const FIRST_SHARE: f64 = 0.9;
 
 /// Parameters of an effect up to which it is tried before those with more, group by group: those that take long need
 /// not be followed where a simple one explains nearly all.
@@ -50,7 +50,7 @@ const GROUPS: [usize; 2] = [1, 3];
 
 /// The first iteration of an effect must come to within this many times what simpler ones have come to on the scout:
 /// what explains so much less is looked for again when that is in the model.
-const OUTSHONE: f64 = 30.0;
+const OUTSHONE: f64 = 8.0;
 
 /// What the effects in a race are added to.
 struct Track {

@@ -27,6 +27,10 @@ const UNCHANGED: f64 = 0.02;
 /// Statistic below which two models count as the same within noise: near what it takes to add one.
 const SAME_STATISTIC: f64 = 25.0;
 
+/// A model with so many more parameters that these weigh this many times that is not the same as one that leaves nothing
+/// but noise: it would have to be better, and there is nothing left to be better at.
+const TOO_RICH: f64 = 1.5;
+
 /// Held-back blocks of which one may be left out.
 const FEWEST_BLOCKS: usize = 6;
 
@@ -104,6 +108,12 @@ pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
     let effective = a.held_count / a.correlation.max(1.0);
     let statistic = 2.0 * effective * libm::log(other / own);
     (statistic + penalty).abs() < SAME_STATISTIC && (1.0 - own / other).abs() < SAME_SHARE
+}
+
+/// Whether a model with this many `more` parameters than one with this score need not be compared with it.
+pub(super) fn is_too_rich(score: &Score, more: usize) -> bool {
+    let weight = more as f64 * libm::log(score.held_count);
+    is_plain_noise(score) && weight > TOO_RICH * SAME_STATISTIC
 }
 
 /// Errors of two models on all held-back blocks but the one in which they differ most.

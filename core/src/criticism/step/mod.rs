@@ -7,7 +7,7 @@ use super::judge::{alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
 use super::search::Search;
-use super::select::{is_noise, is_plain_noise};
+use super::select::{is_noise, is_plain_noise, is_too_rich};
 use super::session::{Scored, Session};
 use super::verdict::Class;
 use super::{Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport};
@@ -195,10 +195,17 @@ impl StepJob {
     /// contains may be enough.
     fn rivals(&self, place: usize) -> Vec<&'static dyn Effect> {
         let own = self.wanted.get(place);
+        let too_rich = |own: &dyn Effect, e: &dyn Effect| {
+            let more = e.parameters().len().saturating_sub(own.parameters().len());
+            let score = self.model.as_ref().map(|model| &model.score);
+            score.is_some_and(|score| is_too_rich(score, more))
+        };
         self.session
             .library()
             .filter(|e| {
-                own.is_some_and(|own| !nested(*own, *e) || own.has_part(e.id()))
+                own.is_some_and(|own| {
+                    (!nested(*own, *e) || own.has_part(e.id())) && !too_rich(*own, *e)
+                })
                     && self
                         .wanted
                         .iter()
