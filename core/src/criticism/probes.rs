@@ -16,7 +16,13 @@ const SAME_COST: f64 = 0.01;
 /// A probe with the starting values that were found in it.
 pub(super) struct Probed {
     pub probe: Probe,
-    starts: Mutex<BTreeMap<EffectId, Vec<Vec<f64>>>>,
+    starts: Mutex<BTreeMap<EffectId, Found>>,
+}
+
+/// Starting values, and the share of the squared error up to which they were searched for with care.
+struct Found {
+    share: f64,
+    starts: Vec<Vec<f64>>,
 }
 
 impl Probed {
@@ -27,15 +33,21 @@ impl Probed {
         }
     }
 
-    /// Starting values of `effect`, searched for once.
-    pub fn starts(&self, effect: &dyn Effect) -> Vec<Vec<f64>> {
-        let found = || self.starts.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(starts) = found().get(&effect.id()) {
-            return starts.clone();
+    /// Starting values of `effect` where it may leave less than this share of the squared error, searched for once.
+    pub fn starts(&self, effect: &dyn Effect, share: f64) -> Vec<Vec<f64>> {
+        let known = || self.starts.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = known().get(&effect.id())
+            && found.share >= share
+        {
+            return found.starts.clone();
         }
         // Not under the lock: the search is long, and others look for other effects meanwhile.
-        let starts = effect.starts(&self.probe);
-        found().insert(effect.id(), starts.clone());
+        let starts = effect.starts_below(&self.probe, share);
+        let found = Found {
+            share,
+            starts: starts.clone(),
+        };
+        known().insert(effect.id(), found);
         starts
     }
 }

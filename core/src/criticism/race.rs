@@ -32,6 +32,13 @@ const WORTHWHILE: f64 = 0.94;
 /// Share of the present cost on the scout below which a starting point must come to be followed.
 const PROMISING: f64 = 0.995;
 
+/// The same where the model leaves nothing but noise: less is found there by chance, where many values are tried.
+const PROMISING_IN_NOISE: f64 = 0.985;
+
+/// A force is looked for with care where it may leave this many times the share of the squared error above which the first
+/// iteration is not followed.
+const LINEAR: f64 = 1.5;
+
 /// The same in the place of another effect, in times of the cost with that one: what first has to come back
 /// to where that was may still have some way to go.
 const WITHIN_REACH: f64 = 30.0;
@@ -44,6 +51,9 @@ const FAR_OFF: f64 = 2.0;
 /// iteration: where it begins is regressed.
 const FIRST_SHARE: f64 = 0.9;
 
+/// Where that effect does not do much, the same after the first iteration in shares of what it does.
+const HALFWAY: f64 = 0.3;
+
 /// Parameters of an effect up to which it is tried before those with more, group by group: those that take long need
 /// not be followed where a simple one explains nearly all.
 const GROUPS: [usize; 2] = [1, 3];
@@ -55,6 +65,8 @@ const OUTSHONE: f64 = 8.0;
 /// What the effects in a race are added to.
 struct Track {
     fit: Fit,
+    /// Its cost on the scout.
+    present: f64,
     /// The fit whose effect at this place they stand in for.
     instead: Option<(Fit, usize)>,
     probed: Arc<Probed>,
@@ -194,7 +206,7 @@ pub(super) struct Race {
     ceiling: f64,
     /// Effects up to this group may begin.
     group: usize,
-    /// Effects that need their parts may begin: these are fitted as far as they may win.
+    /// Effects that have parts in the race may begin: these are fitted as far as they may win.
     parts_known: bool,
     /// The race is run, and results are taken.
     run: bool,
@@ -216,12 +228,20 @@ impl Race {
             let limit = WITHIN_REACH * scouted;
             Ground {
                 limit,
-                reach: limit.max((1.0 - FIRST_SHARE) * present),
+                reach: limit
+                    .min(scouted + HALFWAY * (present - scouted))
+                    .max((1.0 - FIRST_SHARE) * present),
+                share: 1.0,
                 settled: false,
             }
         } else {
             let settled = is_plain_noise(&score(&session.data, fit));
-            let limit = PROMISING * present;
+            let promising = if settled {
+                PROMISING_IN_NOISE
+            } else {
+                PROMISING
+            };
+            let limit = promising * present;
             Ground {
                 limit,
                 reach: if settled {
@@ -229,12 +249,14 @@ impl Race {
                 } else {
                     f64::INFINITY
                 },
+                share: 1.0,
                 settled,
             }
         };
         Self {
             track: Track {
                 fit: fit.clone(),
+                present,
                 instead: instead.map(|(whole, place)| (whole.clone(), place)),
                 probed: session.probed(fit),
                 ground,
@@ -291,10 +313,9 @@ impl Race {
             .map_or(self.target, |c| c.cost().min(self.target))
     }
 
-    /// Parts of an effect in the race that it needs to come to something.
+    /// Parts of an effect in the race.
     fn parts_of<'a>(&'a self, whole: &'a Contender) -> impl Iterator<Item = &'a Contender> {
-        let needs = whole.effect.needs_its_parts();
-        let is_part = move |c: &&Contender| needs && whole.effect.has_part(c.effect.id());
+        let is_part = move |c: &&Contender| whole.effect.has_part(c.effect.id());
         self.contenders.iter().filter(is_part)
     }
 
@@ -304,22 +325,34 @@ impl Race {
             || !self.parts_known && self.parts_of(contender).next().is_some()
     }
 
-    /// Lets effects with more parameters begin.
-    fn open_next_group(&mut self) {
+    /// What those that begin now must come to, from what others have come to on the scout.
+    fn raise_the_bar(&mut self) {
         let scouted = self.contenders.iter().filter_map(|c| c.search.as_ref());
         let best = scouted.map(Search::scouted).fold(f64::INFINITY, f64::min);
-        let ground = &mut self.track.ground;
+        let Track {
+            present, ground, ..
+        } = &mut self.track;
         ground.reach = ground.reach.min(OUTSHONE * best);
+        ground.share = (LINEAR * ground.reach / *present).min(1.0);
+    }
+
+    /// Lets effects with more parameters begin.
+    fn open_next_group(&mut self) {
+        self.raise_the_bar();
         self.group += 1;
     }
 
-    /// Whether an effect with fewer parameters leaves nothing but noise, so that this one is not asked for.
+    /// Whether an effect with fewer parameters, or a part of this one, leaves nothing but noise, so that it is not asked for.
     fn is_needless(&self, whole: &Contender) -> bool {
-        let fewer = |c: &Contender| c.effect.parameters().len() < whole.effect.parameters().len();
-        self.contenders.iter().any(|c| c.explains && fewer(c))
+        let simpler = |c: &Contender| {
+            c.effect.parameters().len() < whole.effect.parameters().len()
+                || whole.effect.has_part(c.effect.id())
+        };
+        self.contenders.iter().any(|c| c.explains && simpler(c))
     }
 
-    /// Effects whose parts all came to nothing, or that are not asked for, are over before they begin.
+    /// Effects that need one of their parts where all came to nothing, or that are not asked for, are over before they
+    /// begin.
     fn judge_waiting(&mut self) {
         let best = self.best();
         let idle =
@@ -329,7 +362,7 @@ impl Race {
             .iter()
             .map(|c| {
                 let mut parts = self.parts_of(c).peekable();
-                let vain = parts.peek().is_some() && parts.all(idle);
+                let vain = c.effect.needs_its_parts() && parts.peek().is_some() && parts.all(idle);
                 c.search.is_none() && (vain || self.is_needless(c))
             })
             .collect();
@@ -417,6 +450,7 @@ impl Race {
             None if !self.parts_known => {
                 self.parts_known = true;
                 self.judge_waiting();
+                self.raise_the_bar();
             }
             None => self.run = true,
         }

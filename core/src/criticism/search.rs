@@ -51,6 +51,8 @@ pub(super) struct Ground {
     pub limit: f64,
     /// The same after its first iteration.
     pub reach: f64,
+    /// Share of the squared error above which a force need not be looked for any more.
+    pub share: f64,
     /// The model leaves nothing but noise: its body and its effects are not led astray by a missing one, so that
     /// no other values of theirs are tried with a new effect.
     pub settled: bool,
@@ -117,7 +119,7 @@ impl Search {
         let settled = ground.is_some_and(|g| g.settled);
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
-        let own = probed.starts(effect);
+        let own = probed.starts(effect, ground.map_or(1.0, |g| g.share));
         let mut points = Vec::new();
         let related =
             |other: &dyn Effect| other.has_part(effect.id()) || same_dimensions(effect, other);
@@ -232,7 +234,7 @@ impl Search {
             if present.parameters().len() > 1 {
                 continue;
             }
-            let starts = probed.starts(*present);
+            let starts = probed.starts(*present, 1.0);
             if starts.len() <= FEW_STARTS {
                 continue;
             }

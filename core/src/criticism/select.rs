@@ -29,7 +29,7 @@ const SAME_STATISTIC: f64 = 25.0;
 
 /// A model with so many more parameters that these weigh this many times that is not the same as one that leaves nothing
 /// but noise: it would have to be better, and there is nothing left to be better at.
-const TOO_RICH: f64 = 1.5;
+const TOO_RICH: f64 = 1.4;
 
 /// Held-back blocks of which one may be left out.
 const FEWEST_BLOCKS: usize = 6;

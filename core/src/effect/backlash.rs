@@ -299,6 +299,10 @@ impl Effect for Backlash {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        self.starts_below(probe, 1.0)
+    }
+
+    fn starts_below(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         if let Some((half_gap, load)) = probe.gap().and_then(|g| Some((g.half_gap, g.load?))) {
             return felt(probe, half_gap, load);
         }
@@ -314,7 +318,7 @@ impl Effect for Backlash {
         let scanned = tried(stretch, &guesses.collect::<Vec<_>>());
         let gaps: Vec<f64> = best(scanned, REFINED)
             .iter()
-            .filter(|trial| trial.left < PROMISING)
+            .filter(|trial| trial.left < PROMISING.min(share))
             .map(|trial| trial.guess.half_gap)
             .collect();
         let found = behind(stretch, &gaps).into_iter();

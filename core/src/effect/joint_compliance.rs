@@ -15,6 +15,11 @@ const FINER_DAMPING: [f64; 3] = [0.05, 0.015, 0.003];
 const FINER: f64 = 1.008;
 const FINER_STEPS: i32 = 3;
 
+/// Share of the unexplained force that a frequency may leave to be looked at more closely; and times the share asked for,
+/// since damping that blurs a resonance leaves more than its own.
+const PROMISING: f64 = 0.997;
+const BLURRED: f64 = 2.0;
+
 /// Natural frequencies that are followed.
 const BEST: usize = 3;
 
@@ -106,6 +111,10 @@ impl Effect for JointCompliance {
     }
 
     fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+        self.starts_below(probe, 1.0)
+    }
+
+    fn starts_below(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         let stretch = &probe.stretch();
         let changes = &stretch.input_changes();
         let tried = |guesses: Vec<(f64, f64)>| {
@@ -117,6 +126,7 @@ impl Effect for JointCompliance {
         let coarse = tried(frequencies.map(|omega| (omega, DAMPING_RATIO)).collect());
         let finer = coarse
             .iter()
+            .filter(|(left, ..)| *left < PROMISING.min(BLURRED * share))
             .flat_map(|(_, omega, _)| {
                 (-FINER_STEPS..=FINER_STEPS).map(move |k| omega * FINER.powi(k))
             })

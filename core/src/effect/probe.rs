@@ -7,12 +7,12 @@
 //! inertia or viscous friction, and a constant force can explain: a score test (Rao 1948), one linear
 //! regression instead of a fit.
 
+mod spatial;
 mod steps;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::Scales;
-use super::spec::SEEN_TURN;
 use crate::crew::Crew;
 use crate::measurement::Kind;
 use crate::model::{Instant, Load, free_body, load_torque};
@@ -22,25 +22,15 @@ pub use steps::{Place, StepPart, Steps};
 /// Samples at most that are looked at.
 const MAX_SAMPLES: usize = 200_000;
 
-/// Samples at most that enter a regression, one of a scan over very many of them, and one for a force that repeats all
-/// along the way.
+/// Samples at most that enter a regression, and one of a scan over very many of them.
 const REGRESSED: usize = 60_000;
 const SCANNED: usize = 6_000;
-const REPEATING: usize = 3_000;
 
 /// Samples of the stretch on which what takes a simulation is scanned.
 const STRETCH: usize = 4_000;
 
 /// Forces of every regression: input, velocity, constant.
 const BASE: usize = 3;
-
-/// Spatial frequencies that are scanned at most as close as the measured travel tells them apart, and
-/// beyond them up to the highest.
-const FINE_SPATIAL: usize = 700;
-const COARSE_SPATIAL: usize = 150;
-
-/// Highest spatial frequency, in radians per sample at the typical speed.
-const FASTEST_SPATIAL: f64 = 0.8;
 
 /// Natural frequencies of a load that are scanned.
 const LOAD_FREQUENCIES: u32 = 110;
@@ -551,62 +541,6 @@ impl Probe {
         (0..LOAD_FREQUENCIES)
             .map(|i| low * libm::pow(ratio, f64::from(i)))
             .collect()
-    }
-
-    /// The `count` spatial frequencies (radians per unit of position) at which the unexplained force
-    /// repeats most clearly, with the coefficients of sine and cosine.
-    pub fn spatial_frequencies(&self, count: usize) -> Vec<(f64, f64, f64)> {
-        let travel = self.scales.travel;
-        let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
-        let spacing = 1.2 / travel;
-        let fine = (1..=FINE_SPATIAL).map(|k| k as f64 * spacing);
-        let from = FINE_SPATIAL as f64 * spacing;
-        let wider = spacing.max((fastest - from) / COARSE_SPATIAL as f64);
-        let coarse = (1..=COARSE_SPATIAL).map(|k| from + k as f64 * wider);
-        let scan: Vec<(f64, f64, f64, f64)> = fine
-            .chain(coarse)
-            .take_while(|n| *n <= fastest)
-            .skip_while(|n| *n * travel < SEEN_TURN)
-            .filter_map(|n| self.spatial(n))
-            .collect();
-        let mut peaks: Vec<(f64, f64, f64, f64)> = (0..scan.len())
-            .filter(|i| {
-                let left = |j: Option<usize>| j.and_then(|j| scan.get(j)).map_or(f64::MAX, |s| s.3);
-                let here = scan[*i].3;
-                here <= left(i.checked_sub(1)) && here <= left(Some(i + 1))
-            })
-            .map(|i| scan[i])
-            .collect();
-        peaks.sort_by(|a, b| a.3.total_cmp(&b.3));
-        peaks.truncate(count);
-        // The peak lies between the scanned frequencies.
-        let finer = peaks.into_iter().map(|peak| {
-            let near = (-4..=4).map(|k| peak.0 + 0.2 * f64::from(k) * spacing);
-            near.filter_map(|n| self.spatial(n))
-                .min_by(|a, b| a.3.total_cmp(&b.3))
-                .unwrap_or(peak)
-        });
-        finer
-            .filter(|peak| Self::may_be(peak.3))
-            .map(|peak| (peak.0, peak.1, peak.2))
-            .collect()
-    }
-
-    /// Frequency, coefficients of sine and cosine, share left.
-    fn spatial(&self, n: f64) -> Option<(f64, f64, f64, f64)> {
-        let middle = |k: usize| n * 0.5 * (self.position[k] + self.position[k + 1]);
-        let stride = spans_stride(&self.spans, REPEATING);
-        let mut waves = vec![(0.0, 0.0); self.position.len()];
-        for (from, to) in self.spans.iter().step_by(stride) {
-            for (k, wave) in waves.iter_mut().enumerate().take(to - 1).skip(*from) {
-                *wave = libm::sincos(middle(k));
-            }
-        }
-        let fit = self.regress_forces(
-            &[Box::new(|k| waves[k].0), Box::new(|k| waves[k].1)],
-            stride,
-        )?;
-        Some((n, fit.coefficients[0], fit.coefficients[1], fit.left))
     }
 }
 

@@ -205,12 +205,11 @@ impl StepJob {
             .filter(|e| {
                 own.is_some_and(|own| {
                     (!nested(*own, *e) || own.has_part(e.id())) && !too_rich(*own, *e)
-                })
-                    && self
-                        .wanted
-                        .iter()
-                        .enumerate()
-                        .all(|(k, w)| k == place || !nested(*w, *e))
+                }) && self
+                    .wanted
+                    .iter()
+                    .enumerate()
+                    .all(|(k, w)| k == place || !nested(*w, *e))
             })
             .collect()
     }
