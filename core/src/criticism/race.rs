@@ -25,6 +25,9 @@ const PART_CLOSE: f64 = 1.4;
 /// itself later, and widened then.
 const FAR: f64 = 10.0;
 
+/// Share of the present cost above which an effect comes to nothing.
+const NOTHING: f64 = 0.98;
+
 /// Share of the present cost below which an effect must hope to come, or it is not fitted to the end:
 /// a fall of the error by less than 3 % does not count.
 const WORTHWHILE: f64 = 0.94;
@@ -354,9 +357,11 @@ impl Race {
     /// Effects that need one of their parts where all came to nothing, or that are not asked for, are over before they
     /// begin.
     fn judge_waiting(&mut self) {
-        let best = self.best();
-        let idle =
-            |c: &Contender| c.cost() > FAR * best || c.search.as_ref().is_none_or(Search::given_up);
+        let (best, present) = (self.best(), self.track.fit.cost);
+        let idle = |c: &Contender| {
+            c.cost() > (FAR * best).min(NOTHING * present)
+                || c.search.as_ref().is_none_or(Search::given_up)
+        };
         let vain: Vec<bool> = self
             .contenders
             .iter()
