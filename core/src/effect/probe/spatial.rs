@@ -19,8 +19,8 @@ const FASTEST_SPATIAL: f64 = 0.8;
 
 impl Probe {
     /// The `count` spatial frequencies (radians per unit of position) at which the unexplained force
-    /// repeats most clearly, with the coefficients of sine and cosine.
-    pub fn spatial_frequencies(&self, count: usize) -> Vec<(f64, f64, f64)> {
+    /// repeats most clearly and leaves less than this `share` of it, with the coefficients of sine and cosine.
+    pub fn spatial_frequencies(&self, count: usize, share: f64) -> Vec<(f64, f64, f64)> {
         let travel = self.scales.travel;
         let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
         let spacing = 1.2 / travel;
@@ -53,7 +53,7 @@ impl Probe {
                 .unwrap_or(peak)
         });
         finer
-            .filter(|peak| Self::may_be(peak.3))
+            .filter(|peak| Self::may_be(peak.3) && peak.3 < share)
             .map(|peak| (peak.0, peak.1, peak.2))
             .collect()
     }
