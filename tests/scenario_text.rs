@@ -105,7 +105,7 @@ fn the_scenarios_that_come_with_it_run() {
             .run()
             .unwrap();
         assert!(
-            run.time.len() >= 2000 && !run.chattering,
+            run.time.len() >= 2000 && run.cut.is_none(),
             "{name} {}",
             run.time.len()
         );

@@ -11,7 +11,7 @@ use crate::limit_cycle::{
 };
 use crate::plant::{PlantError, StateSpace, TransferFunction, presets};
 use crate::relay::{Relay, RelayError};
-use crate::simulate::{Noise, Options, SimulateError, Trajectory, run, simulate};
+use crate::simulate::{Cut, Noise, Options, SimulateError, Trajectory, run, simulate};
 
 /// A relay loop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -243,8 +243,12 @@ fn sentence(
 ) -> String {
     let values = |c: Cycle| format!("period {:.3} s, amplitude {:.4}", c.period, c.amplitude);
     match (simulated, exact) {
-        _ if run.chattering => {
+        _ if run.cut == Some(Cut::Chattering) => {
             "The relay chatters: it switches without end, the output slides along the threshold."
+                .to_owned()
+        }
+        _ if run.cut == Some(Cut::TooFast) => {
+            "A part of the plant is far too fast for the rest: the run was cut. Leave that part out."
                 .to_owned()
         }
         (Some(c), _) if noisy => format!("It oscillates in the noise: mean {}.", values(c)),

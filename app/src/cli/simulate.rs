@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
 use hysteron_core::scenario::AnyScenario;
-use hysteron_core::simulate::Trajectory;
+use hysteron_core::simulate::{Cut, Trajectory};
 
 /// Share by which the last two cycles may differ and still count as settled.
 const SETTLED: f64 = 1e-3;
@@ -61,11 +61,14 @@ fn summary(run: &Trajectory) -> String {
     let end = run.time.last().copied().unwrap_or(0.0);
     let switches = run.rises.len() + run.falls.len();
     let _ = writeln!(text, "{switches} switches up to {end:.6} s.");
-    if run.chattering {
-        let _ = writeln!(
-            text,
-            "The relay chatters: it switches without end, and the run was cut there."
-        );
+    let why = run.cut.map(|cut| match cut {
+        Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
+        Cut::TooFast => {
+            "A part of the plant is far too fast for the rest: the run was cut there after millions of steps."
+        }
+    });
+    if let Some(why) = why {
+        let _ = writeln!(text, "{why}");
     }
     if !run.sliding.is_empty() {
         let total: f64 = run.sliding.iter().map(|s| s[1] - s[0]).sum();
@@ -82,7 +85,7 @@ fn summary(run: &Trajectory) -> String {
                 "It oscillates: period {period:.9} s, amplitude {amplitude:.9} (half of peak to peak)."
             );
         }
-        None if !run.chattering => {
+        None if run.cut.is_none() => {
             let _ = writeln!(text, "It has not settled into an oscillation.");
         }
         None => {}

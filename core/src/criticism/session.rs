@@ -312,7 +312,7 @@ impl Session {
                 name: p.symbol.to_owned(),
                 label: p.label.to_owned(),
                 value: fit.values[j],
-                std_error: errors[j],
+                std_error: errors[j].min(UNTOLD * fit.values[j].abs()),
                 status: status(j),
                 unit: self.unit_of(p.dimension),
             })

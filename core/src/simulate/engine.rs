@@ -9,7 +9,7 @@ use super::flow::{Flow, State};
 use super::noise::{Piece, Source};
 use super::series::{Curve, TERMS, first_rise, is_resolved, power_derivative, value};
 use super::sliding::Sliding;
-use super::trajectory::Trajectory;
+use super::trajectory::{Cut, Trajectory};
 use crate::relay::Relay;
 
 /// A relay and what it has recorded.
@@ -180,9 +180,16 @@ impl<'a> Engine<'a> {
                 } else {
                     self.advance(limit)
                 };
-                if !fine || steps > super::MAX_STEPS {
+                let cut = if !fine {
+                    Some(Cut::Chattering)
+                } else if steps > super::MAX_STEPS {
+                    Some(Cut::TooFast)
+                } else {
+                    None
+                };
+                if cut.is_some() {
                     for channel in &mut self.channels {
-                        channel.out.chattering = true;
+                        channel.out.cut = cut;
                     }
                     return false;
                 }

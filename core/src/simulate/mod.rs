@@ -16,7 +16,7 @@ use nalgebra::DVector;
 pub(crate) use engine::{Change, Engine};
 pub(crate) use flow::{Flow, State};
 pub use noise::Noise;
-pub use trajectory::Trajectory;
+pub use trajectory::{Cut, Trajectory};
 
 use crate::plant::{MAX_ORDER, Multivariable, PlantError, StateSpace};
 use crate::relay::{Relay, RelayError};

@@ -20,8 +20,17 @@ pub struct Trajectory {
     pub swings: Vec<[f64; 2]>,
     /// Intervals of time in which an ideal relay held the output on its threshold (Filippov sliding).
     pub sliding: Vec<[f64; 2]>,
-    /// The run was cut because the relay switched without end, or its plant is so fast that it would take millions of steps.
-    pub chattering: bool,
+    /// Why the run was cut before its end, if it was.
+    pub cut: Option<Cut>,
+}
+
+/// Why a run is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// The relay switches without end.
+    Chattering,
+    /// A mode of the plant is so fast that the run would take millions of steps.
+    TooFast,
 }
 
 impl Trajectory {
@@ -38,6 +47,6 @@ impl Trajectory {
         let earlier = 0.5 * (before[1] - before[0]);
         let calm = ((b - a) - period).abs() < tolerance * period
             && (earlier - amplitude).abs() < tolerance * amplitude;
-        (calm && !self.chattering).then_some((period, amplitude))
+        (calm && self.cut.is_none()).then_some((period, amplitude))
     }
 }

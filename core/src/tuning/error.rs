@@ -37,6 +37,11 @@ pub enum TuningError {
         /// Its hysteresis, in the unit of the output.
         hysteresis: f64,
     },
+    /// A mode of the plant is so fast that the experiment would take millions of steps.
+    #[error(
+        "a part of the plant is far too fast for the rest, so that the experiment would take millions of steps; leave that part out"
+    )]
+    TooFast,
     /// The loop does not settle into a cycle with two switches a period.
     #[error(
         "no settled oscillation after {duration} s with relay gain {gain} and hysteresis {hysteresis}: more gain or less hysteresis may help"

@@ -15,7 +15,7 @@ use super::linear::held;
 use crate::limit_cycle::{describing_function, typical_frequency};
 use crate::plant::{StateSpace, TransferFunction};
 use crate::relay::Relay;
-use crate::simulate::{Trajectory, simulate};
+use crate::simulate::{Cut, Trajectory, simulate};
 
 /// Lengths of an experiment that are tried in turn, in periods.
 const PERIODS: [usize; 3] = [40, 160, 640];
@@ -82,7 +82,7 @@ impl RelayTest {
     /// Puts a valid `plant` under a valid `relay` and measures the settled cycle.
     ///
     /// # Errors
-    /// [`TuningError::Chattering`], or [`TuningError::NoOscillation`] where the cycle does not come to
+    /// [`TuningError::Chattering`], [`TuningError::TooFast`], or [`TuningError::NoOscillation`] where the cycle does not come to
     /// repeat itself with two switches a period.
     pub fn run(plant: &TransferFunction, relay: &Relay) -> Result<Self, TuningError> {
         let space = plant.state_space();
@@ -95,7 +95,10 @@ impl RelayTest {
             // Sliding to the end is chattering without limit.
             let end = step * (periods * SAMPLES - 1) as f64;
             let slides = run.sliding.last().is_some_and(|s| s[1] >= end);
-            if run.chattering || slides {
+            if run.cut == Some(Cut::TooFast) {
+                return Err(TuningError::TooFast);
+            }
+            if run.cut.is_some() || slides {
                 return Err(TuningError::Chattering {
                     hysteresis: relay.hysteresis,
                 });

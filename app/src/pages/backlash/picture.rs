@@ -11,6 +11,9 @@ use crate::theme;
 /// Share of the width that the gap takes at least.
 const LEAST_GAP: f64 = 0.12;
 
+/// From the top of the walls to the middle of the words, above the arrow, points.
+const WORDS: f32 = 18.0;
+
 /// Half width of the motor's peg and width of the load's walls, points.
 const PEG: f32 = 26.0;
 const WALL: f32 = 34.0;
@@ -46,7 +49,7 @@ pub fn ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         ] {
             let wall = Rect::from_x_y_ranges(wall, top..=bottom);
             painter.rect_filled(wall, 3.0, if touches { CONTACT } else { LOAD });
-            text(wall.center(), "load");
+            text(wall.center_top() + vec2(0.0, WORDS), "load");
         }
         let beam = Rect::from_x_y_ranges(low - WALL..=high + WALL, bottom..=bottom + 9.0);
         painter.rect_filled(beam, 3.0, LOAD);
@@ -64,7 +67,7 @@ pub fn ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
             Stroke::new(4.0, theme::INPUT),
         );
     }
-    text(peg.center_top() + vec2(0.0, 10.0), "motor");
+    text(pos2(x, top + WORDS), "motor");
 }
 
 /// From mrad to points.

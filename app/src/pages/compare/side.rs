@@ -77,18 +77,6 @@ pub(super) fn file_ui(
         if ui.button(tr("Open another")).clicked() {
             commands.push(Command::Close);
         }
-        let export = ui
-            .add_enabled(
-                page.report().is_some(),
-                egui::Button::new(tr("Export report")),
-            )
-            .on_hover_text(tr(
-                "One page with pictures, equations, parameters and the verdict",
-            ));
-        targets.note("export:report", ui, &export);
-        if export.clicked() {
-            commands.push(Command::ExportReport);
-        }
     });
     if page.sealed.is_some() {
         ui.horizontal_wrapped(|ui| {
@@ -112,6 +100,18 @@ pub(super) fn file_ui(
         targets.note("model:save", ui, &save);
         if save.clicked() {
             commands.push(Command::SaveModel);
+        }
+        let export = ui
+            .add_enabled(
+                page.report().is_some(),
+                egui::Button::new(tr("Export report")),
+            )
+            .on_hover_text(tr(
+                "One page with pictures, equations, parameters and the verdict",
+            ));
+        targets.note("export:report", ui, &export);
+        if export.clicked() {
+            commands.push(Command::ExportReport);
         }
         if let Some(name) = &page.model_file {
             ui.label(tr(format!("Begins with {name}")));
