@@ -584,5 +584,17 @@ fn sparse(r: &mut Random) -> Vec<Case> {
         ..bare(r, MULTISINE)
     };
     let truths = vec![Truth::new("sampled_input", &["h"], 0.25), coulomb(c)];
-    vec![Case::sparse("sampled and Coulomb", truths, rig, EVERY)]
+    // A later value that is late besides does the same.
+    let only = Truth {
+        value: None,
+        ..Truth::new("sampled_input", &["h"], 0.25)
+    };
+    let alone = DriveRig {
+        friction: DriveRig::default().friction,
+        ..rig
+    };
+    vec![
+        Case::sparse("sampled and Coulomb", truths, rig, EVERY),
+        Case::sparse("sampled, multisine", vec![only], alone, EVERY),
+    ]
 }

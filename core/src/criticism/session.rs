@@ -289,6 +289,16 @@ impl Session {
         Scored { fit, score }
     }
 
+    /// Whether the effect at this place of a fit only tells how the record was made.
+    pub fn tells_of_record(&self, fit: &Fit, place: usize) -> bool {
+        fit.structure.effects.get(place).is_some_and(|effect| {
+            let values = &fit.values[fit.structure.range(place)];
+            let model = fit.structure.model(&fit.values);
+            let step = self.data.excitation.mean_step();
+            effect.is_of_record() || effect.is_between_samples(values, &model, step)
+        })
+    }
+
     /// Effects of a fit, those of the baseline first.
     pub fn effects(&self, fit: &Fit) -> Vec<EffectId> {
         baseline::effects(self.kind())

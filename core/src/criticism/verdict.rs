@@ -11,26 +11,27 @@ use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
 
-/// The verdict on a final model: `wanted` are its effects, `classes` what could replace each.
+/// The verdict on a final model: `wanted` are its effects, each with whether it only tells how the record was made,
+/// `classes` what could replace each.
 pub(super) fn verdict(
-    wanted: &[&'static dyn Effect],
+    wanted: &[(&'static dyn Effect, bool)],
     classes: &[Class],
     parameters: &[Parameter],
     model: &Scored,
     complete: bool,
     contradicted: Vec<Contradiction>,
 ) -> Verdict {
-    let class = |(place, effect): (usize, &&'static dyn Effect)| {
+    let class = |(place, (effect, _)): (usize, &(&'static dyn Effect, bool))| {
         let others = classes.get(place).into_iter().flatten().map(|e| e.id());
         let all = std::iter::once(effect.id()).chain(others);
         in_registry_order(all.filter(|id| !is_of_record(*id)).collect())
     };
     let of_record: Vec<Vec<EffectId>> = wanted
         .iter()
-        .filter(|e| e.is_of_record())
-        .map(|e| vec![e.id()])
+        .filter(|(_, of_record)| *of_record)
+        .map(|(e, _)| vec![e.id()])
         .collect();
-    let of_machine = wanted.iter().enumerate().filter(|(_, e)| !e.is_of_record());
+    let of_machine = wanted.iter().enumerate().filter(|(_, w)| !w.1);
     let missing: Vec<Vec<EffectId>> = of_machine.map(class).collect();
     let ambiguous = missing.iter().any(|class| class.len() > 1);
     let mut text = listed("Of the record, not of the machine", &of_record, parameters);

@@ -55,6 +55,11 @@ impl Effect for InputDelay {
             .collect()
     }
 
+    /// An input that is taken from ahead by more than it is late is not late.
+    fn is_between_samples(&self, values: &[f64], model: &Model, step: f64) -> bool {
+        values[0] <= model.next_input * step
+    }
+
     fn apply(&self, values: &[f64], model: &mut Model) {
         model.delay += values[0];
     }

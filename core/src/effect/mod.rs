@@ -76,6 +76,12 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Whether with these `values`, in this model of a record that has a sample every `step` seconds, it only tells what
+    /// happened between the samples that were kept: how the record was made, too.
+    fn is_between_samples(&self, _values: &[f64], _model: &Model, _step: f64) -> bool {
+        false
+    }
+
     /// Whether the effect of this id is this one with some values at 0.
     fn has_part(&self, id: EffectId) -> bool {
         self.contains().contains(&id)

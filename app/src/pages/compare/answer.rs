@@ -71,6 +71,12 @@ pub(super) fn times_noise(error: f64) -> String {
     }
 }
 
+/// Whether a verdict, if there is one, counts an effect of the model among what is missing, and not to the record.
+fn of_machine(report: &StepReport, effect: EffectId) -> bool {
+    let verdict = report.verdict.as_ref();
+    verdict.is_none_or(|v| v.missing.iter().flatten().any(|m| *m == effect))
+}
+
 /// The page's answer in one or two sentences; `present` are the effects of the user's model.
 fn answer(report: &StepReport, present: &[EffectId]) -> String {
     let step = &report.step;
@@ -79,6 +85,7 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
         .iter()
         .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
         .filter(|e| !effect::is_of_record(**e))
+        .filter(|e| of_machine(report, **e))
         .map(|id| {
             let main = step.parameters.iter().find(|p| p.effect == Some(*id));
             main.map_or_else(

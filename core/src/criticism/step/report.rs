@@ -27,7 +27,7 @@ impl StepJob {
                 .into_iter()
                 .map(|k| {
                     (
-                        self.wanted[k],
+                        (self.wanted[k], self.session.tells_of_record(&model.fit, k)),
                         self.classes.get(k).cloned().unwrap_or_default(),
                     )
                 })
