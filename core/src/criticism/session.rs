@@ -322,7 +322,9 @@ impl Session {
                 name: p.symbol.to_owned(),
                 label: p.label.to_owned(),
                 value: fit.values[j],
-                std_error: errors[j].min(UNTOLD * fit.values[j].abs()),
+                std_error: errors[j].min(p.dimension.map_or(f64::INFINITY, |dimension| {
+                    UNTOLD * fit.values[j].abs().max(self.scales.of(dimension))
+                })),
                 status: status(j),
                 unit: self.unit_of(p.dimension),
             })
