@@ -354,8 +354,8 @@ impl Race {
         self.contenders.iter().any(|c| c.explains && simpler(c))
     }
 
-    /// Effects that need one of their parts where all came to nothing, or that are not asked for, are over before they
-    /// begin.
+    /// Effects that need one of their parts where all came to nothing and none is in the model, or that are not asked for,
+    /// are over before they begin.
     fn judge_waiting(&mut self) {
         let (best, present) = (self.best(), self.track.fit.cost);
         let idle = |c: &Contender| {
@@ -367,7 +367,10 @@ impl Race {
             .iter()
             .map(|c| {
                 let mut parts = self.parts_of(c).peekable();
-                let vain = c.effect.needs_its_parts() && parts.peek().is_some() && parts.all(idle);
+                let present = self.track.fit.structure.effects.iter();
+                let widens = present.copied().any(|e| c.effect.has_part(e.id()));
+                let needs = c.effect.needs_its_parts() && !widens;
+                let vain = needs && parts.peek().is_some() && parts.all(idle);
                 c.search.is_none() && (vain || self.is_needless(c))
             })
             .collect();

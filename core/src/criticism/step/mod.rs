@@ -3,7 +3,6 @@
 mod choice;
 mod report;
 
-use super::fit::Fit;
 use super::judge::{alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
@@ -26,9 +25,6 @@ const MAX_VISITS: usize = 2;
 const BETTER_VALLEY: f64 = 0.92;
 const BETTER: f64 = 0.9999;
 
-/// Effects from which a model is fitted once more, one after the other, until one leads lower.
-const MAX_GUIDES: usize = 3;
-
 /// Error, in noise units, up to which little is left.
 const LITTLE_LEFT: f64 = 3.0;
 
@@ -41,7 +37,7 @@ enum Stage {
     /// Trying every effect on top.
     Try(Race),
     /// Fitting the model once more from where an effect on top of it led, or from beyond where it was stuck.
-    Revisit { search: Search, guide: usize },
+    Revisit(Search),
     /// Trying to do without each effect.
     Remove { index: usize, search: Search },
     /// Trying every other effect in the place of each one.
@@ -227,9 +223,7 @@ impl StepJob {
         }
         let session = &self.session;
         let over = match &mut self.stage {
-            Stage::Build { search, .. }
-            | Stage::Revisit { search, .. }
-            | Stage::Remove { search, .. } => {
+            Stage::Build { search, .. } | Stage::Revisit(search) | Stage::Remove { search, .. } => {
                 let (data, scales) = (&session.data, &session.scales);
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
@@ -289,7 +283,7 @@ impl StepJob {
                 self.tried = self.scored_all(race);
                 let told = self.model.as_ref().and_then(|model| self.suggestion(model));
                 if told.is_some_and(|(_, with)| is_plain_noise(&with.score)) {
-                    self.revisit_stage(0)
+                    self.revisit_stage()
                 } else {
                     self.try_all_stage()
                 }
@@ -297,9 +291,9 @@ impl StepJob {
             Stage::Try(race) => {
                 self.tried = self.scored_all(race);
                 self.contradicted = self.contradictions();
-                self.revisit_stage(0)
+                self.revisit_stage()
             }
-            Stage::Revisit { search, guide } => {
+            Stage::Revisit(search) => {
                 let again = self.finished(&search);
                 match (again, &self.model) {
                     (Some(again), Some(model)) if again.fit.cost < BETTER * model.fit.cost => {
@@ -311,7 +305,7 @@ impl StepJob {
                             self.remove_stage(0)
                         }
                     }
-                    _ => self.revisit_stage(guide + 1),
+                    _ => self.remove_stage(0),
                 }
             }
             Stage::Remove { index, search } => {
@@ -372,34 +366,25 @@ impl StepJob {
     }
 
     /// Where the model with an effect on top costs much less, the model itself may have stopped in a worse valley than it
-    /// need have: it is fitted again from where the effect led, the best one first and then a few others; `guide` is the
-    /// number of the next. One to which nothing is to be added, but which is stuck, is fitted again from beyond where it
-    /// stopped.
-    fn revisit_stage(&mut self, guide: usize) -> Stage {
+    /// need have: it is fitted again from where the effect led. One to which nothing is to be added, but which is stuck,
+    /// is fitted again from beyond where it stopped.
+    fn revisit_stage(&mut self) -> Stage {
         let search = self.model.as_ref().and_then(|model| {
+            let costs = self.tried.iter().map(|(_, with)| &with.fit);
+            let best = costs.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
             let bends = !model.fit.structure.effects.is_empty();
-            let enough = guide == 0 && self.visits >= MAX_VISITS;
-            if !bends || enough || guide >= MAX_GUIDES {
+            let lower = best.cost < BETTER_VALLEY * model.fit.cost;
+            if !bends || self.visits >= MAX_VISITS {
                 return None;
             }
-            let mut guides: Vec<&Fit> = self.tried.iter().map(|(_, with)| &with.fit).collect();
-            guides.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-            let lower = guides
-                .get(guide)
-                .filter(|with| with.cost < BETTER_VALLEY * model.fit.cost);
-            if let Some(with) = lower {
-                return Some(Search::revisiting(&model.fit, with));
+            if lower {
+                return Some(Search::revisiting(&model.fit, best));
             }
-            let stuck = guide == 0 && model.fit.is_stuck() && self.suggestion(model).is_none();
+            let stuck = model.fit.is_stuck() && self.suggestion(model).is_none();
             stuck.then(|| Search::leaping(&model.fit))
         });
-        match search {
-            Some(search) => {
-                self.visits += usize::from(guide == 0);
-                Stage::Revisit { search, guide }
-            }
-            None => self.remove_stage(0),
-        }
+        self.visits += usize::from(search.is_some());
+        search.map_or_else(|| self.remove_stage(0), Stage::Revisit)
     }
 
     /// Whether an effect contains one that is in the model.
@@ -474,7 +459,7 @@ impl StepJob {
         id.is_some_and(|id| self.session.knowledge.has(id))
     }
 
-    fn judge_swaps(&mut self, place: usize, fits: Vec<(&'static dyn Effect, Fit)>) {
+    fn judge_swaps(&mut self, place: usize, fits: Vec<(&'static dyn Effect, super::fit::Fit)>) {
         let Some(model) = &self.model else {
             return;
         };
@@ -510,7 +495,7 @@ impl StepJob {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))
             }
-            Stage::Revisit { .. } => (0.7, "Fitting the model once more".to_owned()),
+            Stage::Revisit(_) => (0.7, "Fitting the model once more".to_owned()),
             Stage::Remove { index, .. } => (
                 0.7 + 0.05 * *index as f64 / wanted,
                 "Checking that every effect is needed".to_owned(),
