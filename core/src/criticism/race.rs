@@ -367,8 +367,7 @@ impl Race {
             .iter()
             .map(|c| {
                 let mut parts = self.parts_of(c).peekable();
-                let present = self.track.fit.structure.effects.iter();
-                let widens = present.copied().any(|e| c.effect.has_part(e.id()));
+                let widens = self.track.fit.structure.is_widened_by(c.effect);
                 let needs = c.effect.needs_its_parts() && !widens;
                 let vain = needs && parts.peek().is_some() && parts.all(idle);
                 c.search.is_none() && (vain || self.is_needless(c))

@@ -53,6 +53,11 @@ impl Structure {
         (rest, kept)
     }
 
+    /// Whether `effect` contains one of its effects.
+    pub fn is_widened_by(&self, effect: &dyn Effect) -> bool {
+        self.effects.iter().any(|own| effect.has_part(own.id()))
+    }
+
     /// The same without the effect at `index`.
     pub fn without(&self, index: usize) -> Self {
         let mut next = self.clone();

@@ -359,7 +359,7 @@ impl StepJob {
         self.model.as_ref().map_or(Stage::Report, |model| {
             let mut others = self.others();
             if is_plain_noise(&model.score) {
-                others.retain(|e| !self.widens(*e));
+                others.retain(|e| !model.fit.structure.is_widened_by(*e));
             }
             Stage::Try(Race::new(&self.session, &model.fit, others, None))
         })
@@ -385,12 +385,6 @@ impl StepJob {
         });
         self.visits += usize::from(search.is_some());
         search.map_or_else(|| self.remove_stage(0), Stage::Revisit)
-    }
-
-    /// Whether an effect contains one that is in the model.
-    fn widens(&self, effect: &dyn Effect) -> bool {
-        let parts = effect.contains();
-        self.wanted.iter().any(|w| parts.contains(&w.id()))
     }
 
     fn remove_stage(&self, index: usize) -> Stage {

@@ -33,8 +33,8 @@ impl Probe {
             .filter(|r| r.last() >= least && r.first() <= fastest)
             .collect();
         let scanned = self.crew.gather(rows.len(), |i| self.scan_row(&rows[i]));
-        let scan: Vec<(f64, f64, f64, f64)> = scanned.into_iter().flatten().collect();
-        let scan: Vec<_> = scan.into_iter().filter(|s| within(s.0)).collect();
+        let scanned = scanned.into_iter().flatten();
+        let scan: Vec<(f64, f64, f64, f64)> = scanned.filter(|s| within(s.0)).collect();
         let mut peaks: Vec<(f64, f64, f64, f64)> = (0..scan.len())
             .filter(|i| {
                 let left = |j: Option<usize>| j.and_then(|j| scan.get(j)).map_or(f64::MAX, |s| s.3);
