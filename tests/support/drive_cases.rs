@@ -163,7 +163,11 @@ fn friction(r: &mut Random) -> Vec<Case> {
             },
         ));
     }
-    for (name, ratio) in [("Stribeck, multisine", 2.0), ("Stribeck, strong", 2.6)] {
+    for (name, ratio, excitation) in [
+        ("Stribeck, multisine", 2.0, MULTISINE),
+        ("Stribeck, strong", 2.6, MULTISINE),
+        ("Stribeck, staircase", 2.0, STAIRS),
+    ] {
         let c = r.between(0.02, 0.035);
         let friction = Friction {
             coulomb: c,
@@ -172,7 +176,7 @@ fn friction(r: &mut Random) -> Vec<Case> {
             displacement: 2e-5,
         };
         let truth = Truth::new("stribeck_friction", &["c"], c);
-        let rig = bare(r, MULTISINE);
+        let rig = bare(r, excitation);
         cases.push(Case::drive(name, vec![truth], DriveRig { friction, ..rig }));
     }
     for (name, excitation) in [

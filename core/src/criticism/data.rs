@@ -43,13 +43,17 @@ pub(super) struct Output {
     pub counted: bool,
 }
 
+/// Pieces of motion for each sample after which no further model is tried: where so many do not explain a record, more
+/// would not, and it would take minutes. (A gap with friction takes some fifteen thousand.)
+const MOST_MOVES: f64 = 40_000.0;
+
 /// A measurement made ready for fitting.
 #[derive(Clone, Debug)]
 pub(super) struct Data {
     /// Who does the parts of what is computed on it.
     pub crew: Crew,
-    /// Samples of models with a load that were replayed on it and on its parts: these take long.
-    load_replayed: Arc<AtomicU64>,
+    /// Pieces of motion that replays of it and of its parts took.
+    moves: Arc<AtomicU64>,
     pub kind: Kind,
     pub excitation: Excitation,
     pub input: Vec<f64>,
@@ -140,7 +144,7 @@ impl Data {
         });
         Ok(Self {
             crew: Crew::default(),
-            load_replayed: Arc::default(),
+            moves: Arc::default(),
             kind: measurement.kind,
             excitation: Excitation::new(
                 &measurement.time,
@@ -191,15 +195,14 @@ impl Data {
         }
     }
 
-    /// Counts a replay of a model with a load.
-    pub fn count_load_replay(&self) {
-        let samples = self.used() as u64;
-        self.load_replayed.fetch_add(samples, Ordering::Relaxed);
+    /// Counts pieces of motion of a replay, of it or of a part.
+    pub fn count_moves(&self, moves: u64) {
+        self.moves.fetch_add(moves, Ordering::Relaxed);
     }
 
-    /// Such replays so far, of it and of its parts, in times of all of it.
-    pub fn load_replays(&self) -> f64 {
-        self.load_replayed.load(Ordering::Relaxed) as f64 / self.used() as f64
+    /// Whether so many were needed that more would not explain it.
+    pub fn tried_enough(&self) -> bool {
+        self.moves.load(Ordering::Relaxed) as f64 > MOST_MOVES * self.used() as f64
     }
 
     /// Samples that are used.

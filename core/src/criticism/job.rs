@@ -1,6 +1,6 @@
 //! Long computations as resumable jobs: threads natively, a worker on the web, a loop in tests.
 
-use super::select::is_trifle;
+use super::select::{is_trifle, outweighs};
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
 use super::{Diagnosis, Limits, Step, StepReport};
@@ -11,10 +11,6 @@ use crate::user_model::UserModel;
 
 /// Most effects that a diagnosis adds; a model that needs more is not this one.
 const MAX_EFFECTS: usize = 6;
-
-/// Replays of models with a load, in times of the record, after which no further model is visited: where so many do not
-/// explain it, more would not, and it would take minutes. (A gap with friction takes some twelve thousand.)
-const MOST_LOAD_REPLAYS: f64 = 20_000.0;
 
 /// Most models that a diagnosis visits, so that adding and removing cannot go round for ever.
 const MAX_STEPS: usize = 12;
@@ -248,7 +244,7 @@ impl DiagnosisJob {
             .is_some_and(|model| model.score.error < LATE_GAIN * report.step.error);
         let ended = self.diagnosis.steps.len() >= MAX_STEPS
             || effects > MAX_EFFECTS
-            || (exhausted(&session) && !worthwhile);
+            || (session.data.tried_enough() && !worthwhile);
         let verdict = report.verdict.clone();
         if verdict.as_ref().is_some_and(|v| !v.contradicted.is_empty()) {
             // Wrong values are to be put right; no other way round them is looked for.
@@ -311,27 +307,25 @@ impl DiagnosisJob {
     ) -> Option<Diagnosis> {
         let error = |d: &Diagnosis| d.steps.last().map_or(f64::INFINITY, |s| s.error);
         let gain = if self.bold { LARGE_GAIN } else { DETOUR_GAIN };
-        let better = self
-            .unfinished
-            .take()
-            .filter(|other| gain * error(&other.diagnosis) <= error(&self.diagnosis));
+        let better = self.unfinished.take().filter(|other| {
+            only_adds(&self.diagnosis, &other.diagnosis)
+                || !self.diagnosis.verdict.complete
+                    && gain * error(&other.diagnosis) <= error(&self.diagnosis)
+        });
         let here = End {
             diagnosis: self.diagnosis.clone(),
             last: self.last.take(),
             imitation,
         };
-        let best = match better {
-            Some(other) if !self.diagnosis.verdict.complete => other,
-            _ => here,
-        };
+        let best = better.unwrap_or(here);
         let settled = best.diagnosis.verdict.complete
             || trifling(&best.diagnosis, &session)
-            || exhausted(&session);
+            || session.data.tried_enough();
         let next = if settled || self.detours_taken >= MAX_DETOURS || self.detours.is_empty() {
             (self.diagnosis, self.last) = (best.diagnosis, best.last);
             let more = !self.diagnosis.verdict.complete
                 && self.diagnosis.steps.len() < MAX_STEPS
-                && !exhausted(&session);
+                && !session.data.tried_enough();
             let Some((effect, without)) = best.imitation.filter(|_| more) else {
                 return Some(self.diagnosis.clone());
             };
@@ -374,16 +368,20 @@ impl DiagnosisJob {
     }
 }
 
+/// Whether a diagnosis says no other effects than the `shorter` one, but for some more that explain less than they leave.
+fn only_adds(longer: &Diagnosis, shorter: &Diagnosis) -> bool {
+    let ends = longer.steps.last().zip(shorter.steps.last());
+    ends.is_some_and(|(long, short)| {
+        let same = short.effects.iter().all(|e| long.effects.contains(e));
+        same && !outweighs(short.error, long.error)
+    })
+}
+
 /// Whether the last model leaves a trifle of what there was at first: another way would find nothing else.
 fn trifling(diagnosis: &Diagnosis, session: &Session) -> bool {
     let last = diagnosis.steps.last().map(|s| s.error);
     last.zip(session.baseline.as_ref())
         .is_some_and(|(error, first)| is_trifle(error, first))
-}
-
-/// Whether enough was tried.
-fn exhausted(session: &Session) -> bool {
-    session.data.load_replays() > MOST_LOAD_REPLAYS
 }
 
 /// The report without what is as long as the measurement.

@@ -14,7 +14,7 @@ use super::{Model, short};
 const RIGID_RADIANS: f64 = 4.0;
 
 /// Pieces of motion in one interval after which it ends in any case.
-const MAX_PIECES: usize = 60;
+const MAX_PIECES: u32 = 60;
 
 /// Share of its stiffness below which a bristle slips.
 const SLIP_SHARE: f64 = 1e-3;
@@ -130,7 +130,7 @@ impl Contact {
     }
 
     /// Moves the body for `h` seconds under the held input `w` and a held `force`, with dry friction at
-    /// `level`; `free` is its flow while slipping.
+    /// `level`; `free` is its flow while slipping. Returns the pieces of motion that this took.
     #[allow(
         clippy::too_many_arguments,
         reason = "state, what acts on it, and for how long"
@@ -144,13 +144,13 @@ impl Contact {
         level: f64,
         w: f64,
         h: f64,
-    ) {
+    ) -> u32 {
         // The stiffness stays, so a lower level is reached at a smaller deflection; where the level has fallen
         // below the force of the bristle, that force fades as the body moves on.
         let limit = level / self.stiffness;
         if limit.is_nan() {
             // A wild trial of a fit; its motion is no number any more.
-            return;
+            return 0;
         }
         *deflection = self.within_reach(*deflection);
         let acting = Acting {
@@ -161,10 +161,10 @@ impl Contact {
             inverse: self.stiffness / level,
         };
         let mut left = h;
-        for _ in 0..MAX_PIECES {
+        for pieces in 0..MAX_PIECES {
             // Not so either where a wild motion has used a time that is no number.
             if !(left > 0.0 && motion.v.is_finite()) {
-                return;
+                return pieces;
             }
             let direction = if motion.v == 0.0 {
                 (motion.z + force - self.stiffness * *deflection).signum()
@@ -180,6 +180,7 @@ impl Contact {
                 acting.slip(free, motion, direction, left)
             };
         }
+        MAX_PIECES
     }
 
     /// The bristle bends on, until the motion reverses or the piece is long enough; returns the time used.

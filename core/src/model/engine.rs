@@ -1,5 +1,7 @@
 //! The hybrid engine: exact flow between events, modes for sticking, slipping and contact.
 
+use std::cell::Cell;
+
 use super::contact::Contact;
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
@@ -165,6 +167,7 @@ pub struct Engine<'m> {
     touching_step: f64,
     /// Nothing but the input, constant forces and dry friction of a fixed level acts.
     plain: bool,
+    moves: Cell<u64>,
 }
 
 impl<'m> Engine<'m> {
@@ -184,8 +187,18 @@ impl<'m> Engine<'m> {
                 .load
                 .map_or(f64::INFINITY, |load| load.longest_step(model.inertia)),
             plain: smooth && model.load.is_none() && model.late_load().1 == 0.0,
+            moves: Cell::new(0),
             model,
         }
+    }
+
+    /// Pieces of motion so far: the work that was done.
+    pub(super) fn moves(&self) -> u64 {
+        self.moves.get()
+    }
+
+    fn count(&self, moves: u32) {
+        self.moves.set(self.moves.get() + u64::from(moves));
     }
 
     /// The elastic contact of dry friction, if there is one.
@@ -321,6 +334,7 @@ impl<'m> Engine<'m> {
         state.load.v = next.load;
         (state.mode, state.load_mode) = (Mode::of(next.body.v), Mode::of(next.load));
         state.time += h;
+        self.count(1);
         true
     }
 
@@ -417,22 +431,21 @@ impl<'m> Engine<'m> {
         match &self.contact {
             // Also where a wild state has made the level no number.
             _ if held.level.is_nan() || held.level <= 0.0 => {
+                self.count(1);
                 state.motion = self.body.after_cached(state.motion, w, held.body, h);
             }
             Some(contact) if contact.is_soft(h) => {
                 let (motion, deflection) = (&mut state.motion, &mut state.deflection);
-                contact.advance(&self.body, motion, deflection, held.body, held.level, w, h);
+                let pieces =
+                    contact.advance(&self.body, motion, deflection, held.body, held.level, w, h);
+                self.count(pieces);
                 state.mode = Mode::of(state.motion.v);
             }
-            _ => slide(
-                &self.body,
-                &mut state.motion,
-                &mut state.mode,
-                w,
-                held.body,
-                held.level,
-                h,
-            ),
+            _ => {
+                let (motion, mode) = (&mut state.motion, &mut state.mode);
+                slide(&self.body, motion, mode, w, held.body, held.level, h);
+                self.count(1);
+            }
         }
     }
 }

@@ -240,7 +240,8 @@ impl Excitation {
     ///
     /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
     /// given there. Of the hidden states the lagged input goes on from the window before; a load ([`Excitation::follow`])
-    /// and the deflection of a friction contact are where they must be if the body moved as measured.
+    /// and the deflection of a friction contact are where they must be if the body moved as measured. Returns the pieces
+    /// of motion that this took, one an interval at least unless nothing moves.
     pub fn replay(
         &self,
         model: &Model,
@@ -248,7 +249,7 @@ impl Excitation {
         loads: &FollowedLoad,
         position: &mut [f64],
         velocity: &mut [f64],
-    ) {
+    ) -> u64 {
         let mut engine = Engine::new(model);
         let mut path = DelayedInput::new(self, model);
         path.prepare(&mut engine);
@@ -307,6 +308,7 @@ impl Excitation {
             };
             self.slow_down(slowed, lag);
         }
+        engine.moves()
     }
 
     /// Time from a sample to the next, s.

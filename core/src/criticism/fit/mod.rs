@@ -313,13 +313,12 @@ fn simulate(
 ) -> Motion {
     let mut motion = Motion::still(data.len());
     let model = structure.model(values);
-    if model.load.is_some() {
-        data.count_load_replay();
-    }
     motion.loads = data.excitation.follow(&model, starts, known);
     let (position, velocity) = (&mut motion.position, &mut motion.velocity);
-    data.excitation
+    let moves = data
+        .excitation
         .replay(&model, starts, &motion.loads, position, velocity);
+    data.count_moves(moves);
     let doubts_load = data.excitation.doubts_load_of(&model);
     let prior = |s: &Start| {
         if doubts_load {

@@ -228,7 +228,7 @@ impl StepJob {
                 !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
             }
             Stage::Record(race) | Stage::Try(race) | Stage::Swap { race, .. } => {
-                !race.advance(session)
+                session.data.tried_enough() || !race.advance(session)
             }
             Stage::Design(designs) => !designs.first_mut().is_some_and(Design::advance),
             Stage::Report => true,
