@@ -179,14 +179,15 @@ fn friction(r: &mut Random) -> Vec<Case> {
         let rig = bare(r, excitation);
         cases.push(Case::drive(name, vec![truth], DriveRig { friction, ..rig }));
     }
-    for (name, excitation) in [
-        ("presliding, multisine", MULTISINE),
-        ("presliding, staircase", STAIRS),
+    for (name, excitation, yields) in [
+        ("presliding, multisine", MULTISINE, 1.0),
+        ("presliding, staircase", STAIRS, 1.0),
+        ("presliding, far", MULTISINE, 20.0),
     ] {
-        // The bristle yields over milliradians, as in a preloaded bearing.
+        // The bristle yields over milliradians, as in a preloaded bearing, or over far more, as in a seal of rubber.
         let c = r.between(0.04, 0.06);
         let friction = Friction {
-            displacement: r.between(2e-3, 5e-3),
+            displacement: yields * r.between(2e-3, 5e-3),
             ..Friction::dry(c)
         };
         let truth = Truth::new("presliding_friction", &["c", "F_c"], c);

@@ -42,7 +42,7 @@ impl Probed {
             return found.starts.clone();
         }
         // Not under the lock: the search is long, and others look for other effects meanwhile.
-        let starts = effect.starts_below(&self.probe, share);
+        let starts = effect.starts(&self.probe, share);
         let found = Found {
             share,
             starts: starts.clone(),

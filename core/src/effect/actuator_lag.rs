@@ -40,7 +40,7 @@ impl Effect for ActuatorLag {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         [0.5, 1.5, 5.0, 15.0, 50.0]
             .iter()
             .map(|samples| vec![samples * probe.scales.step])

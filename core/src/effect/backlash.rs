@@ -298,11 +298,7 @@ impl Effect for Backlash {
         const { &[EffectId::new("joint_compliance")] }
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        self.starts_below(probe, 1.0)
-    }
-
-    fn starts_below(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         if let Some((half_gap, load)) = probe.gap().and_then(|g| Some((g.half_gap, g.load?))) {
             return felt(probe, half_gap, load);
         }

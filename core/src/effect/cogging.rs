@@ -57,11 +57,7 @@ impl Effect for Cogging {
         ]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        self.starts_below(probe, 1.0)
-    }
-
-    fn starts_below(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         probe
             .spatial_frequencies(BEST, share)
             .into_iter()

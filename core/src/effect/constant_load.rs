@@ -40,7 +40,7 @@ impl Effect for ConstantLoad {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![probe.offset()]]
     }
 

@@ -66,7 +66,7 @@ impl Effect for CoulombFriction {
         ]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         starts(probe.friction_level(), probe)
     }
 

@@ -40,7 +40,7 @@ impl Effect for DeadZone {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let largest = probe.largest_input();
         [0.03, 0.1, 0.25, 0.5]
             .iter()

@@ -40,7 +40,7 @@ impl Effect for GainAsymmetry {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![probe.asymmetry().unwrap_or(0.0)]]
     }
 

@@ -46,7 +46,7 @@ impl Effect for InputDelay {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let shortest = 0.5 * probe.scales.step;
         let longest = LONGEST_SHARE * probe.scales.duration.min(1000.0 * probe.scales.step);
         let ratio = libm::pow((longest / shortest).max(1.0), 1.0 / f64::from(STARTS - 1));

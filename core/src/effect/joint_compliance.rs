@@ -110,11 +110,7 @@ impl Effect for JointCompliance {
         ]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        self.starts_below(probe, 1.0)
-    }
-
-    fn starts_below(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         let stretch = &probe.stretch();
         let changes = &stretch.input_changes();
         let tried = |guesses: Vec<(f64, f64)>| {

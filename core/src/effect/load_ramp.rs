@@ -40,7 +40,7 @@ impl Effect for LoadRamp {
         }]
     }
 
-    fn starts(&self, _probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![0.0]]
     }
 

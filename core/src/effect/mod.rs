@@ -48,13 +48,9 @@ pub trait Effect: Sync {
     fn kinds(&self) -> &'static [Kind];
     /// Its parameters, in the order in which every slice of values has them.
     fn parameters(&self) -> &'static [ParameterSpec];
-    /// Values from which a fit may start, most likely first; several where the error has several valleys.
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>>;
-    /// The same where it is only asked for if it leaves less than this `share` of the squared error: what takes long to
-    /// search for need not be.
-    fn starts_below(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
-        self.starts(probe)
-    }
+    /// Values from which a fit may start, most likely first; several where the error has several valleys. The effect is
+    /// only asked for if it leaves less than this `share` of the squared error: what takes long to search for need not be.
+    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>>;
     /// The same for a drive without viscous friction, where that of a model without this effect may have taken its
     /// place.
     fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {

@@ -12,10 +12,37 @@ pub(super) struct PreslidingFriction;
 /// Deflections that are tried, in displacements of the first sample after a reversal.
 const CROSSINGS: [f64; 4] = [4.0, 12.0, 40.0, 150.0];
 
+/// Longer ones up to the travel that are compared by what they leave of the unexplained force, and how many of the best
+/// are tried.
+const LONGER: u32 = 12;
+const BEST: usize = 2;
+
 fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
     let crossed = probe.scales.crossed();
     let values = CROSSINGS.map(|samples| vec![level, samples * crossed, 0.1]);
     values.to_vec()
+}
+
+/// Values with the longer deflections that leave least of the unexplained force, beside friction that needs none, if that
+/// is less than this `share` of it.
+fn long_starts(probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+    let shortest = CROSSINGS[3] * probe.scales.crossed();
+    let ratio = libm::pow(probe.scales.travel / shortest, 1.0 / f64::from(LONGER));
+    if !(ratio > 1.0 && ratio.is_finite()) {
+        return Vec::new();
+    }
+    let sign = probe.signature(|_, v| v.signum());
+    let tried = probe.crew.gather(LONGER as usize, |k| {
+        let s = shortest * libm::pow(ratio, k as f64 + 0.5);
+        let fit = probe.regress(&[&probe.deflection(s), &sign])?;
+        let level = -fit.coefficients[0];
+        (level > 0.0 && fit.left < share && Probe::may_be(fit.left))
+            .then_some((fit.left, vec![level, s, 0.1]))
+    });
+    let mut found: Vec<(f64, Vec<f64>)> = tried.into_iter().flatten().collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.truncate(BEST);
+    found.into_iter().map(|(_, values)| values).collect()
 }
 
 impl Effect for PreslidingFriction {
@@ -70,8 +97,10 @@ impl Effect for PreslidingFriction {
         const { &[EffectId::new("coulomb_friction")] }
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        starts(probe.friction_level(), probe)
+    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+        let mut all = starts(probe.friction_level(), probe);
+        all.extend(long_starts(probe, share));
+        all
     }
 
     fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {

@@ -40,7 +40,7 @@ impl Effect for QuadraticDrag {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let drag = probe.signature(|_, v| v * v.abs());
         let q = probe
             .regress(&[&drag])

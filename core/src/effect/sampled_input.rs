@@ -47,7 +47,7 @@ impl Effect for SampledInput {
         true
     }
 
-    fn starts(&self, _: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, _: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![STRAIGHT]]
     }
 

@@ -40,7 +40,7 @@ impl Effect for Saturation {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let largest = probe.largest_input();
         [0.95, 0.85, 0.7, 0.5, 0.3]
             .iter()

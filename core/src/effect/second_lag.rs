@@ -40,7 +40,7 @@ impl Effect for SecondLag {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         [0.02, 0.05, 0.1, 0.2, 0.4, 0.8]
             .iter()
             .map(|share| vec![share * probe.scales.time_constant])

@@ -43,7 +43,7 @@ impl Effect for SensorLag {
         }]
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let scales = &probe.scales;
         match probe.kind {
             Kind::Drive => [0.5, 2.0, 8.0, 30.0]

@@ -51,7 +51,7 @@ impl Effect for StaticCurvature {
         ]
     }
 
-    fn starts(&self, _probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![0.0, 0.0]]
     }
 

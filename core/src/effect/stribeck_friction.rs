@@ -84,7 +84,7 @@ impl Effect for StribeckFriction {
         true
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let crossed = probe.scales.crossed();
         let sign = probe.signature(|_, v| v.signum());
         let mut found: Vec<(f64, Vec<f64>)> = SPEEDS

@@ -146,7 +146,7 @@ impl Effect for FormulaEffect {
         self.specs
     }
 
-    fn starts(&self, probe: &Probe) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let dimensions: Vec<Dimension> = (0..self.specs.len())
             .map(|tree_index| {
                 let place = self.order.iter().position(|k| *k == tree_index);
