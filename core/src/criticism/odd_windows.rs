@@ -21,10 +21,13 @@ const MOST: f64 = 0.25;
 /// Velocities that are tried on either side, as shares of the typical speed.
 const STEPS: [f64; 7] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
-/// Deviations of a load's place and of its velocity that are tried, each with each, in standard deviations, and the
-/// times that the states are improved from each.
-const PLACES: [f64; 11] = [0.0, 0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0];
-const VELOCITIES: [f64; 3] = [0.0, 1.5, -1.5];
+/// Deviations of a load's place and of its velocity to either side that are tried, each with each, in standard
+/// deviations: far more of the velocity, since a load that is believed to rest may have been pushed unseen.
+const PLACES: [f64; 8] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 7.0, 10.0];
+const VELOCITIES: [f64; 8] = [0.0, 1.5, 5.0, 15.0, 40.0, 100.0, 250.0, 600.0];
+
+/// How many of these the states are improved from, the best of each window, and how often.
+const IMPROVED: usize = 6;
 const IMPROVEMENTS: usize = 8;
 
 impl Fit {
@@ -72,18 +75,39 @@ impl Fit {
         self.cost < before
     }
 
-    /// Starts every window as measured with the load in several places, improves the states, and keeps what fits best.
+    /// Starts every window as measured with the load in several places, improves the states from the best of these, and
+    /// keeps what fits best.
     fn try_loads(&mut self, data: &Data, scales: &Scales) {
         let measured = data.guessed_starts();
-        for place in PLACES {
-            for velocity in VELOCITIES {
-                let mut starts = measured.clone();
-                for start in &mut starts {
-                    start.load = [place, velocity];
-                }
-                self.try_from(starts, IMPROVEMENTS, data, scales);
+        let velocities = || either_side(&VELOCITIES);
+        let loads = either_side(&PLACES).flat_map(|x| velocities().map(move |v| [x, v]));
+        let mut tried: Vec<Vec<(f64, [f64; 2])>> = vec![Vec::new(); measured.len()];
+        for load in loads {
+            let starts = measured.iter().map(|start| Start { load, ..*start });
+            let costs = self.costs_from(&starts.collect::<Vec<_>>(), data);
+            for (tried, cost) in tried.iter_mut().zip(costs) {
+                tried.push((cost, load));
             }
         }
+        for tried in &mut tried {
+            tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        for rank in 0..IMPROVED {
+            let ranked = measured.iter().zip(&tried);
+            let starts = ranked.map(|(start, tried)| Start {
+                load: tried.get(rank).map_or(start.load, |(_, load)| *load),
+                ..*start
+            });
+            self.try_from(starts.collect(), IMPROVEMENTS, data, scales);
+        }
+    }
+
+    /// What each window costs from these states.
+    fn costs_from(&self, starts: &[Start], data: &Data) -> Vec<f64> {
+        let mut trial = self.clone();
+        trial.starts = starts.to_vec();
+        trial.follow_starts(data);
+        window_costs(data, &trial.motion)
     }
 
     /// Starts every window from here, improves the states so many times, and keeps those that fit better than before.
@@ -96,6 +120,12 @@ impl Fit {
         }
         self.take_better(data, &trial.starts);
     }
+}
+
+/// These numbers to either side of 0, which is the first of them.
+fn either_side(sizes: &[f64]) -> impl Iterator<Item = f64> {
+    let rest = sizes.get(1..).unwrap_or_default().iter();
+    std::iter::once(0.0).chain(rest.flat_map(|size| [*size, -size]))
 }
 
 /// The same states with the body faster by this.
