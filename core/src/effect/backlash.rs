@@ -186,7 +186,7 @@ fn best(mut trials: Vec<Trial>, count: usize) -> Vec<Trial> {
 
 /// Starting points where the motor felt the load: only the contact is to be found.
 fn felt(probe: &Probe, half_gap: f64, load: GapLoad) -> Vec<Vec<f64>> {
-    let body = probe.scales.inertia.abs();
+    let body = probe.inertia();
     let inertia = load.inertia_ratio * body;
     let joined = body * inertia / (body + inertia);
     // A push is half an oscillation.

@@ -338,6 +338,11 @@ impl Probe {
         self.regress_forces(&own, stride)
     }
 
+    /// Inertia of the body of the present model.
+    pub fn inertia(&self) -> f64 {
+        1.0 / self.inverse_inertia.abs()
+    }
+
     /// Lowest and highest measured position.
     pub fn position_range(&self) -> (f64, f64) {
         range(&self.position)
