@@ -31,6 +31,7 @@ fn long_starts(probe: &Probe, share: f64) -> Vec<Vec<f64>> {
     if !(ratio > 1.0 && ratio.is_finite()) {
         return Vec::new();
     }
+    let probe = &probe.stretch();
     let sign = probe.signature(|_, v| v.signum());
     let tried = probe.crew.gather(LONGER as usize, |k| {
         let s = shortest * libm::pow(ratio, k as f64 + 0.5);
