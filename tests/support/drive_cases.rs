@@ -510,6 +510,20 @@ fn pairs(r: &mut Random) -> Vec<Case> {
                 crossing(rig, 0.003, 1.5)
             },
         ),
+        make(
+            "backlash and delay",
+            vec![backlash(0.003), delay(tau)],
+            drifting(1.5),
+            &|rig| {
+                let rig = DriveRig {
+                    load: Some(play(0.003, 0.01)),
+                    delay: tau,
+                    samples: 25_000,
+                    ..rig
+                };
+                crossing(rig, 0.003, 1.5)
+            },
+        ),
     ]
 }
 
