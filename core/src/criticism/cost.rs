@@ -28,8 +28,13 @@ pub(super) fn cost_between(data: &Data, motion: &Motion, from: usize, to: usize)
 
 /// Squared residuals on the fitted part.
 pub(super) fn fit_cost(data: &Data, motion: &Motion) -> f64 {
+    fitted_costs(data, motion).iter().sum()
+}
+
+/// The same of each window.
+pub(super) fn fitted_costs(data: &Data, motion: &Motion) -> Vec<f64> {
     let windows = fitted_windows(data, motion);
-    windows.into_iter().map(|(cost, _)| cost).sum()
+    windows.into_iter().map(|(cost, _)| cost).collect()
 }
 
 /// Mean square of a window, in noise units, from which on it counts by the logarithm.

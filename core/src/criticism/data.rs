@@ -43,6 +43,9 @@ pub(super) struct Output {
     pub counted: bool,
 }
 
+/// Share of what is left that a scout must see, in times of its share of the record.
+const SEEN: f64 = 0.5;
+
 /// Pieces of motion for each sample after which no further model is tried: where so many do not explain a record, more
 /// would not, and it would take minutes. (A gap with friction takes some fifteen thousand.)
 const MOST_MOVES: f64 = 40_000.0;
@@ -280,9 +283,41 @@ impl Data {
         pairs.into_iter().step_by(stride).collect()
     }
 
+    /// Samples of a scout.
+    fn scouted(&self) -> usize {
+        (self.used() / SCOUT_PART).max(SCOUT_SAMPLES)
+    }
+
+    /// The scout of a model that leaves this in each window, or in each that informs: half of it are the windows that
+    /// are worst where the usual one sees far less of what is left than its share. An input may reach its limit seldom.
+    pub fn scout_seeing(&self, left: &[f64]) -> Self {
+        let usual = self.scout();
+        let share = usual.used() as f64 / self.used() as f64;
+        let in_usual = |w: &usize| usual.windows.binary_search(&self.windows[*w]).is_ok();
+        let seen: f64 = (0..left.len()).filter(in_usual).map(|w| left[w]).sum();
+        let all: f64 = left.iter().sum();
+        if self.kind == Kind::Process || share >= 1.0 || seen >= SEEN * share * all {
+            return usual;
+        }
+        let half = self.scouted() / 2;
+        let rest = self.thinned(half);
+        let mut pairs: Vec<(usize, f64)> = left
+            .chunks(2)
+            .map(|pair| pair.iter().sum())
+            .enumerate()
+            .collect();
+        pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let length = 2 * self.used() / self.windows.len().max(1);
+        pairs.truncate(half.div_ceil(length.max(1)));
+        let worst = |window: usize| pairs.iter().any(|(pair, _)| *pair == window / 2);
+        self.only(|window| {
+            worst(window) || rest.windows.binary_search(&self.windows[window]).is_ok()
+        })
+    }
+
     /// A small part of the record, for trying starting points quickly; all of it if it is short.
     pub fn scout(&self) -> Self {
-        let wanted = (self.used() / SCOUT_PART).max(SCOUT_SAMPLES);
+        let wanted = self.scouted();
         if self.kind == Kind::Drive {
             return self.thinned(wanted);
         }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::atlas::atlas;
 use super::baseline;
+use super::cost::fitted_costs;
 use super::data::Data;
 use super::fit::Fit;
 use super::knowledge::{self, Knowledge};
@@ -266,6 +267,13 @@ impl Session {
         fit.mend_odd_windows(full, &self.scales);
         let score = score(full, &fit);
         Scored { fit, score }
+    }
+
+    /// Tries starting points where something of what `fit` leaves is seen.
+    pub fn look_where_left(&mut self, fit: &Fit) {
+        self.scout = self
+            .data
+            .scout_seeing(&fitted_costs(&self.data, &fit.motion));
     }
 
     /// Cost of `fit` on the scout.

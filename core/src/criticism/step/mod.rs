@@ -340,10 +340,11 @@ impl StepJob {
 
     /// Where little is left, it may be for how the record was made; if so, no other effect is tried before that is in the
     /// model.
-    fn try_stage(&self) -> Stage {
+    fn try_stage(&mut self) -> Stage {
         let Some(model) = self.model.as_ref() else {
             return Stage::Report;
         };
+        self.session.look_where_left(&model.fit);
         let mut of_record = self.others();
         of_record.retain(|e| e.is_of_record());
         let little = model.score.error < LITTLE_LEFT && !is_plain_noise(&model.score);
