@@ -237,16 +237,20 @@ impl Data {
 
     /// Pairs of windows (fitted and held back) spread over the record, about `samples` in all.
     pub fn thinned(&self, samples: usize) -> Self {
-        let share = samples as f64 / self.used() as f64;
-        if share >= 1.0 || self.kind == Kind::Process {
+        if samples >= self.used() || self.kind == Kind::Process {
             return self.clone();
         }
+        let chosen = self.spread(samples);
+        self.only(|window| chosen[window])
+    }
+
+    /// Whether each window is one of these.
+    fn spread(&self, samples: usize) -> Vec<bool> {
+        let share = samples as f64 / self.used() as f64;
         let felt = self.felt_pairs(samples / 2);
         // At no fixed distance, which could meet the same phase of a periodic motion each time.
-        self.only(|window| {
-            let pair = window / 2;
-            (pair as f64 * GOLDEN).fract() < share || felt.contains(&pair)
-        })
+        let chosen = |pair: usize| (pair as f64 * GOLDEN).fract() < share || felt.contains(&pair);
+        (0..self.windows.len()).map(|w| chosen(w / 2)).collect()
     }
 
     /// The windows that are `chosen` by their number.
@@ -278,9 +282,15 @@ impl Data {
         let window = |sample: usize| self.windows.partition_point(|w| *w <= sample) - 1;
         let mut pairs: Vec<usize> = self.felt.iter().map(|s| window(*s) / 2).collect();
         pairs.dedup();
-        let length = 2 * self.used() / self.windows.len().max(1);
-        let stride = (pairs.len() * length).div_ceil(samples.max(1)).max(1);
+        let stride = (pairs.len() * self.pair_length())
+            .div_ceil(samples.max(1))
+            .max(1);
         pairs.into_iter().step_by(stride).collect()
+    }
+
+    /// Samples of a usual pair of windows.
+    fn pair_length(&self) -> usize {
+        2 * self.used() / self.windows.len().max(1)
     }
 
     /// Samples of a scout.
@@ -288,31 +298,37 @@ impl Data {
         (self.used() / SCOUT_PART).max(SCOUT_SAMPLES)
     }
 
-    /// The scout of a model that leaves this in each window, or in each that informs: half of it are the windows that
-    /// are worst where the usual one sees far less of what is left than its share. An input may reach its limit seldom.
+    /// The scout of a model that leaves this in each window: where the usual one sees far less of it than its share, half
+    /// of it are the windows that are worst. An input may reach its limit seldom.
     pub fn scout_seeing(&self, left: &[f64]) -> Self {
-        let usual = self.scout();
-        let share = usual.used() as f64 / self.used() as f64;
-        let in_usual = |w: &usize| usual.windows.binary_search(&self.windows[*w]).is_ok();
-        let seen: f64 = (0..left.len()).filter(in_usual).map(|w| left[w]).sum();
-        let all: f64 = left.iter().sum();
-        if self.kind == Kind::Process || share >= 1.0 || seen >= SEEN * share * all {
-            return usual;
+        let samples = self.scouted();
+        if samples >= self.used() || self.kind == Kind::Process {
+            return self.scout();
         }
-        let half = self.scouted() / 2;
-        let rest = self.thinned(half);
-        let mut pairs: Vec<(usize, f64)> = left
+        let usual = self.spread(samples);
+        let of_usual = self.blocks.iter().filter(|b| usual[b.window]);
+        let share = of_usual.map(|b| b.to - b.from).sum::<usize>() as f64 / self.used() as f64;
+        let seen: f64 = left
+            .iter()
+            .zip(&usual)
+            .filter(|(_, in_it)| **in_it)
+            .map(|(l, _)| l)
+            .sum();
+        if seen >= SEEN * share * left.iter().sum::<f64>() {
+            return self.only(|window| usual[window]);
+        }
+        let mut chosen = self.spread(samples / 2);
+        let mut pairs: Vec<(f64, &mut [bool])> = left
             .chunks(2)
             .map(|pair| pair.iter().sum())
-            .enumerate()
+            .zip(chosen.chunks_mut(2))
             .collect();
-        pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let length = 2 * self.used() / self.windows.len().max(1);
-        pairs.truncate(half.div_ceil(length.max(1)));
-        let worst = |window: usize| pairs.iter().any(|(pair, _)| *pair == window / 2);
-        self.only(|window| {
-            worst(window) || rest.windows.binary_search(&self.windows[window]).is_ok()
-        })
+        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let count = (samples / 2).div_ceil(self.pair_length().max(1));
+        for (_, worst) in pairs.into_iter().take(count) {
+            worst.fill(true);
+        }
+        self.only(|window| chosen[window])
     }
 
     /// A small part of the record, for trying starting points quickly; all of it if it is short.

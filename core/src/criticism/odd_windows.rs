@@ -21,10 +21,10 @@ const MOST: f64 = 0.25;
 /// Velocities that are tried on either side, as shares of the typical speed.
 const STEPS: [f64; 7] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
-/// Deviations of a load's place and of its velocity to either side that are tried, each with each, in standard
-/// deviations: far more of the velocity, since a load that is believed to rest may have been pushed unseen.
-const PLACES: [f64; 8] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 7.0, 10.0];
-const VELOCITIES: [f64; 8] = [0.0, 1.5, 5.0, 15.0, 40.0, 100.0, 250.0, 600.0];
+/// Deviations of a load's place and of its velocity that are tried beside none and to either side, each with each, in
+/// standard deviations: far more of the velocity, since a load that is believed to rest may have been pushed unseen.
+const PLACES: [f64; 7] = [0.25, 0.5, 1.0, 2.0, 4.0, 7.0, 10.0];
+const VELOCITIES: [f64; 7] = [1.5, 5.0, 15.0, 40.0, 100.0, 250.0, 600.0];
 
 /// How many of these the states are improved from, the best of each window, and how often.
 const IMPROVED: usize = 6;
@@ -79,12 +79,13 @@ impl Fit {
     /// keeps what fits best.
     fn try_loads(&mut self, data: &Data, scales: &Scales) {
         let measured = data.guessed_starts();
-        let velocities = || either_side(&VELOCITIES);
-        let loads = either_side(&PLACES).flat_map(|x| velocities().map(move |v| [x, v]));
+        let loads = about_zero(&PLACES)
+            .flat_map(|place| about_zero(&VELOCITIES).map(move |velocity| [place, velocity]));
         let mut tried: Vec<Vec<(f64, [f64; 2])>> = vec![Vec::new(); measured.len()];
         for load in loads {
             let starts = measured.iter().map(|start| Start { load, ..*start });
-            let costs = self.costs_from(&starts.collect::<Vec<_>>(), data);
+            let trial = self.started(starts.collect(), data);
+            let costs = window_costs(data, &trial.motion);
             for (tried, cost) in tried.iter_mut().zip(costs) {
                 tried.push((cost, load));
             }
@@ -102,19 +103,17 @@ impl Fit {
         }
     }
 
-    /// What each window costs from these states.
-    fn costs_from(&self, starts: &[Start], data: &Data) -> Vec<f64> {
+    /// The same values from these states.
+    fn started(&self, starts: Vec<Start>, data: &Data) -> Self {
         let mut trial = self.clone();
-        trial.starts = starts.to_vec();
+        trial.starts = starts;
         trial.follow_starts(data);
-        window_costs(data, &trial.motion)
+        trial
     }
 
     /// Starts every window from here, improves the states so many times, and keeps those that fit better than before.
     fn try_from(&mut self, starts: Vec<Start>, times: usize, data: &Data, scales: &Scales) {
-        let mut trial = self.clone();
-        trial.starts = starts;
-        trial.follow_starts(data);
+        let mut trial = self.started(starts, data);
         for _ in 0..times {
             trial.polish_once(data, scales);
         }
@@ -122,10 +121,10 @@ impl Fit {
     }
 }
 
-/// These numbers to either side of 0, which is the first of them.
-fn either_side(sizes: &[f64]) -> impl Iterator<Item = f64> {
-    let rest = sizes.get(1..).unwrap_or_default().iter();
-    std::iter::once(0.0).chain(rest.flat_map(|size| [*size, -size]))
+/// 0 and these sizes to either side of it.
+fn about_zero(sizes: &[f64]) -> impl Iterator<Item = f64> {
+    let sides = sizes.iter().flat_map(|size| [*size, -size]);
+    std::iter::once(0.0).chain(sides)
 }
 
 /// The same states with the body faster by this.

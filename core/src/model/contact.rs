@@ -50,6 +50,12 @@ pub(super) struct Contact {
     damping: f64,
 }
 
+/// Deflection of a bristle that slips at `limit` after a displacement `moved` one way from the deflection `z` (Dahl 1968).
+pub(crate) fn dahl(z: f64, moved: f64, limit: f64) -> f64 {
+    let steady = limit * moved.signum();
+    steady + (z - steady) * libm::exp(-moved.abs() / limit)
+}
+
 /// A bristle on its way from a deflection `z`, as it follows the displacement.
 struct Bent<'a> {
     acting: &'a Acting,
@@ -119,10 +125,7 @@ impl Contact {
 
     /// Deflection after a known displacement `moved` at friction `level`.
     pub fn followed(&self, deflection: f64, moved: f64, level: f64) -> f64 {
-        let limit = level / self.stiffness;
-        let z = self.within_reach(deflection);
-        let steady = limit * moved.signum();
-        steady + (z - steady) * libm::exp(-moved.abs() / limit)
+        dahl(self.within_reach(deflection), moved, level / self.stiffness)
     }
 
     fn within_reach(&self, deflection: f64) -> f64 {

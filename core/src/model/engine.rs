@@ -167,6 +167,7 @@ pub struct Engine<'m> {
     touching_step: f64,
     /// Nothing but the input, constant forces and dry friction of a fixed level acts.
     plain: bool,
+    /// Pieces of motion so far.
     moves: Cell<u64>,
 }
 

@@ -24,6 +24,7 @@ mod short;
 mod swing;
 
 pub use closed_loop::{Run, run_controlled};
+pub(crate) use contact::dahl;
 pub use engine::{Engine, State};
 pub(crate) use flight::Slowing;
 pub(crate) use flow::free_body;
