@@ -198,6 +198,17 @@ impl Data {
         }
     }
 
+    /// Cuts a window of a drive into about so many, each a block of its own.
+    pub fn cut_finer(&mut self, window: usize, pieces: usize) {
+        let end = |w: usize| self.windows.get(w).copied().unwrap_or(self.len());
+        let (from, to) = (end(window), end(window + 1));
+        let velocity = self.velocity_estimate();
+        let finer = cut::in_motion(&velocity[from..to], (to - from).div_ceil(pieces));
+        self.windows
+            .splice(window..=window, finer.into_iter().map(|cut| from + cut));
+        self.blocks = cut::one_each(&self.windows, self.len());
+    }
+
     /// Counts pieces of motion of a replay, of it or of a part.
     pub fn count_moves(&self, moves: u64) {
         self.moves.fetch_add(moves, Ordering::Relaxed);

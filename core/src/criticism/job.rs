@@ -253,7 +253,7 @@ impl DiagnosisJob {
         }
         self.last = Some(report);
         match (verdict, next) {
-            (_, Some(model)) if !ended && !self.falls_short(&model) => {
+            (_, Some(model)) if !ended && !self.falls_short(&session, &model) => {
                 let round = self.left_in_a_round(&session, &model);
                 self.barred.extend(round);
                 self.go_on(session, model);
@@ -274,9 +274,15 @@ impl DiagnosisJob {
     }
 
     /// Whether a bold way goes on with a model that explains little more than what came to an end before: two
-    /// effects that only show together leave next to nothing.
-    fn falls_short(&self, next: &Scored) -> bool {
-        let before = self.unfinished.as_ref().filter(|_| self.bold);
+    /// effects that only show together leave next to nothing. Doing without an effect is not meant to explain more.
+    fn falls_short(&self, session: &Session, next: &Scored) -> bool {
+        let count = session.effects(&next.fit).len();
+        let adds = self
+            .diagnosis
+            .steps
+            .last()
+            .is_some_and(|last| count > last.effects.len());
+        let before = self.unfinished.as_ref().filter(|_| self.bold && adds);
         let error = before
             .and_then(|end| end.diagnosis.steps.last())
             .map(|s| s.error);

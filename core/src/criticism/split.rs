@@ -8,6 +8,7 @@
 //! models.) The judge stays fair: the values of no effect are known yet when the windows are divided.
 
 use super::cost::cost_between;
+use super::cut::MIN_WINDOW;
 use super::data::Data;
 use super::fit::Fit;
 use super::knowledge::Knowledge;
@@ -18,10 +19,18 @@ use crate::measurement::Kind;
 /// Iterations of the baseline before its error is looked at.
 const ITERATIONS: usize = 3;
 
+/// Share of what is left beyond the noise from which a window is cut into so many, and how often.
+const LONE: f64 = 0.6;
+const PIECES: usize = 8;
+const CUTS: usize = 2;
+
+/// Mean square, in noise units, that may be noise.
+const NOISY: f64 = 4.0;
+
 /// Holds back one of every two neighbouring windows, so that both parts know as much of what the baseline that
 /// begins at `values` does not explain.
 ///
-/// A process runs through without a restart: what it leaves in a block is not that block's own, and the order of the
+/// A window that holds most of it is cut into shorter ones first. A process runs through without a restart: what it leaves in a block is not that block's own, and the order of the
 /// blocks stays as it is. So does that of windows that begin where a load was felt: they are of no fixed length, and
 /// tell by turns of one end of the gap and of the other.
 pub(super) fn hold_back(
@@ -33,15 +42,15 @@ pub(super) fn hold_back(
     if data.kind == Kind::Process || data.excitation.sees_load() {
         return;
     }
-    for block in &mut data.blocks {
-        block.held_back = false;
-    }
     let structure = Structure::new(data.kind, Vec::new(), knowledge.clone());
     structure.begin(&mut values, 0);
-    let mut fit = Fit::new(data, structure, values, data.guessed_starts(), scales);
-    fit.polish_starts(data, scales);
-    for _ in 0..ITERATIONS {
-        fit.iterate(data, scales);
+    let mut fit = fitted(data, &structure, &values, scales);
+    for _ in 0..CUTS {
+        let Some(window) = lone(data, &fit) else {
+            break;
+        };
+        data.cut_finer(window, PIECES);
+        fit = fitted(data, &structure, &values, scales);
     }
     let cost = |k: usize| {
         let block = &data.blocks[k];
@@ -58,6 +67,35 @@ pub(super) fn hold_back(
         let held = if is_odd(rank) { worse } else { better };
         data.blocks[held].held_back = true;
     }
+}
+
+/// The baseline from `values`, fitted a little to all windows.
+fn fitted(data: &mut Data, structure: &Structure, values: &[f64], scales: &Scales) -> Fit {
+    for block in &mut data.blocks {
+        block.held_back = false;
+    }
+    let (structure, values) = (structure.clone(), values.to_vec());
+    let mut fit = Fit::new(data, structure, values, data.guessed_starts(), scales);
+    fit.polish_starts(data, scales);
+    for _ in 0..ITERATIONS {
+        fit.iterate(data, scales);
+    }
+    fit
+}
+
+/// The window that holds most of what is left beyond the noise, if one does and can be cut: what acts once only, as a
+/// limit of the input while a machine starts, would be seen by the fit or by the judge alone.
+fn lone(data: &Data, fit: &Fit) -> Option<usize> {
+    let outputs = data.outputs.len() as f64;
+    let beyond = data.blocks.iter().map(|b| {
+        let noise = NOISY * outputs * (b.to - b.from) as f64;
+        (cost_between(data, &fit.motion, b.from, b.to) - noise).max(0.0)
+    });
+    let beyond: Vec<f64> = beyond.collect();
+    let worst = (0..beyond.len()).max_by(|a, b| beyond[*a].total_cmp(&beyond[*b]))?;
+    let block = &data.blocks[worst];
+    let most = beyond[worst] > LONE * beyond.iter().sum::<f64>();
+    (most && block.to - block.from >= PIECES * MIN_WINDOW).then_some(block.window)
 }
 
 /// One of every two ranks, in the order of Thue and Morse, which never repeats itself.

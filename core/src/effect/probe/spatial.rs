@@ -1,15 +1,32 @@
 //! At which spatial frequencies the unexplained force repeats along the way.
 
-use super::{Probe, spans_stride};
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, Vector3};
+use num_complex::Complex64;
+use rustfft::FftPlanner;
+
+use super::{Probe, dot, spans_stride};
 use crate::effect::spec::SEEN_TURN;
+use crate::order::median;
 
 /// Samples at most that enter the regression.
 const REPEATING: usize = 3_000;
 
-/// Spatial frequencies that are scanned at most as close as the measured travel tells them apart, and
-/// beyond them up to the highest.
+/// Spatial frequencies that are scanned at most, as close as the measured travel tells them apart, each by a regression.
 const FINE_SPATIAL: usize = 700;
-const COARSE_SPATIAL: usize = 150;
+
+/// The highest one, in times that distance, where the pull on the body is transformed, as of a motor that makes many
+/// turns; cells at least for one wave of it; and, of those that stand out of a row of neighbours, how many are looked at by
+/// a regression.
+const FAR_SPATIAL: usize = 65_536;
+const CELLS: usize = 4;
+
+/// Share of the power of the base forces below which a combination of them is nothing.
+const NEGLIGIBLE: f64 = 1e-9;
+
+const NEIGHBOURS: usize = 64;
+const STANDING_OUT: usize = 12;
 
 /// Spatial frequencies in a row, whose waves are found from each other.
 const ROW: usize = 32;
@@ -26,10 +43,7 @@ impl Probe {
         let spacing = 1.2 / travel;
         let least = SEEN_TURN / travel;
         let within = |n: f64| n >= least && n <= fastest;
-        let from = FINE_SPATIAL as f64 * spacing;
-        let wider = spacing.max((fastest - from) / COARSE_SPATIAL as f64);
-        let rows = rows(0.0, spacing, FINE_SPATIAL).chain(rows(from, wider, COARSE_SPATIAL));
-        let rows: Vec<Row> = rows
+        let rows: Vec<Row> = rows(0.0, spacing, FINE_SPATIAL)
             .filter(|r| r.last() >= least && r.first() <= fastest)
             .collect();
         let scanned = self.crew.gather(rows.len(), |i| self.scan_row(&rows[i]));
@@ -43,6 +57,7 @@ impl Probe {
             })
             .map(|i| scan[i])
             .collect();
+        peaks.extend(self.far_peaks(spacing, fastest));
         peaks.sort_by(|a, b| a.3.total_cmp(&b.3));
         peaks.truncate(count);
         // The peak lies between the scanned frequencies.
@@ -56,6 +71,95 @@ impl Probe {
             .filter(|peak| Self::may_be(peak.3) && peak.3 < share)
             .map(|peak| (peak.0, peak.1, peak.2))
             .collect()
+    }
+
+    /// The same beyond the frequencies that are scanned one by one. The product of what is unexplained with its answer to
+    /// a wave of force is, over all waves, a Fourier transform along the way of the pull on each interval: where that stands
+    /// out of its neighbours is worth a regression.
+    fn far_peaks(&self, spacing: f64, fastest: f64) -> Vec<(f64, f64, f64, f64)> {
+        let highest = ((fastest / spacing) as usize).min(FAR_SPATIAL);
+        if highest <= FINE_SPATIAL {
+            return Vec::new();
+        }
+        let lines = self.transformed(spacing, highest);
+        let mut standing: Vec<(usize, f64)> = (FINE_SPATIAL..highest)
+            .step_by(NEIGHBOURS)
+            .filter_map(|from| {
+                let row = &lines[from..(from + NEIGHBOURS).min(highest)];
+                let most = (0..row.len()).max_by(|a, b| row[*a].total_cmp(&row[*b]))?;
+                Some((from + most, row[most] / median(&mut row.to_vec())))
+            })
+            .collect();
+        standing.sort_by(|a, b| b.1.total_cmp(&a.1));
+        standing.truncate(STANDING_OUT);
+        let look = |i: usize| self.spatial(standing[i].0 as f64 * spacing);
+        let found = self.crew.gather(standing.len(), look);
+        found.into_iter().flatten().collect()
+    }
+
+    /// The squared Fourier transform of the pull along the way, at 0 and the multiples of `spacing` below `count`.
+    fn transformed(&self, spacing: f64, count: usize) -> Vec<f64> {
+        let cells = (CELLS * count).next_power_of_two();
+        let width = TAU / (spacing * cells as f64);
+        let (low, _) = self.position_range();
+        let mut way = vec![Complex64::default(); cells];
+        for (place, pull) in self.pulls() {
+            let (cell, share) = ((place - low) / width, (place - low) / width % 1.0);
+            let cell = cell as usize;
+            way[cell % cells] += pull * (1.0 - share);
+            way[(cell + 1) % cells] += pull * share;
+        }
+        FftPlanner::new().plan_fft_forward(cells).process(&mut way);
+        way.iter().take(count).map(Complex64::norm_sqr).collect()
+    }
+
+    /// For each interval the position in its middle, and how much an acceleration there would do for what the base forces
+    /// leave of its window, in units of that: a window in which the body is held says no more than one in which it runs.
+    fn pulls(&self) -> Vec<(f64, f64)> {
+        let windows = self.spans.iter().zip(&self.target).enumerate();
+        windows
+            .flat_map(|(index, (span, target))| {
+                let known = &self.known[index];
+                let normal = Matrix3::from(known.normal);
+                let shares = normal.pseudo_inverse(NEGLIGIBLE * normal.trace());
+                let shares = shares.map(|inverse| inverse * Vector3::from(known.right));
+                let mut left = target.clone();
+                for (share, answer) in shares.iter().flatten().zip(&self.base[index]) {
+                    left.iter_mut()
+                        .zip(answer)
+                        .for_each(|(l, a)| *l -= share * a);
+                }
+                let power = dot(&left, &left);
+                let mut pulls = self.pulls_of(*span, &left);
+                for (_, pull) in &mut pulls {
+                    *pull /= power;
+                }
+                pulls
+            })
+            .filter(|(_, pull)| pull.is_finite())
+            .collect()
+    }
+
+    /// The same of one window with these errors: the adjoint of [`Probe::answer`].
+    fn pulls_of(&self, (from, to): (usize, usize), errors: &[f64]) -> Vec<(f64, f64)> {
+        let length = to - from;
+        let (mut on_position, mut on_velocity) = (0.0, 0.0);
+        let mut pulls = Vec::with_capacity(length);
+        for k in (1..length).rev() {
+            for (j, (is_velocity, weight)) in self.outputs.iter().enumerate() {
+                let pull = weight * errors[j * length + k];
+                if *is_velocity {
+                    on_velocity += pull;
+                } else {
+                    on_position += pull;
+                }
+            }
+            let before = &self.position[from + k - 1..=from + k];
+            let pull = self.body.phi2 * on_position + self.body.phi1 * on_velocity;
+            pulls.push((0.5 * (before[0] + before[1]), pull));
+            on_velocity = self.body.decay * on_velocity + self.body.phi1 * on_position;
+        }
+        pulls
     }
 
     /// Frequency, coefficients of sine and cosine, share left.
