@@ -404,25 +404,11 @@ impl Probe {
             power += known.power;
             count += target.len();
         }
-        let sizes: Vec<f64> = (0..p).map(|j| f64::sqrt(normal[(j, j)])).collect();
-        if count <= 4 * p || sizes.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+        if count <= 4 * p {
             return None;
         }
-        for a in 0..p {
-            for b in 0..a {
-                normal[(a, b)] /= sizes[a] * sizes[b];
-                normal[(b, a)] = normal[(a, b)];
-            }
-            normal[(a, a)] = 1.0 + 1e-9;
-            right[a] /= sizes[a];
-        }
-        let scaled = normal.cholesky()?.solve(&right);
-        let left = power - scaled.dot(&right);
-        let solution = DVector::from_fn(p, |j, _| scaled[j] / sizes[j]);
-        solution
-            .iter()
-            .all(|v| v.is_finite())
-            .then_some((solution, left.max(0.0)))
+        let (solution, explained) = solved(normal, right)?;
+        Some((solution, (power - explained).max(0.0)))
     }
 
     /// Level of dry friction that the unexplained force suggests.
@@ -548,6 +534,29 @@ impl Probe {
             .map(|i| low * libm::pow(ratio, f64::from(i)))
             .collect()
     }
+}
+
+/// Solution of normal equations, of which the lower triangle is given, and what it explains; `None` where an unknown leaves
+/// no trace.
+fn solved(mut normal: DMatrix<f64>, mut right: DVector<f64>) -> Option<(DVector<f64>, f64)> {
+    let p = right.len();
+    let sizes: Vec<f64> = (0..p).map(|j| f64::sqrt(normal[(j, j)])).collect();
+    if sizes.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+        return None;
+    }
+    for a in 0..p {
+        for b in 0..a {
+            normal[(a, b)] /= sizes[a] * sizes[b];
+            normal[(b, a)] = normal[(a, b)];
+        }
+        normal[(a, a)] = 1.0 + 1e-9;
+        right[a] /= sizes[a];
+    }
+    let scaled = normal.cholesky()?.solve(&right);
+    let explained = scaled.dot(&right);
+    let solution = DVector::from_fn(p, |j, _| scaled[j] / sizes[j]);
+    let finite = solution.iter().all(|v| v.is_finite());
+    finite.then_some((solution, explained))
 }
 
 /// One window in how many makes at most `samples`.

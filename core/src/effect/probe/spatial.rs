@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use rustfft::FftPlanner;
 
-use super::{Probe, dot, spans_stride};
+use super::{BASE, Probe, dot, solved, spans_stride};
 use crate::effect::spec::SEEN_TURN;
 use crate::order::median;
 
@@ -21,10 +21,6 @@ const FINE_SPATIAL: usize = 700;
 /// a regression.
 const FAR_SPATIAL: usize = 65_536;
 const CELLS: usize = 4;
-
-/// Share of the power of the base forces below which a combination of them is nothing.
-const NEGLIGIBLE: f64 = 1e-9;
-
 const NEIGHBOURS: usize = 64;
 const STANDING_OUT: usize = 12;
 
@@ -104,8 +100,8 @@ impl Probe {
         let (low, _) = self.position_range();
         let mut way = vec![Complex64::default(); cells];
         for (place, pull) in self.pulls() {
-            let (cell, share) = ((place - low) / width, (place - low) / width % 1.0);
-            let cell = cell as usize;
+            let along = (place - low) / width;
+            let (cell, share) = (along as usize, along % 1.0);
             way[cell % cells] += pull * (1.0 - share);
             way[(cell + 1) % cells] += pull * share;
         }
@@ -120,14 +116,14 @@ impl Probe {
         windows
             .flat_map(|(index, (span, target))| {
                 let known = &self.known[index];
-                let normal = Matrix3::from(known.normal);
-                let shares = normal.pseudo_inverse(NEGLIGIBLE * normal.trace());
-                let shares = shares.map(|inverse| inverse * Vector3::from(known.right));
+                let normal = DMatrix::from_fn(BASE, BASE, |a, b| known.normal[a][b]);
+                let shares = solved(normal, DVector::from_column_slice(&known.right));
+                let shares = shares.iter().flat_map(|(solution, _)| solution);
                 let mut left = target.clone();
-                for (share, answer) in shares.iter().flatten().zip(&self.base[index]) {
-                    left.iter_mut()
-                        .zip(answer)
-                        .for_each(|(l, a)| *l -= share * a);
+                for (share, answer) in shares.zip(&self.base[index]) {
+                    for (left, answer) in left.iter_mut().zip(answer) {
+                        *left -= share * answer;
+                    }
                 }
                 let power = dot(&left, &left);
                 let mut pulls = self.pulls_of(*span, &left);
