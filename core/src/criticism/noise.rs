@@ -23,6 +23,10 @@ const NORMAL_QUANTILE: f64 = 0.385_320_466_407_567_6;
 /// Share of the differences that lies in quieter groups than the one that decides.
 const QUIET: f64 = 0.4;
 
+/// Three standard errors of a level that is read off one difference, relative to it; of many, this over the root of their
+/// number.
+const CHANCE: f64 = 4.8;
+
 /// Excess of the variance over that of quantisation up to which it is quantisation alone.
 const QUANTISED: f64 = 1.25;
 
@@ -62,10 +66,7 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
         .collect();
     let uniform = quantum * quantum / 12.0;
     let groups = since_change(input);
-    let smallest = ORDERS
-        .iter()
-        .filter_map(|order| level_at_order(&dithered, &groups, *order))
-        .fold(f64::INFINITY, f64::min);
+    let smallest = least_level(&dithered, &groups);
     // Quantisation and dither alone, within what the estimate can tell.
     if quantum > 0.0 && smallest * smallest < QUANTISED * 2.0 * uniform {
         return Noise {
@@ -158,7 +159,25 @@ fn since_change(input: &[f64]) -> Vec<usize> {
         .collect()
 }
 
-fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<f64> {
+/// The noise that the differences of that order show which cancel the signal best; of all that could be as good, the
+/// mean.
+fn least_level(values: &[f64], groups: &[usize]) -> f64 {
+    let levels = ORDERS.iter();
+    let levels: Vec<_> = levels
+        .filter_map(|order| level_at_order(values, groups, *order))
+        .collect();
+    let of = |(level, count): &(f64, usize)| level * (1.0 + chance(*count));
+    let most = levels.iter().map(of).fold(f64::INFINITY, f64::min);
+    let good = || levels.iter().filter(|(level, _)| *level <= most);
+    let sum: f64 = good().map(|(level, _)| level).sum();
+    match good().count() {
+        0 => f64::INFINITY,
+        count => sum / count as f64,
+    }
+}
+
+/// The noise that the differences of this order show, and the number of those that tell.
+fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<(f64, usize)> {
     let signs = binomials(order);
     let gain = signs.iter().map(|c| c * c).sum::<f64>().sqrt();
     let mut by_group: Vec<Vec<f64>> = vec![Vec::new(); GROUPS];
@@ -173,17 +192,29 @@ fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<f64>
         .collect();
     if levels.is_empty() {
         let mut all: Vec<f64> = by_group.concat();
-        return (!all.is_empty()).then(|| low_quantile(&mut all));
+        return (!all.is_empty()).then(|| (low_quantile(&mut all), all.len()));
     }
     levels.sort_by(|a, b| a.0.total_cmp(&b.0));
     // The upper levels may hold kinks. Those of small groups are too small by chance as often as too large.
     let total: usize = levels.iter().map(|(_, count)| count).sum();
     let mut below = 0;
-    let level = levels.iter().find(|(_, count)| {
+    let (quiet, _) = levels.iter().find(|(_, count)| {
         below += count;
         below as f64 > QUIET * total as f64
-    });
-    level.map(|(level, _)| *level)
+    })?;
+    // One group is known to a tenth at best: all that could be as quiet tell together.
+    let as_quiet = |group: &mut Vec<f64>| {
+        let count = group.len();
+        count >= MIN_GROUP && low_quantile(group) <= (1.0 + chance(count)) * quiet
+    };
+    by_group.retain_mut(as_quiet);
+    let mut pooled = by_group.concat();
+    Some((low_quantile(&mut pooled), pooled.len()))
+}
+
+/// Share by which the level of so many differences may be off by chance.
+fn chance(count: usize) -> f64 {
+    CHANCE / (count as f64).sqrt()
 }
 
 /// The noise that these absolute differences show; there must be some.
@@ -247,6 +278,23 @@ mod tests {
             let level = noise_level(&values, &input[1..]);
             assert!((level / 0.05 - 1.0).abs() < 0.05, "{of}: {level}");
         }
+    }
+
+    #[test]
+    fn of_a_short_record_that_switches_often_the_noise_is_as_often_too_large_as_too_small() {
+        let records = 40;
+        let input: Vec<f64> = (0..2000).map(|i| f64::from(i / 16 % 2)).collect();
+        let level = |record: usize| {
+            let normal = |i| {
+                (1..13)
+                    .map(|k| dither(i + 2000 * (13 * record + k)))
+                    .sum::<f64>()
+            };
+            let values: Vec<f64> = (0..2000).map(|i| normal(i) - 6.0).collect();
+            noise_level(&values, &input)
+        };
+        let mean = (0..records).map(level).sum::<f64>() / records as f64;
+        assert!((mean - 1.0).abs() < 0.02, "{mean}");
     }
 
     #[test]
