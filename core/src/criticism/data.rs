@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::CriticismError;
 use super::cut::{self, Block, MIN_WINDOW};
+use super::glitches::mend;
 use super::noise::{Noise, noise};
 use super::window::drive_window;
 use crate::crew::Crew;
@@ -62,6 +63,8 @@ pub(super) struct Data {
     pub input: Vec<f64>,
     pub time: Vec<f64>,
     pub outputs: Vec<Output>,
+    /// Single values of the outputs that stood alone and were put where their neighbours are.
+    pub glitches: usize,
     /// Sample before each contact with a load that the motor felt.
     pub felt: Vec<usize>,
     /// First sample of each window.
@@ -84,15 +87,20 @@ impl Data {
         if input.iter().all(|u| *u == input[0]) {
             return Err(CriticismError::ConstantInput);
         }
+        let mut glitches = 0;
         let outputs: Vec<Output> = measurement
             .outputs
             .iter()
             .zip(noise)
-            .map(|(c, noise)| Output {
-                is_velocity: c.quantity != Quantity::Position,
-                noise: noise.level,
-                counted: noise.counted,
-                values: c.values.clone(),
+            .map(|(c, noise)| {
+                let mut values = c.values.clone();
+                glitches += mend(&mut values, noise.level);
+                Output {
+                    is_velocity: c.quantity != Quantity::Position,
+                    noise: noise.level,
+                    counted: noise.counted,
+                    values,
+                }
             })
             .collect();
         if let Some(c) = measurement
@@ -162,6 +170,7 @@ impl Data {
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),
             outputs,
+            glitches,
             felt: Vec::new(),
             windows,
             blocks,

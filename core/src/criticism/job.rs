@@ -251,6 +251,7 @@ impl DiagnosisJob {
             self.detours.clear();
             self.unfinished = None;
         }
+        self.diagnosis.noise_floor = report.noise_floor;
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended && !self.falls_short(&session, &model) => {

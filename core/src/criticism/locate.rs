@@ -24,6 +24,20 @@ type Ranked = (f64, Finding);
 
 /// The strongest regions, strongest first. `velocity_unit` is that of the drive or process output.
 pub(super) fn locate(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Finding> {
+    let mut ranked = concentrations(data, motion, velocity_unit);
+    for (output, residual) in data.outputs.iter().zip(residuals(data, motion)) {
+        ranked.extend(band(data, output, &residual));
+    }
+    strongest(ranked)
+}
+
+/// Whether the size of what is left depends on time, on the motion or on the input.
+pub(super) fn depends_on_the_motion(data: &Data, motion: &Motion, velocity_unit: &str) -> bool {
+    !concentrations(data, motion, velocity_unit).is_empty()
+}
+
+/// The regions of all axes but frequency.
+fn concentrations(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Ranked> {
     let axes: Vec<(Axis, Parts)> = axes(data, motion, velocity_unit)
         .into_iter()
         .filter_map(|axis| axis.parts(0..data.len(), BINS).map(|parts| (axis, parts)))
@@ -38,9 +52,8 @@ pub(super) fn locate(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<F
         for (axis, parts) in &axes {
             ranked.extend(concentration(data, axis, parts, &error, total, output));
         }
-        ranked.extend(band(data, output, &residual));
     }
-    strongest(ranked)
+    ranked
 }
 
 /// The strongest findings, strongest first: for each axis that of the output which shows it best. What has a place in the

@@ -9,6 +9,7 @@ use super::data::Data;
 use super::fit::Fit;
 use super::knowledge::{self, Knowledge};
 use super::locate::locate;
+use super::memory::is_noise_with_memory;
 use super::probes::{Probed, Probes};
 use super::score::{Score, score};
 use super::select::is_noise;
@@ -39,6 +40,20 @@ impl Scored {
             .standard_errors(left * self.score.correlation.max(1.0))
     }
 }
+
+/// What a model leaves of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rest {
+    /// Noise, but for a trifle.
+    Noise,
+    /// Noise that remembers for some samples, and so is larger than neighbouring samples show.
+    NoiseWithMemory,
+    /// More than noise.
+    More,
+}
+
+/// Error up to which noise that remembers some samples may be larger than their differences show.
+const MOST_REMEMBERED: f64 = 2.0;
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
@@ -360,11 +375,21 @@ impl Session {
         parameters
     }
 
-    /// Where the fit fails; empty where what is left is noise.
-    pub fn findings(&self, scored: &Scored) -> Vec<super::Finding> {
+    /// What a fit of the whole record leaves.
+    pub fn rest(&self, scored: &Scored) -> Rest {
+        let remembers =
+            || is_noise_with_memory(self.whole(), &scored.fit.motion, self.output_unit());
         if is_noise(&scored.score, self.first(scored)) {
-            return Vec::new();
+            Rest::Noise
+        } else if scored.score.error < MOST_REMEMBERED && remembers() {
+            Rest::NoiseWithMemory
+        } else {
+            Rest::More
         }
+    }
+
+    /// Where a fit of the whole record fails.
+    pub fn findings(&self, scored: &Scored) -> Vec<super::Finding> {
         locate(self.whole(), &scored.fit.motion, self.output_unit())
     }
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::score::Score;
 use super::select::is_plain_noise;
-use super::session::Scored;
+use super::session::{Rest, Scored};
 use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
 
@@ -18,7 +18,7 @@ pub(super) fn verdict(
     classes: &[Class],
     parameters: &[Parameter],
     model: &Scored,
-    complete: bool,
+    rest: Rest,
     contradicted: Vec<Contradiction>,
 ) -> Verdict {
     let class = |(place, (effect, _)): (usize, &(&'static dyn Effect, bool))| {
@@ -39,6 +39,7 @@ pub(super) fn verdict(
     if !contradicted.is_empty() {
         return contradiction(missing, contradicted, text, model.score.error);
     }
+    let complete = rest != Rest::More;
     text.push_str(match (missing.is_empty(), complete) {
         (true, true) => "Nothing is missing: what the model leaves is measurement noise.",
         (false, true) => "With that, what is left is measurement noise.",
@@ -105,12 +106,26 @@ fn contradiction(
 
 /// Says how much is left of what was there at `first` where that is more than plain noise, and, of a verdict that
 /// is not complete, where it lies.
-pub(super) fn add_rest(verdict: &mut Verdict, score: &Score, first: f64, findings: &[Finding]) {
+pub(super) fn add_rest(
+    verdict: &mut Verdict,
+    rest: Rest,
+    score: &Score,
+    first: f64,
+    findings: &[Finding],
+) {
     if !verdict.contradicted.is_empty() || is_plain_noise(score) {
         return;
     }
     let error = score.error;
     let share = 100.0 * error / first;
+    if rest == Rest::NoiseWithMemory {
+        let _ = write!(
+            verdict.text,
+            " This noise remembers for some samples, as that of a sensor with a filter does: it is {error:.2} times what \
+             neighbouring samples show, and depends neither on the motion nor on the input."
+        );
+        return;
+    }
     if verdict.complete {
         let _ = write!(
             verdict.text,
@@ -128,6 +143,21 @@ pub(super) fn add_rest(verdict: &mut Verdict, score: &Score, first: f64, finding
     if let Some(strongest) = findings.first() {
         let _ = write!(verdict.text, " {}", strongest.text);
     }
+}
+
+/// Says how many single values were left out.
+pub(super) fn add_glitches(verdict: &mut Verdict, glitches: usize) {
+    let _ = match glitches {
+        0 => return,
+        1 => write!(
+            verdict.text,
+            " One value stood alone, far off its neighbours, and was left out: a glitch of the sensor."
+        ),
+        many => write!(
+            verdict.text,
+            " {many} values stood alone, far off their neighbours, and were left out: glitches of the sensor."
+        ),
+    };
 }
 
 /// Says which effects lower the error but may be imitations: they explain less than they leave, or their size is

@@ -42,9 +42,9 @@ pub(super) fn ui(
             (label, page.reports.get(&way[..n]))
         })
         .collect();
-    let mut known = steps.iter().filter_map(|(_, r)| *r);
-    let largest = known.clone().map(|r| r.step.error).fold(2.0, f64::max);
-    let floor = known.next().map_or(1.0, |r| r.noise_floor);
+    let known = || steps.iter().filter_map(|(_, r)| *r);
+    let largest = known().map(|r| r.step.error).fold(2.0, f64::max);
+    let floor = known().next_back().map_or(1.0, |r| r.noise_floor);
     let width = (ui.available_width() - WATERFALL_TEXT).clamp(LEAST_BAR, BAR_WIDTH);
     egui::Grid::new("waterfall").num_columns(3).show(ui, |ui| {
         for (n, (label, report)) in steps.iter().enumerate() {

@@ -7,8 +7,8 @@ use super::judge::{alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
 use super::search::Search;
-use super::select::{is_noise, is_plain_noise, is_too_rich};
-use super::session::{Scored, Session};
+use super::select::{is_plain_noise, is_too_rich};
+use super::session::{Rest, Scored, Session};
 use super::verdict::Class;
 use super::{Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport};
 use crate::crew::Crew;
@@ -430,8 +430,8 @@ impl StepJob {
     /// One search for each effect in whose place others could stand; none where the model does not explain the
     /// record, or is not the last.
     fn design_stage(&self, model: &Scored) -> Stage {
-        let explains = is_noise(&model.score, self.session.first(model));
-        if !explains || self.simpler.is_some() {
+        let explains = || self.session.rest(&self.session.completed(model)) != Rest::More;
+        if self.rivals.is_empty() || !explains() || self.simpler.is_some() {
             return Stage::Report;
         }
         let designs = designs(

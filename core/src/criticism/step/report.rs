@@ -5,9 +5,12 @@ use crate::criticism::fingerprint::fingerprints;
 use crate::criticism::judge::{alike, helps_clearly, nested};
 use crate::criticism::missing::missing_parts;
 use crate::criticism::residual_test::residual_tests;
-use crate::criticism::select::{delta_bic, is_noise};
-use crate::criticism::session::Scored;
-use crate::criticism::verdict::{add_experiments, add_idle, add_imitations, add_rest, verdict};
+use crate::criticism::score::Score;
+use crate::criticism::select::delta_bic;
+use crate::criticism::session::{Rest, Scored};
+use crate::criticism::verdict::{
+    add_experiments, add_glitches, add_idle, add_imitations, add_rest, verdict,
+};
 use crate::criticism::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
 
@@ -18,7 +21,11 @@ impl StepJob {
         let needless = self.needless(model);
         let whole = self.session.completed(model);
         let parameters = self.session.parameters(&whole);
-        let findings = self.session.findings(&whole);
+        let rest = self.session.rest(&whole);
+        let findings = match rest {
+            Rest::More => self.session.findings(&whole),
+            Rest::Noise | Rest::NoiseWithMemory => Vec::new(),
+        };
         let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
             let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
             let mut places: Vec<usize> = places.collect();
@@ -37,14 +44,15 @@ impl StepJob {
                 &classes,
                 &parameters,
                 &whole,
-                is_noise(&whole.score, self.session.first(&whole)),
+                rest,
                 self.contradicted.clone(),
             );
             let first = self.session.first(&whole).error;
-            add_rest(&mut verdict, &whole.score, first, &findings);
+            add_rest(&mut verdict, rest, &whole.score, first, &findings);
             add_imitations(&mut verdict, &self.barred);
             add_idle(&mut verdict, &self.idle(model).0);
             add_experiments(&mut verdict, &self.experiments);
+            add_glitches(&mut verdict, self.session.whole().glitches);
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
@@ -71,7 +79,7 @@ impl StepJob {
                 tests: residual_tests(self.session.whole(), &whole.fit.motion),
                 candidates,
             },
-            noise_floor: NOISE_FLOOR,
+            noise_floor: noise_floor(rest, &whole.score),
             replay: self.session.replay(&whole.fit),
             atlas: self.session.atlas(&whole.fit),
             suggestion,
@@ -136,6 +144,14 @@ impl StepJob {
             first(a).cmp(&first(b)).then(a.error.total_cmp(&b.error))
         });
         candidates
+    }
+}
+
+/// What a perfect model would leave: where noise remembers, more than neighbouring samples show.
+fn noise_floor(rest: Rest, score: &Score) -> f64 {
+    match rest {
+        Rest::NoiseWithMemory => score.error_fit.max(NOISE_FLOOR),
+        Rest::Noise | Rest::More => NOISE_FLOOR,
     }
 }
 

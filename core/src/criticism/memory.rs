@@ -1,0 +1,73 @@
+//! Is what is left noise that remembers for some samples, as of a sensor with a filter?
+//!
+//! Such noise is larger than differences of neighbouring samples show, so that it looks like more than noise. It is told
+//! from a missing effect by what it does not know: it forgets within a few samples, and neither its size nor its mean
+//! depends on time, on the motion or on the input. (Whiteness is no requirement on a residual for a model to be right,
+//! independence of the input is: Ljung, System Identification, 2nd edition, 1999, section 16.6.)
+
+use super::axes::axes;
+use super::correlation::product;
+use super::data::Data;
+use super::fit::{Motion, residuals};
+use super::locate::depends_on_the_motion;
+
+/// Samples within which it forgets, and up to which it must not remember again.
+const FORGETS: usize = 6;
+const NEVER_AGAIN: usize = 60;
+
+/// Correlation that is forgotten.
+const FORGOTTEN: f64 = 0.12;
+
+/// Correlation with the input, some samples earlier or at once, that is none.
+const UNRELATED: f64 = 0.15;
+
+/// Share of its power by which the means over parts of an axis may differ.
+const SAME_MEAN: f64 = 0.1;
+
+/// Parts of an axis.
+const PARTS: usize = 20;
+
+/// Whether the residual of every output is noise, with a memory of some samples at most.
+pub(super) fn is_noise_with_memory(data: &Data, motion: &Motion, velocity_unit: &str) -> bool {
+    let runs = data.runs();
+    let residuals = residuals(data, motion);
+    let input = centred(&data.input, &runs);
+    let forgets = |residual: &Vec<f64>| {
+        let power = product(residual, residual, &runs, 0);
+        let remembers = |lag: usize| product(residual, residual, &runs, lag) / power;
+        (FORGETS..=NEVER_AGAIN).all(|lag| remembers(lag).abs() < FORGOTTEN)
+    };
+    let follows = |residual: &Vec<f64>| {
+        let powers = product(residual, residual, &runs, 0) * product(&input, &input, &runs, 0);
+        let with = |lag: usize| product(&input, residual, &runs, lag) / powers.sqrt();
+        (0..=FORGETS).any(|lag| with(lag).abs() > UNRELATED)
+    };
+    let axes = axes(data, motion, velocity_unit);
+    let means_differ = |residual: &Vec<f64>| {
+        axes.iter().any(|axis| {
+            let parts = axis.parts(0..data.len(), PARTS);
+            parts.is_some_and(|parts| {
+                let power =
+                    |places: &[usize]| places.iter().map(|i| residual[*i].powi(2)).sum::<f64>();
+                let sum = |places: &[usize]| places.iter().map(|i| residual[*i]).sum::<f64>();
+                let of_means: f64 = (0..parts.len())
+                    .map(|k| parts.between(k, k + 1))
+                    .map(|places| sum(places).powi(2) / places.len().max(1) as f64)
+                    .sum();
+                of_means > SAME_MEAN * power(&parts.order)
+            })
+        })
+    };
+    data.used() == data.len()
+        && residuals
+            .iter()
+            .all(|r| forgets(r) && !follows(r) && !means_differ(r))
+        && !depends_on_the_motion(data, motion, velocity_unit)
+}
+
+/// The values without their mean over the runs.
+fn centred(values: &[f64], runs: &[(usize, usize)]) -> Vec<f64> {
+    let used = || runs.iter().flat_map(|(from, to)| &values[*from..*to]);
+    let mean = used().sum::<f64>() / used().count().max(1) as f64;
+    values.iter().map(|v| v - mean).collect()
+}
