@@ -20,22 +20,35 @@ const FINER_STEPS: i32 = 3;
 const PROMISING: f64 = 0.997;
 const BLURRED: f64 = 2.0;
 
-/// Natural frequencies that are followed.
+/// Dry friction of a load as heavy as the body, in units of the typical input, that is tried on the best.
+const DRY_FRICTION: [f64; 4] = [0.03, 0.1, 0.3, 0.7];
+
+/// Loads that are followed.
 const BEST: usize = 3;
 
-/// Share of the unexplained force that a load with this natural frequency would leave beside an input that runs on by the
-/// `changes` of its samples, and the effect's values: below the resonance, the load shows in little more than such a shift
-/// of phase.
-fn trial(probe: &Probe, changes: &[f64], omega: f64, damping: f64) -> Option<(f64, f64, Vec<f64>)> {
+/// A load that is tried.
+#[derive(Clone, Copy)]
+struct Guess {
+    /// Its natural frequency, rad/s.
+    omega: f64,
+    /// Damping of the joint over inertia times natural frequency.
+    damping: f64,
+    /// Dry friction in units of the typical input, for a load as heavy as the body.
+    dry: f64,
+}
+
+/// Share of the unexplained force that a load would leave beside an input that runs on by the `changes` of its samples, and
+/// the effect's values: below the resonance, the load shows in little more than such a shift of phase.
+fn trial(probe: &Probe, changes: &[f64], guess: Guess) -> Option<(f64, Guess, Vec<f64>)> {
     let inertia = probe.scales.inertia.abs();
     let load = Load {
         inertia,
         viscous: 0.0,
-        dry_friction: 0.0,
+        dry_friction: guess.dry * probe.scales.force,
         coupling: Coupling {
             half_gap: 0.0,
-            stiffness: inertia * omega * omega,
-            damping: damping * inertia * omega,
+            stiffness: inertia * guess.omega * guess.omega,
+            damping: guess.damping * inertia * guess.omega,
         },
     };
     let torque = probe.load_torque(&load);
@@ -45,12 +58,18 @@ fn trial(probe: &Probe, changes: &[f64], omega: f64, damping: f64) -> Option<(f6
     let scale = -fit.coefficients[0];
     (scale > 0.0).then(|| {
         let c = load.coupling;
-        let values = vec![scale * c.stiffness, scale * c.damping, scale * inertia, 0.0];
-        (fit.left, omega, values)
+        let values = vec![
+            scale * c.stiffness,
+            scale * c.damping,
+            scale * inertia,
+            0.0,
+            scale * load.dry_friction,
+        ];
+        (fit.left, guess, values)
     })
 }
 
-fn best(mut trials: Vec<(f64, f64, Vec<f64>)>) -> Vec<(f64, f64, Vec<f64>)> {
+fn best(mut trials: Vec<(f64, Guess, Vec<f64>)>) -> Vec<(f64, Guess, Vec<f64>)> {
     trials.sort_by(|a, b| a.0.total_cmp(&b.0));
     trials.truncate(BEST);
     trials
@@ -70,7 +89,7 @@ impl Effect for JointCompliance {
     }
 
     fn equation(&self) -> &'static str {
-        "J2 dv2/dt = K (x1 - x2) + D (v1 - v2) - d2 v2, and the opposite torque on the motor"
+        "J2 dv2/dt = K (x1 - x2) + D (v1 - v2) - d2 v2 - c2 sgn(v2), and the opposite torque on the motor"
     }
 
     fn source(&self) -> &'static str {
@@ -107,37 +126,52 @@ impl Effect for JointCompliance {
                 dimension: Dimension::ViscousFriction,
                 range: Range::NonNegative,
             },
+            ParameterSpec {
+                symbol: "c2",
+                label: "load friction level",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
         ]
     }
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         let stretch = &probe.stretch();
         let changes = &stretch.input_changes();
-        let tried = |guesses: Vec<(f64, f64)>| {
-            let trial = |i: usize| trial(stretch, changes, guesses[i].0, guesses[i].1);
+        let tried = |guesses: Vec<Guess>| -> Vec<_> {
+            let trial = |i: usize| trial(stretch, changes, guesses[i]);
             let trials = stretch.crew.gather(guesses.len(), trial);
-            best(trials.into_iter().flatten().collect())
+            trials.into_iter().flatten().collect()
+        };
+        let smooth = |omega: f64, damping: f64| Guess {
+            omega,
+            damping,
+            dry: 0.0,
         };
         let frequencies = stretch.load_frequencies().into_iter();
-        let coarse = tried(frequencies.map(|omega| (omega, DAMPING_RATIO)).collect());
+        let coarse = frequencies.map(|omega| smooth(omega, DAMPING_RATIO));
+        let coarse = best(tried(coarse.collect()));
         let finer = coarse
             .iter()
             .filter(|(left, ..)| *left < PROMISING.min(BLURRED * share))
-            .flat_map(|(_, omega, _)| {
-                (-FINER_STEPS..=FINER_STEPS).map(move |k| omega * FINER.powi(k))
+            .flat_map(|(_, guess, _)| {
+                (-FINER_STEPS..=FINER_STEPS).map(|k| guess.omega * FINER.powi(k))
             })
-            .flat_map(|omega| FINER_DAMPING.map(|damping| (omega, damping)));
-        let found = tried(finer.collect())
-            .into_iter()
-            .filter(|t| Probe::may_be(t.0));
-        found.map(|t| t.2).collect()
+            .flat_map(|omega| FINER_DAMPING.map(|damping| smooth(omega, damping)));
+        let finer = best(tried(finer.collect()));
+        let rubbing = finer
+            .iter()
+            .flat_map(|(_, guess, _)| DRY_FRICTION.map(|dry| Guess { dry, ..*guess }));
+        let rubbing = tried(rubbing.collect());
+        let found = best([finer, rubbing].concat()).into_iter();
+        found.filter(|t| Probe::may_be(t.0)).map(|t| t.2).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
         model.load = Some(Load {
             inertia: values[2],
             viscous: values[3],
-            dry_friction: 0.0,
+            dry_friction: values[4],
             coupling: Coupling {
                 half_gap: 0.0,
                 stiffness: values[0],
