@@ -20,11 +20,16 @@ const FINER_STEPS: i32 = 3;
 const PROMISING: f64 = 0.997;
 const BLURRED: f64 = 2.0;
 
-/// Dry friction of a load as heavy as the body, in units of the typical input, that is tried on the best.
-const DRY_FRICTION: [f64; 4] = [0.03, 0.1, 0.3, 0.7];
+/// Dry friction of a load as heavy as the body, in units of the typical input, that is tried on the best; and one that
+/// holds it now and then, which is tried at all frequencies.
+const DRY_FRICTION: [f64; 5] = [0.03, 0.1, 0.3, 1.0, 3.0];
+const HOLDING: f64 = 1.0;
 
 /// Loads that are followed.
 const BEST: usize = 3;
+
+/// Share of the unexplained force that the best may leave for it not to be looked for where the body moves only.
+const WELL_SEEN: f64 = 0.2;
 
 /// A load that is tried.
 #[derive(Clone, Copy)]
@@ -73,6 +78,48 @@ fn best(mut trials: Vec<(f64, Guess, Vec<f64>)>) -> Vec<(f64, Guess, Vec<f64>)> 
     trials.sort_by(|a, b| a.0.total_cmp(&b.0));
     trials.truncate(BEST);
     trials
+}
+
+/// The best loads on this stretch of a record where one may leave less than this share of the unexplained force.
+fn loads(stretch: &Probe, share: f64) -> Vec<(f64, Guess, Vec<f64>)> {
+    let changes = &stretch.input_changes();
+    let tried = |guesses: Vec<Guess>| -> Vec<_> {
+        let trial = |i: usize| trial(stretch, changes, guesses[i]);
+        let trials = stretch.crew.gather(guesses.len(), trial);
+        trials.into_iter().flatten().collect()
+    };
+    let frequencies = stretch.load_frequencies();
+    let coarse = |dry: f64| {
+        let guess = |omega: &f64| Guess {
+            omega: *omega,
+            damping: DAMPING_RATIO,
+            dry,
+        };
+        best(tried(frequencies.iter().map(guess).collect()))
+    };
+    let mut found = coarse(0.0);
+    if found.first().is_none_or(|f| f.0 > WELL_SEEN) {
+        found = best([found, coarse(HOLDING)].concat());
+    }
+    let near = |guess: Guess| {
+        let finer = (-FINER_STEPS..=FINER_STEPS).map(move |k| guess.omega * FINER.powi(k));
+        finer.flat_map(move |omega| {
+            FINER_DAMPING.map(|damping| Guess {
+                omega,
+                damping,
+                ..guess
+            })
+        })
+    };
+    let promising = found
+        .iter()
+        .filter(|(left, ..)| *left < PROMISING.min(BLURRED * share));
+    let finer = best(tried(promising.flat_map(|f| near(f.1)).collect()));
+    let rubbing = finer
+        .iter()
+        .flat_map(|(_, guess, _)| DRY_FRICTION.map(|dry| Guess { dry, ..*guess }));
+    let rubbing = tried(rubbing.collect());
+    best([finer, rubbing].concat())
 }
 
 impl Effect for JointCompliance {
@@ -136,35 +183,13 @@ impl Effect for JointCompliance {
     }
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
-        let stretch = &probe.stretch();
-        let changes = &stretch.input_changes();
-        let tried = |guesses: Vec<Guess>| -> Vec<_> {
-            let trial = |i: usize| trial(stretch, changes, guesses[i]);
-            let trials = stretch.crew.gather(guesses.len(), trial);
-            trials.into_iter().flatten().collect()
-        };
-        let smooth = |omega: f64, damping: f64| Guess {
-            omega,
-            damping,
-            dry: 0.0,
-        };
-        let frequencies = stretch.load_frequencies().into_iter();
-        let coarse = frequencies.map(|omega| smooth(omega, DAMPING_RATIO));
-        let coarse = best(tried(coarse.collect()));
-        let finer = coarse
-            .iter()
-            .filter(|(left, ..)| *left < PROMISING.min(BLURRED * share))
-            .flat_map(|(_, guess, _)| {
-                (-FINER_STEPS..=FINER_STEPS).map(|k| guess.omega * FINER.powi(k))
-            })
-            .flat_map(|omega| FINER_DAMPING.map(|damping| smooth(omega, damping)));
-        let finer = best(tried(finer.collect()));
-        let rubbing = finer
-            .iter()
-            .flat_map(|(_, guess, _)| DRY_FRICTION.map(|dry| Guess { dry, ..*guess }));
-        let rubbing = tried(rubbing.collect());
-        let found = best([finer, rubbing].concat()).into_iter();
-        found.filter(|t| Probe::may_be(t.0)).map(|t| t.2).collect()
+        let found = loads(&probe.stretch(), share);
+        let left = found.first().map_or(1.0, |f| f.0);
+        let moving = probe.moving().filter(|_| left > WELL_SEEN);
+        let moving = moving.and_then(|moving| loads(&moving.stretch(), 1.0).into_iter().next());
+        let found = found.into_iter().filter(|t| Probe::may_be(t.0));
+        // Beside the noise of short stretches, little may be seen of a load that decides when the body lets go.
+        found.chain(moving).map(|t| t.2).collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -39,6 +39,12 @@ const LOAD_FREQUENCIES: u32 = 110;
 /// Share of the typical speed below which a velocity has no sign.
 const STILL: f64 = 0.01;
 
+/// Share of it above which a body moves; samples of a stretch in which it does, at least; and one part in how many that
+/// these must be of all.
+const MOVING: f64 = 0.1;
+const LEAST_MOVING: usize = 20;
+const MOSTLY_STILL: usize = 5;
+
 /// Smallest friction level to start from, as a share of the typical force.
 const LEAST_FRICTION: f64 = 0.01;
 
@@ -77,6 +83,8 @@ pub struct Probe {
     base_left: f64,
     inverse_inertia: f64,
     gap: Option<SeenGap>,
+    /// Dry friction of any level is explained beside the base forces.
+    rubs: bool,
     /// Who tries forces.
     pub crew: Crew,
 }
@@ -214,33 +222,91 @@ impl Probe {
             base_left: f64::NAN,
             inverse_inertia: 1.0 / inertia,
             gap: input.gap,
+            rubs: false,
             crew: input.crew.clone(),
         };
-        let mut lengths: Vec<usize> = probe.spans.iter().map(|(a, b)| b - a).collect();
+        probe.look(|_, (from, to)| {
+            let errors = input.outputs.iter();
+            errors
+                .flat_map(|o| o.error[from..to].iter().map(|e| e / o.noise))
+                .collect()
+        });
+        probe
+    }
+
+    /// Takes what is to be explained in each window from `errors`, one output after the other, in noise units.
+    fn look(&mut self, errors: impl Fn(&Self, (usize, usize)) -> Vec<f64>) {
+        let mut lengths: Vec<usize> = self.spans.iter().map(|(a, b)| b - a).collect();
         lengths.sort_unstable();
         lengths.dedup();
-        probe.states = lengths.iter().map(|l| probe.state_answers(*l)).collect();
-        let v = &probe.velocity;
+        self.states = lengths.iter().map(|l| self.state_answers(*l)).collect();
+        let v = &self.velocity;
         let drag: Vec<f64> = v.windows(2).map(|w| -0.5 * (w[0] + w[1])).collect();
-        let ones = vec![1.0; n];
-        (probe.target, probe.base) = probe
+        let ones = vec![1.0; v.len()];
+        (self.target, self.base) = self
             .spans
             .iter()
-            .map(|&(from, to)| {
-                let mut target: Vec<f64> = input
-                    .outputs
-                    .iter()
-                    .flat_map(|o| o.error[from..to].iter().map(|e| e / o.noise))
-                    .collect();
-                probe.without_states(&mut target, to - from);
-                let base = [input.acting, &drag, &ones].map(|f| probe.answer((from, to), |k| f[k]));
-                (target, base)
+            .map(|&span| {
+                let mut target = errors(self, span);
+                self.without_states(&mut target, span.1 - span.0);
+                let forces = [&self.acting, &drag, &ones];
+                (target, forces.map(|f| self.answer(span, |k| f[k])))
             })
             .unzip();
-        let windows = probe.target.iter().zip(&probe.base);
-        probe.known = windows.map(|(t, b)| Known::new(t, b)).collect();
-        probe.base_left = probe.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
-        probe
+        let windows = self.target.iter().zip(&self.base);
+        self.known = windows.map(|(t, b)| Known::new(t, b)).collect();
+        self.base_left = self.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
+    }
+
+    /// The same on the stretches where the body moves, with dry friction of any level explained beside the base forces.
+    /// While it sticks, friction takes up whatever else acts, and where a model lets go a little too early or too late,
+    /// what it leaves tells of little else. `None` where it moves all the time, or hardly ever.
+    pub fn moving(&self) -> Option<Self> {
+        let fast = MOVING * self.scales.speed;
+        let still: Vec<usize> = (0..self.velocity.len())
+            .filter(|k| self.velocity[*k].abs() < fast)
+            .collect();
+        let mut spans = Vec::new();
+        for (from, to) in &self.spans {
+            let first = still.partition_point(|k| k < from);
+            let last = still.partition_point(|k| k < to);
+            let ends = still[first..last].iter().copied().chain([*to]);
+            let mut begin = *from;
+            for end in ends {
+                if end >= begin + LEAST_MOVING {
+                    spans.push((begin, end));
+                }
+                begin = end + 1;
+            }
+        }
+        let moves: usize = spans.iter().map(|(from, to)| to - from).sum();
+        let all: usize = self.spans.iter().map(|(from, to)| to - from).sum();
+        if spans.is_empty() || moves == all || moves < all / MOSTLY_STILL {
+            return None;
+        }
+        let mut probe = Self {
+            spans,
+            rubs: true,
+            ..self.clone()
+        };
+        probe.look(|probe, span| probe.bends(span));
+        Some(probe)
+    }
+
+    /// What was measured in a window less what the acting input would do, one output after the other, in noise units.
+    fn bends(&self, (from, to): (usize, usize)) -> Vec<f64> {
+        let input = |k: usize| self.acting.get(k).copied().unwrap_or(0.0);
+        let said = self.answer((from, to), |k| self.inverse_inertia * input(k));
+        let outputs = self.outputs.iter().flat_map(|(is_velocity, weight)| {
+            let values = if *is_velocity {
+                &self.velocity
+            } else {
+                &self.position
+            };
+            let measured = values[from..to].iter();
+            measured.map(move |value| weight * (value - values[from]))
+        });
+        outputs.zip(said).map(|(seen, said)| seen - said).collect()
     }
 
     /// Orthonormal answers to a starting position and velocity over a window of `length` samples.
@@ -361,7 +427,8 @@ impl Probe {
     ) -> Option<Regression> {
         let (solution, left) = self.solve(forces, stride)?;
         let b = self.inverse_inertia + solution[0];
-        let coefficients: Vec<f64> = solution.iter().skip(BASE).map(|c| c / b).collect();
+        let own = solution.iter().skip(BASE).take(forces.len());
+        let coefficients: Vec<f64> = own.map(|c| c / b).collect();
         (b * self.inverse_inertia > 0.0 && coefficients.iter().all(|c| c.is_finite())).then(|| {
             Regression {
                 coefficients,
@@ -376,16 +443,16 @@ impl Probe {
         forces: &[Box<dyn Fn(usize) -> f64 + '_>],
         stride: usize,
     ) -> Option<(DVector<f64>, f64)> {
-        let p = BASE + forces.len();
+        let friction = |k: usize| self.velocity[k].signum();
+        let p = BASE + forces.len() + usize::from(self.rubs);
         let mut normal = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         let (mut power, mut count) = (0.0, 0);
         for index in (0..self.spans.len()).step_by(stride) {
             let (target, base, known) = (&self.target[index], &self.base[index], self.known[index]);
-            let own: Vec<Vec<f64>> = forces
-                .iter()
-                .map(|f| self.answer(self.spans[index], f))
-                .collect();
+            let span = self.spans[index];
+            let mut own: Vec<Vec<f64>> = forces.iter().map(|f| self.answer(span, f)).collect();
+            own.extend(self.rubs.then(|| self.answer(span, friction)));
             let columns: Vec<&[f64]> = base.iter().chain(&own).map(Vec::as_slice).collect();
             for a in 0..p {
                 for b in 0..=a {
