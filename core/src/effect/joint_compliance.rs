@@ -182,6 +182,12 @@ impl Effect for JointCompliance {
         ]
     }
 
+    /// On a joint too stiff to be seen, the load is a part of the body; a load that its friction holds makes of the joint a
+    /// spring to the ground.
+    fn marks(&self) -> &'static [&'static str] {
+        &["K", "J2"]
+    }
+
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         let found = loads(&probe.stretch(), share);
         let left = found.first().map_or(1.0, |f| f.0);

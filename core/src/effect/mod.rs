@@ -51,6 +51,11 @@ pub trait Effect: Sync {
     /// Values from which a fit may start, most likely first; several where the error has several valleys. The effect is
     /// only asked for if it leaves less than this `share` of the squared error: what takes long to search for need not be.
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>>;
+    /// Symbols of the parameters that make it what it is: where data do not tell their sizes, they show something else.
+    fn marks(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// The same for a drive without viscous friction, where that of a model without this effect may have taken its
     /// place.
     fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {

@@ -8,11 +8,14 @@ use crate::criticism::data::Data;
 use crate::criticism::window_sums::{
     BODY_STATES, STATES, WindowSums, changed, inverse, kept_within, reduced, state,
 };
-use crate::effect::Scales;
+use crate::effect::{Effect, Scales};
 use crate::model::Start;
 
 /// Step for differences with respect to where a load is, in its standard deviations.
 const LOAD_DIFFERENCE: f64 = 0.1;
+
+/// Size of a parameter in its standard errors from which data tell it.
+const MARKED: f64 = 2.0;
 
 impl Fit {
     /// The most by which a step may lower the squared residuals, as far as they are linear: twice the
@@ -219,6 +222,19 @@ impl Fit {
                 fixed[j] = Some(values[j] - self.values[j]);
             }
         }
+    }
+
+    /// Whether what makes an effect in the model what it is could be seen beside the noise.
+    pub fn shows_marks_of(&self, effect: &dyn Effect) -> bool {
+        let marks = effect.marks();
+        let mut effects = self.structure.effects.iter();
+        let place = effects.position(|e| e.id() == effect.id());
+        let Some(place) = place.filter(|_| !marks.is_empty()) else {
+            return true;
+        };
+        let errors = self.standard_errors(1.0);
+        let mut values = self.structure.range(place).zip(effect.parameters());
+        values.all(|(j, p)| !marks.contains(&p.symbol) || self.values[j] > MARKED * errors[j])
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance; 0 for fixed ones.
