@@ -63,7 +63,8 @@ impl StepJob {
         own
     }
 
-    /// Effects without which the held-back error does not rise: of the user's model, and others.
+    /// Effects without which the held-back error does not rise, or that do not show their marks: of the user's model, and
+    /// others.
     pub(super) fn idle(&self, model: &Scored) -> (Vec<EffectId>, Vec<EffectId>) {
         // Where nothing but noise is left, and more without an effect, it is needed wherever it acts.
         let explains = |without: &Score| {
@@ -75,7 +76,7 @@ impl StepJob {
         self.wanted
             .iter()
             .zip(&self.without)
-            .filter(|(_, without)| idle(&without.score))
+            .filter(|(e, without)| idle(&without.score) || !model.fit.shows_marks_of(**e))
             .map(|(e, _)| e.id())
             .partition(|id| self.session.knowledge.has(*id))
     }
