@@ -130,6 +130,32 @@ fn hidden_effects_are_found_and_nothing_else() {
     }
 }
 
+/// Cases of other seeds, each of which a change of the method was made for.
+#[test]
+fn what_was_once_wrong_stays_right() {
+    let once_wrong = [
+        (7, "stribeck"),
+        (404, "curvature and dead time"),
+        (505, "clean process"),
+    ];
+    let chosen: Vec<(u64, Case)> = once_wrong
+        .iter()
+        .flat_map(|(seed, name)| {
+            let named = cases(*seed)
+                .into_iter()
+                .filter(|(_, c)| c.name.contains(name));
+            named.collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(chosen.len() >= once_wrong.len() || std::env::var("HYSTERON_BENCH_ONLY").is_ok());
+    let outcomes = run(&chosen);
+    assert!(
+        outcomes.iter().all(|o| o.right),
+        "{}",
+        report("once wrong", &outcomes)
+    );
+}
+
 #[test]
 fn clean_records_raise_no_alarm() {
     let count = if is_full() { CLEAN } else { CLEAN_QUICK };

@@ -6,7 +6,7 @@ mod support;
 use std::f64::consts::TAU;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
-use hysteron_core::rig::{DriveRig, Excitation, Friction, Recorded, Stranger};
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Recorded, Stranger};
 use support::diagnosis::{classes, finish};
 use support::sparse::thinned;
 
@@ -212,6 +212,67 @@ fn what_a_machine_runs_away_from_is_found() {
         assert_eq!(classes(&d), [["constant_load"]]);
         assert!(d.verdict.complete, "{inertia}: {}", d.verdict.text);
     }
+}
+
+/// What it drives sticks, now and then, and then the motor winds up the shaft alone.
+#[test]
+fn a_load_that_rubs_is_found_behind_its_shaft() {
+    let load = Load {
+        half_gap: 0.0,
+        stiffness: 20.0,
+        damping: 4e-3,
+        inertia: 6e-4,
+        viscous: 2e-3,
+        coulomb: 0.1,
+    };
+    let rig = DriveRig {
+        load: Some(load),
+        recorded: Recorded::Both,
+        ..machine(5e3, 10_000, Excitation::Multisine { amplitude: 0.12 })
+    };
+    let d = diagnose(&rig);
+    assert_eq!(classes(&d), [["joint_compliance"]], "{}", d.verdict.text);
+    let last = d.steps.last().unwrap();
+    assert!(last.error < 1.2, "{}", d.verdict.text);
+    for (symbol, truth) in [
+        ("J1", rig.inertia),
+        ("K", load.stiffness),
+        ("J2", load.inertia),
+        ("c2", load.coulomb),
+    ] {
+        let p = last.parameters.iter().find(|p| p.name == symbol).unwrap();
+        assert!(
+            (p.value / truth - 1.0).abs() < 0.02,
+            "{symbol} = {}",
+            p.value
+        );
+    }
+}
+
+/// Twelve hundred poles go by: a wave that is met nowhere on a coarse grid of frequencies.
+#[test]
+fn cogging_of_a_long_axis_is_found() {
+    let rig = DriveRig {
+        cogging: (0.01, 97.3, 0.4),
+        velocity_noise: 2e-3,
+        recorded: Recorded::Both,
+        ..machine(2e3, 20_000, servo(40.0, 5.0, 40.0))
+    };
+    let d = diagnose(&rig);
+    check(&d, &["cogging"], &[("a", 0.01), ("n", 97.3)]);
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+}
+
+/// The amplifier reaches its limit in one move only.
+#[test]
+fn a_limit_that_is_reached_once_is_found() {
+    let rig = DriveRig {
+        saturation: 0.21,
+        ..machine(500.0, 4000, Excitation::Staircase { top: 0.24 })
+    };
+    let d = diagnose(&rig);
+    check(&d, &["saturation"], &[("M", 0.21)]);
+    assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
 #[test]

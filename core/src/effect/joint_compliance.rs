@@ -182,6 +182,16 @@ impl Effect for JointCompliance {
         ]
     }
 
+    /// A light load that rubs, on a stiff joint, is dry friction of the body.
+    fn limits(&self) -> &'static [EffectId] {
+        const {
+            &[
+                EffectId::new("coulomb_friction"),
+                EffectId::new("presliding_friction"),
+            ]
+        }
+    }
+
     /// On a joint too stiff to be seen, the load is a part of the body; a load that its friction holds makes of the joint a
     /// spring to the ground.
     fn marks(&self) -> &'static [&'static str] {

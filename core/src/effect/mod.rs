@@ -71,6 +71,12 @@ pub trait Effect: Sync {
         &[]
     }
 
+    /// Effects that it comes near to at the ends of the ranges of its values: in the place of one of these that explains the
+    /// data it says no more.
+    fn limits(&self) -> &'static [EffectId] {
+        &[]
+    }
+
     /// Whether it tells how the record was made and not what the machine does: it is fitted and said, but nothing is
     /// missing from the machine.
     fn is_of_record(&self) -> bool {

@@ -204,7 +204,9 @@ impl StepJob {
             .library()
             .filter(|e| {
                 own.is_some_and(|own| {
-                    (!nested(*own, *e) || own.has_part(e.id())) && !too_rich(*own, *e)
+                    (!nested(*own, *e) || own.has_part(e.id()))
+                        && !e.limits().contains(&own.id())
+                        && !too_rich(*own, *e)
                 }) && self
                     .wanted
                     .iter()
