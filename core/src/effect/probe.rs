@@ -8,6 +8,7 @@
 //! regression instead of a fit.
 
 mod bristle;
+mod moving;
 mod spatial;
 mod steps;
 
@@ -38,12 +39,6 @@ const LOAD_FREQUENCIES: u32 = 110;
 
 /// Share of the typical speed below which a velocity has no sign.
 const STILL: f64 = 0.01;
-
-/// Share of it above which a body moves; samples of a stretch in which it does, at least; and one part in how many that
-/// these must be of all.
-const MOVING: f64 = 0.1;
-const LEAST_MOVING: usize = 20;
-const MOSTLY_STILL: usize = 5;
 
 /// Smallest friction level to start from, as a share of the typical force.
 const LEAST_FRICTION: f64 = 0.01;
@@ -256,57 +251,6 @@ impl Probe {
         let windows = self.target.iter().zip(&self.base);
         self.known = windows.map(|(t, b)| Known::new(t, b)).collect();
         self.base_left = self.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
-    }
-
-    /// The same on the stretches where the body moves, with dry friction of any level explained beside the base forces.
-    /// While it sticks, friction takes up whatever else acts, and where a model lets go a little too early or too late,
-    /// what it leaves tells of little else. `None` where it moves all the time, or hardly ever.
-    pub fn moving(&self) -> Option<Self> {
-        let fast = MOVING * self.scales.speed;
-        let still: Vec<usize> = (0..self.velocity.len())
-            .filter(|k| self.velocity[*k].abs() < fast)
-            .collect();
-        let mut spans = Vec::new();
-        for (from, to) in &self.spans {
-            let first = still.partition_point(|k| k < from);
-            let last = still.partition_point(|k| k < to);
-            let ends = still[first..last].iter().copied().chain([*to]);
-            let mut begin = *from;
-            for end in ends {
-                if end >= begin + LEAST_MOVING {
-                    spans.push((begin, end));
-                }
-                begin = end + 1;
-            }
-        }
-        let moves: usize = spans.iter().map(|(from, to)| to - from).sum();
-        let all: usize = self.spans.iter().map(|(from, to)| to - from).sum();
-        if spans.is_empty() || moves == all || moves < all / MOSTLY_STILL {
-            return None;
-        }
-        let mut probe = Self {
-            spans,
-            rubs: true,
-            ..self.clone()
-        };
-        probe.look(|probe, span| probe.bends(span));
-        Some(probe)
-    }
-
-    /// What was measured in a window less what the acting input would do, one output after the other, in noise units.
-    fn bends(&self, (from, to): (usize, usize)) -> Vec<f64> {
-        let input = |k: usize| self.acting.get(k).copied().unwrap_or(0.0);
-        let said = self.answer((from, to), |k| self.inverse_inertia * input(k));
-        let outputs = self.outputs.iter().flat_map(|(is_velocity, weight)| {
-            let values = if *is_velocity {
-                &self.velocity
-            } else {
-                &self.position
-            };
-            let measured = values[from..to].iter();
-            measured.map(move |value| weight * (value - values[from]))
-        });
-        outputs.zip(said).map(|(seen, said)| seen - said).collect()
     }
 
     /// Orthonormal answers to a starting position and velocity over a window of `length` samples.
