@@ -4,8 +4,10 @@
 mod support;
 
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Recorded, Stranger};
 use support::diagnosis::{classes, finish};
 use support::sparse::thinned;
@@ -263,15 +265,33 @@ fn cogging_of_a_long_axis_is_found() {
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
-/// The amplifier reaches its limit in one move only.
+/// A body of `drive` far off what a controller wants of it: only on its way there does the amplifier reach its `limit`, N m.
+fn starting_far_off(drive: &DriveRig, limit: f64, samples: usize) -> Measurement {
+    const SUBSTEPS: usize = 50;
+    let step = drive.sampling / SUBSTEPS as f64;
+    let (stiffness, damping) = (16.0 * drive.inertia, 6.0 * drive.inertia);
+    let (mut x, mut v) = (6.5, 0.0);
+    let mut csv = "t [s],u [N m],x1 [rad]\n".to_owned();
+    for k in 0..samples {
+        let time = k as f64 * drive.sampling;
+        let counted = (x / drive.encoder).round() * drive.encoder;
+        let command = stiffness * (2.0 * (3.0 * time).sin() - counted) - damping * v;
+        writeln!(csv, "{time},{command},{counted}").unwrap();
+        for _ in 0..SUBSTEPS {
+            v += step * (command.clamp(-limit, limit) - drive.viscous * v) / drive.inertia;
+            x += step * v;
+        }
+    }
+    import_csv("far", csv.as_bytes(), None).unwrap()
+}
+
 #[test]
 fn a_limit_that_is_reached_once_is_found() {
-    let rig = DriveRig {
-        saturation: 0.21,
-        ..machine(500.0, 4000, Excitation::Staircase { top: 0.24 })
-    };
-    let d = diagnose(&rig);
-    check(&d, &["saturation"], &[("M", 0.21)]);
+    let rig = machine(100.0, 0, Excitation::Staircase { top: 0.0 });
+    let limit = 0.04;
+    let record = starting_far_off(&rig, limit, 6000);
+    let d = finish(DiagnosisJob::new(&record).unwrap());
+    check(&d, &["saturation"], &[("M", limit)]);
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 

@@ -255,8 +255,9 @@ impl DiagnosisJob {
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended && !self.falls_short(&session, &model) => {
-                let round = self.left_in_a_round(&session, &model);
-                self.barred.extend(round);
+                if let Some(round) = self.left_in_a_round(&session, &model) {
+                    self.bar(round);
+                }
                 self.go_on(session, model);
             }
             (verdict, _) => {
@@ -271,6 +272,13 @@ impl DiagnosisJob {
         Progress::Running {
             fraction: 1.0 - libm::pow(0.5_f64, self.diagnosis.steps.len() as f64),
             text: "Next".to_owned(),
+        }
+    }
+
+    /// Tries this effect no more.
+    fn bar(&mut self, effect: EffectId) {
+        if !self.barred.contains(&effect) {
+            self.barred.push(effect);
         }
     }
 
@@ -336,7 +344,7 @@ impl DiagnosisJob {
             let Some((effect, without)) = best.imitation.filter(|_| more) else {
                 return Some(self.diagnosis.clone());
             };
-            self.barred.push(effect);
+            self.bar(effect);
             self.detours.clear();
             self.bold = false;
             without

@@ -159,16 +159,24 @@ pub(super) fn outweighs(before: f64, after: f64) -> bool {
 
 /// Whether what is left looks like noise in itself.
 pub(super) fn is_plain_noise(score: &Score) -> bool {
-    let fitted = score.error_fit < FITTED_NOISE_ERROR;
     let uncorrelated = score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION;
-    score.error < SURE_NOISE_ERROR || (fitted && (score.within_counts || uncorrelated))
+    score.error_fit < FITTED_NOISE_ERROR
+        && (score.error < SURE_NOISE_ERROR || score.within_counts || uncorrelated)
 }
 
 /// Whether what is left is noise, against what the baseline left at first.
 pub(super) fn is_noise(score: &Score, first: &Score) -> bool {
     is_plain_noise(score)
-        || (score.error < SMALL_ERROR && is_trifle(score.error, first))
-        || is_noise_but_for_stretches(score, first)
+        || (!is_unseen_by_the_judge(score, first)
+            && ((score.error < SMALL_ERROR && is_trifle(score.error, first))
+                || is_noise_but_for_stretches(score, first)))
+}
+
+/// Whether the fitted part is left with more than noise, and more than odd stretches of what was there at `first`: what
+/// acts once may miss the held-back part altogether.
+fn is_unseen_by_the_judge(score: &Score, first: &Score) -> bool {
+    let beyond = (score.error_fit.powi(2) - 1.0).max(0.0).sqrt();
+    score.error_fit >= FITTED_NOISE_ERROR && beyond > STRETCH_SHARE * first.error_fit
 }
 
 /// Whether what is left beyond the noise is a trifle of what there was at `first`, though it may be many times
@@ -246,6 +254,9 @@ mod tests {
     #[test]
     fn what_the_held_back_part_happens_to_miss_is_no_noise() {
         assert!(is_plain_noise(&noise(1.09, 1.1)));
-        assert!(!is_plain_noise(&noise(1.09, 1.5)));
+        for error in [1.0, 1.09] {
+            assert!(!is_plain_noise(&noise(error, 1.5)));
+            assert!(!is_noise(&noise(error, 50.0), &noise(error, 52.0)));
+        }
     }
 }

@@ -19,7 +19,7 @@ use crate::measurement::Kind;
 /// Iterations of the baseline before its error is looked at.
 const ITERATIONS: usize = 3;
 
-/// Share of what is left beyond the noise from which a window is cut into so many, and how often.
+/// Share of what is left beyond the noise from which a window is cut into so many at most, and how often.
 const LONE: f64 = 0.6;
 const PIECES: usize = 8;
 const CUTS: usize = 2;
@@ -46,10 +46,10 @@ pub(super) fn hold_back(
     structure.begin(&mut values, 0);
     let mut fit = fitted(data, &structure, &values, scales);
     for _ in 0..CUTS {
-        let Some(window) = lone(data, &fit) else {
+        let Some((window, pieces)) = lone(data, &fit) else {
             break;
         };
-        data.cut_finer(window, PIECES);
+        data.cut_finer(window, pieces);
         fit = fitted(data, &structure, &values, scales);
     }
     let cost = |k: usize| {
@@ -83,9 +83,9 @@ fn fitted(data: &mut Data, structure: &Structure, values: &[f64], scales: &Scale
     fit
 }
 
-/// The window that holds most of what is left beyond the noise, if one does and can be cut: what acts once only, as a
-/// limit of the input while a machine starts, would be seen by the fit or by the judge alone.
-fn lone(data: &Data, fit: &Fit) -> Option<usize> {
+/// The window that holds most of what is left beyond the noise, and into how many it can be cut, if one does and can be:
+/// what acts once only, as a limit of the input while a machine starts, would be seen by the fit or by the judge alone.
+fn lone(data: &Data, fit: &Fit) -> Option<(usize, usize)> {
     let outputs = data.outputs.len() as f64;
     let beyond = data.blocks.iter().map(|b| {
         let noise = NOISY * outputs * (b.to - b.from) as f64;
@@ -95,7 +95,8 @@ fn lone(data: &Data, fit: &Fit) -> Option<usize> {
     let worst = (0..beyond.len()).max_by(|a, b| beyond[*a].total_cmp(&beyond[*b]))?;
     let block = &data.blocks[worst];
     let most = beyond[worst] > LONE * beyond.iter().sum::<f64>();
-    (most && block.to - block.from >= PIECES * MIN_WINDOW).then_some(block.window)
+    let pieces = PIECES.min((block.to - block.from) / MIN_WINDOW);
+    (most && pieces > 1).then_some((block.window, pieces))
 }
 
 /// One of every two ranks, in the order of Thue and Morse, which never repeats itself.
