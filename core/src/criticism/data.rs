@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::CriticismError;
 use super::cut::{self, Block, MIN_WINDOW};
+use super::fit::Motion;
 use super::glitches::mend;
 use super::noise::{Noise, noise};
 use super::window::drive_window;
@@ -226,6 +227,15 @@ impl Data {
     /// Whether so many were needed that more would not explain it.
     pub fn tried_enough(&self) -> bool {
         self.moves.load(Ordering::Relaxed) as f64 > MOST_MOVES * self.used() as f64
+    }
+
+    /// The record as it would be if this motion had been measured, without noise.
+    pub fn saying(&self, motion: &Motion) -> Self {
+        let mut said = self.clone();
+        for output in &mut said.outputs {
+            output.values = motion.of(output.is_velocity).to_vec();
+        }
+        said
     }
 
     /// Samples that are used.

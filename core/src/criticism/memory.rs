@@ -5,7 +5,7 @@
 //! depends on time, on the motion or on the input. (Whiteness is no requirement on a residual for a model to be right,
 //! independence of the input is: Ljung, System Identification, 2nd edition, 1999, section 16.6.)
 
-use super::axes::axes;
+use super::axes::{Axis, axes};
 use super::correlation::product;
 use super::data::Data;
 use super::fit::{Motion, residuals};
@@ -21,48 +21,59 @@ const FORGOTTEN: f64 = 0.12;
 /// Correlation with the input, some samples earlier or at once, that is none.
 const UNRELATED: f64 = 0.15;
 
-/// Share of its power by which the means over parts of an axis may differ.
+/// Share of its power by which the means over parts of an axis may differ, beside so many times what chance leaves.
 const SAME_MEAN: f64 = 0.1;
+const CHANCE: f64 = 1.5;
 
 /// Parts of an axis.
 const PARTS: usize = 20;
 
 /// Whether the residual of every output is noise, with a memory of some samples at most.
 pub(super) fn is_noise_with_memory(data: &Data, motion: &Motion, velocity_unit: &str) -> bool {
+    if data.used() != data.len() {
+        return false;
+    }
     let runs = data.runs();
-    let residuals = residuals(data, motion);
+    // What was measured has the noise in it: at rest, it would sort the residual by its own size.
+    let said = data.saying(motion);
+    let axes = axes(&said, motion, velocity_unit);
     let input = centred(&data.input, &runs);
-    let forgets = |residual: &Vec<f64>| {
+    let is_noise = |residual: &Vec<f64>| {
         let power = product(residual, residual, &runs, 0);
         let remembers = |lag: usize| product(residual, residual, &runs, lag) / power;
-        (FORGETS..=NEVER_AGAIN).all(|lag| remembers(lag).abs() < FORGOTTEN)
-    };
-    let follows = |residual: &Vec<f64>| {
-        let powers = product(residual, residual, &runs, 0) * product(&input, &input, &runs, 0);
+        let forgets = || (FORGETS..=NEVER_AGAIN).all(|lag| remembers(lag).abs() < FORGOTTEN);
+        let powers = power * product(&input, &input, &runs, 0);
         let with = |lag: usize| product(&input, residual, &runs, lag) / powers.sqrt();
-        (0..=FORGETS).any(|lag| with(lag).abs() > UNRELATED)
+        let follows = || (0..=FORGETS).any(|lag| with(lag).abs() > UNRELATED);
+        let alike = 1.0 + 2.0 * (1..FORGETS).map(|lag| remembers(lag).max(0.0)).sum::<f64>();
+        let by_chance = PARTS as f64 * alike / data.len() as f64;
+        let most = SAME_MEAN + CHANCE * by_chance;
+        forgets()
+            && !follows()
+            && axes
+                .iter()
+                .all(|axis| power_of_means(axis, residual) < most)
     };
-    let axes = axes(data, motion, velocity_unit);
-    let means_differ = |residual: &Vec<f64>| {
-        axes.iter().any(|axis| {
-            let parts = axis.parts(0..data.len(), PARTS);
-            parts.is_some_and(|parts| {
-                let power =
-                    |places: &[usize]| places.iter().map(|i| residual[*i].powi(2)).sum::<f64>();
-                let sum = |places: &[usize]| places.iter().map(|i| residual[*i]).sum::<f64>();
-                let of_means: f64 = (0..parts.len())
-                    .map(|k| parts.between(k, k + 1))
-                    .map(|places| sum(places).powi(2) / places.len().max(1) as f64)
-                    .sum();
-                of_means > SAME_MEAN * power(&parts.order)
-            })
-        })
-    };
-    data.used() == data.len()
-        && residuals
-            .iter()
-            .all(|r| forgets(r) && !follows(r) && !means_differ(r))
+    residuals(data, motion).iter().all(is_noise)
         && !depends_on_the_motion(data, motion, velocity_unit)
+}
+
+/// Share of the power of a residual that its means over the parts of an axis have.
+fn power_of_means(axis: &Axis, residual: &[f64]) -> f64 {
+    let Some(parts) = axis.parts(0..residual.len(), PARTS) else {
+        return 0.0;
+    };
+    let sum = |places: &[usize]| places.iter().map(|i| residual[*i]).sum::<f64>();
+    let of_means: f64 = (0..parts.len())
+        .map(|k| parts.between(k, k + 1))
+        .map(|places| sum(places).powi(2) / places.len().max(1) as f64)
+        .sum();
+    of_means
+        / parts
+            .order
+            .iter()
+            .map(|i| residual[*i].powi(2))
+            .sum::<f64>()
 }
 
 /// The values without their mean over the runs.
