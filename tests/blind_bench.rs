@@ -137,6 +137,7 @@ fn what_was_once_wrong_stays_right() {
         (7, "stribeck"),
         (404, "curvature and dead time"),
         (505, "clean process"),
+        (808, "cogging and Coulomb"),
     ];
     let chosen: Vec<(u64, Case)> = once_wrong
         .iter()

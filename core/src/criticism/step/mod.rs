@@ -7,7 +7,7 @@ use super::judge::{alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
 use super::search::Search;
-use super::select::{is_plain_noise, is_too_rich};
+use super::select::{fall, is_plain_noise, is_too_rich};
 use super::session::{Rest, Scored, Session};
 use super::verdict::Class;
 use super::{Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport};
@@ -27,6 +27,9 @@ const BETTER: f64 = 0.9999;
 
 /// Error, in noise units, up to which little is left.
 const LITTLE_LEFT: f64 = 3.0;
+
+/// Share of the error that is most of it.
+const MOST: f64 = 0.5;
 
 /// What a step is doing.
 enum Stage {
@@ -512,11 +515,17 @@ impl StepJob {
         }
     }
 
-    /// The model to go on from: with the suggestion, without the first needless effect, or with a part of
-    /// one; and the session.
+    /// The model to go on from: with a suggestion that explains most of what is left, without the first needless effect,
+    /// with another suggestion, or with a part of an effect; and the session.
     pub(super) fn successor(self) -> (Session, Option<Scored>) {
         let next = self.model.as_ref().and_then(|model| {
             let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
+            // What is needed shows only where little is left.
+            if let Some(suggested) = &suggested
+                && fall(&model.score, &suggested.score) > MOST
+            {
+                return Some(suggested.clone());
+            }
             let needless = self.needless(model).into_iter().find(|id| {
                 // The newest may show only together with the next.
                 let newest = self.wanted.last().is_some_and(|w| w.id() == *id);
