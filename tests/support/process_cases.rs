@@ -63,7 +63,19 @@ pub fn process_cases(seed: u64) -> Vec<Case> {
     let mut cases = singles(&mut random);
     cases.extend(pairs(&mut random));
     cases.extend(strangers(&mut random));
+    cases.extend(valve(&mut random));
     cases
+}
+
+/// The valve opens more on one side than on the other.
+fn valve(r: &mut Random) -> Vec<Case> {
+    let b = r.sign() * r.between(0.05, 0.15);
+    let rig = ProcessRig {
+        valve_curvature: b,
+        ..bare(r, STAIRS)
+    };
+    let case = Case::process("curved valve, staircase", vec![curvature(b)], rig);
+    vec![case]
 }
 
 fn singles(r: &mut Random) -> Vec<Case> {

@@ -61,7 +61,7 @@ const LEAST_ERRORS: f64 = 1.5;
 /// Fall of the error that speaks for itself.
 const HUGE_FALL: f64 = 0.5;
 
-/// Whether the last effect of `with` helps `model`, and is itself seen. What only tells how the record was made may be a
+/// Whether the last effect of `with` helps `model` on both parts of the record, and is itself seen. What only tells how the record was made may be a
 /// trifle: it is not said to be missing from the machine.
 pub(super) fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> bool {
     let effects = &with.fit.structure.effects;
@@ -69,6 +69,7 @@ pub(super) fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> boo
         return false;
     };
     helps(&model.score, &with.score)
+        && with.score.fit_cost < model.score.fit_cost
         && (last.is_of_record() || matters(&model.score, &with.score, first))
         && is_seen(model, with, effects.len() - 1)
 }
@@ -104,12 +105,14 @@ pub(super) fn may_hide(model: &Scored, with: &Scored) -> bool {
         || with.score.error_fit < (1.0 - FITTED_FALL) * model.score.error_fit
 }
 
-/// Whether the parameter that tells of the effect at this place of `with` is this many standard errors off 0.
+/// Whether a parameter that tells of the effect at this place of `with` is this many standard errors off 0.
 fn stands_out(model: &Scored, with: &Scored, place: usize, clear: f64) -> bool {
     let errors = with.standard_errors();
     let structure = &with.fit.structure;
-    let j = structure.range(place).start + telling(model, structure.effects[place]);
-    with.fit.values[j].abs() > clear * errors[j]
+    let effect = structure.effects[place];
+    let first = telling(model, effect);
+    let mut own = structure.range(place).skip(first).take(effect.telling());
+    own.any(|j| with.fit.values[j].abs() > clear * errors[j])
 }
 
 /// The place of the parameter that tells whether `effect` is there: its first one; in the place of a part of it in

@@ -51,6 +51,11 @@ pub trait Effect: Sync {
     /// Values from which a fit may start, most likely first; several where the error has several valleys. The effect is
     /// only asked for if it leaves less than this `share` of the squared error: what takes long to search for need not be.
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>>;
+    /// How many of its first parameters tell that it is there, each alone by not being 0.
+    fn telling(&self) -> usize {
+        1
+    }
+
     /// Symbols of the parameters that make it what it is: where data do not tell their sizes, they show something else.
     fn marks(&self) -> &'static [&'static str] {
         &[]

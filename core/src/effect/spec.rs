@@ -45,6 +45,8 @@ pub enum Dimension {
     Rise,
     /// Inverse of the unit of a process output.
     PerOutput,
+    /// Inverse of the unit of the input of a process.
+    PerInput,
     /// A product of powers of force, position, process output and time.
     Compound {
         /// Power of the force, or of the input of a process.
@@ -85,7 +87,7 @@ impl Dimension {
             (Self::Rise, Motion::Rotational) => "N m/s",
             (Self::Rise, Motion::Translational) => "N/s",
             (Self::Compound { .. } | Self::Undetermined, _) => "?",
-            (Self::Ratio | Self::PerOutput, _) | (_, Motion::None) => "1",
+            (Self::Ratio | Self::PerOutput | Self::PerInput, _) | (_, Motion::None) => "1",
         }
     }
 }
@@ -275,6 +277,7 @@ impl Scales {
             }
             Dimension::Rise => self.force / self.duration,
             Dimension::PerOutput => 1.0 / self.speed,
+            Dimension::PerInput => 1.0 / self.force,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Static curvature: the static characteristic is bent.
 //!
-//! Two places can bend: the balance of the process (its time constant then changes with the output)
-//! and the sensor. Both are fitted.
+//! Three places can bend: the balance of the process (its time constant then changes with the output), the sensor and the
+//! valve. All are fitted.
 
 use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
@@ -23,7 +23,7 @@ impl Effect for StaticCurvature {
     }
 
     fn equation(&self) -> &'static str {
-        "T dw/dt = K u - w - q w^2, y = w + p w^2"
+        "T dw/dt = K (u + g u^2) - w - q w^2, y = w + p w^2"
     }
 
     fn source(&self) -> &'static str {
@@ -48,16 +48,37 @@ impl Effect for StaticCurvature {
                 dimension: Dimension::PerOutput,
                 range: Range::Signed,
             },
+            ParameterSpec {
+                symbol: "g",
+                label: "curvature of the valve",
+                dimension: Dimension::PerInput,
+                range: Range::Signed,
+            },
         ]
     }
 
     fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
-        vec![vec![0.0, 0.0]]
+        vec![vec![0.0; 3]]
+    }
+
+    fn telling(&self) -> usize {
+        3
+    }
+
+    /// What bends two levels of an input makes one act more than the other.
+    fn limits(&self) -> &'static [EffectId] {
+        const {
+            &[
+                EffectId::new("gain_asymmetry"),
+                EffectId::new("constant_load"),
+            ]
+        }
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
         // As a force on the body (T/K) w' = u - w/K - (q/K) w^2.
-        let (balance, reading) = (values[0] * model.viscous, values[1]);
+        let (balance, reading, valve) = (values[0] * model.viscous, values[1], values[2]);
+        model.input_maps.push(Box::new(move |u| u + valve * u * u));
         model.forces.push(Box::new(move |_, w| -balance * w * w));
         model
             .output_maps

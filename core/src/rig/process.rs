@@ -101,6 +101,8 @@ pub struct ProcessRig {
     pub saturation: f64,
     /// The output is `y + curvature y^2`, 1/output unit.
     pub curvature: f64,
+    /// The valve passes `u + valve_curvature u^2`, 1/input unit.
+    pub valve_curvature: f64,
     /// Time constant of the sensor, s; 0 for none.
     pub sensor_lag: f64,
     /// Physics that no library of the project knows.
@@ -126,6 +128,7 @@ impl Default for ProcessRig {
             load_ramp: 0.0,
             saturation: f64::INFINITY,
             curvature: 0.0,
+            valve_curvature: 0.0,
             sensor_lag: 0.0,
             stranger: None,
         }
@@ -210,7 +213,8 @@ impl ProcessRig {
     }
 
     fn rates(&self, s: State, u: f64, t: f64) -> State {
-        let mut push = u + self.constant_load + self.load_ramp * t;
+        let valve = u + self.valve_curvature * u * u;
+        let mut push = valve + self.constant_load + self.load_ramp * t;
         let mut gain = self.gain;
         match self.stranger {
             Some(Stranger::Swing { amplitude, period }) => {
