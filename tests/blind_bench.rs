@@ -138,6 +138,7 @@ fn what_was_once_wrong_stays_right() {
         (404, "curvature and dead time"),
         (505, "clean process"),
         (808, "cogging and Coulomb"),
+        (909, "cogging and load"),
     ];
     let chosen: Vec<(u64, Case)> = once_wrong
         .iter()

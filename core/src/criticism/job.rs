@@ -116,6 +116,8 @@ struct Detour {
     /// Whether the model has an effect that did not help clearly by itself; such a way must explain
     /// everything.
     bold: bool,
+    /// Effects that are not tried on it.
+    barred: Vec<EffectId>,
 }
 
 /// Where a way came to.
@@ -354,6 +356,7 @@ impl DiagnosisJob {
             let detour = self.detours.remove(0);
             self.diagnosis.steps = detour.steps;
             self.bold = detour.bold;
+            self.barred = detour.barred;
             detour.model
         };
         self.go_on(session, next);
@@ -367,6 +370,7 @@ impl DiagnosisJob {
             steps: steps.clone(),
             model,
             bold,
+            barred: self.barred.clone(),
         }));
     }
 
