@@ -1,6 +1,6 @@
 //! Long computations as resumable jobs: threads natively, a worker on the web, a loop in tests.
 
-use super::select::{is_trifle, outweighs};
+use super::select::{SMALL_SHARE, is_trifle, outweighs};
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
 use super::{Diagnosis, Limits, Step, StepReport};
@@ -400,7 +400,7 @@ fn only_adds(longer: &Diagnosis, shorter: &Diagnosis) -> bool {
 fn trifling(diagnosis: &Diagnosis, session: &Session) -> bool {
     let last = diagnosis.steps.last().map(|s| s.error);
     last.zip(session.baseline.as_ref())
-        .is_some_and(|(error, first)| is_trifle(error, first))
+        .is_some_and(|(error, first)| is_trifle(error, first, SMALL_SHARE))
 }
 
 /// The report without what is as long as the measurement.

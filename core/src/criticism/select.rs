@@ -51,8 +51,11 @@ const SURE_NOISE_ERROR: f64 = 1.05;
 
 /// A model that explains all but this share of the error that there was, down to this many times the
 /// noise, is complete: no clock, no rig and no equation is right to more digits.
-const SMALL_SHARE: f64 = 2e-3;
+pub(super) const SMALL_SHARE: f64 = 2e-3;
 const SMALL_ERROR: f64 = 3.0;
+
+/// The same share where the input is known at its samples only, and what it did between them was found from the rest.
+pub(super) const SAMPLED_SHARE: f64 = 1e-2;
 
 /// Share of the held-back blocks that may be more than noise, and share of the error there that may be
 /// left, where a model explains all the rest.
@@ -164,12 +167,12 @@ pub(super) fn is_plain_noise(score: &Score) -> bool {
         && (score.error < SURE_NOISE_ERROR || score.within_counts || uncorrelated)
 }
 
-/// Whether what is left is noise, against what the baseline left at first.
-pub(super) fn is_noise(score: &Score, first: &Score) -> bool {
+/// Whether what is left is noise, or a `small` share of what the baseline left at first.
+pub(super) fn is_noise(score: &Score, first: &Score, small: f64) -> bool {
     is_plain_noise(score)
         || (!is_unseen_by_the_judge(score, first)
-            && ((score.error < SMALL_ERROR && is_trifle(score.error, first))
-                || is_noise_but_for_stretches(score, first)))
+            && ((score.error < SMALL_ERROR && is_trifle(score.error, first, small))
+                || is_noise_but_for_stretches(score, first, small)))
 }
 
 /// Whether the fitted part is left with more than noise, and more than odd stretches of what was there at `first`: what
@@ -179,22 +182,22 @@ fn is_unseen_by_the_judge(score: &Score, first: &Score) -> bool {
     score.error_fit >= FITTED_NOISE_ERROR && beyond > STRETCH_SHARE * first.error_fit
 }
 
-/// Whether what is left beyond the noise is a trifle of what there was at `first`, though it may be many times
+/// Whether what is left beyond the noise is a `small` share of what there was at `first`, though it may be many times
 /// the noise: the effects found are the right ones.
-pub(super) fn is_trifle(error: f64, first: &Score) -> bool {
-    (error.powi(2) - 1.0).max(0.0).sqrt() < SMALL_SHARE * first.error
+pub(super) fn is_trifle(error: f64, first: &Score, small: f64) -> bool {
+    (error.powi(2) - 1.0).max(0.0).sqrt() < small * first.error
 }
 
 /// Whether the held-back blocks are noise, or a trifle more, but for a few, and these are explained to two hundredths of
 /// what was there: where dry friction lets go depends on less than an encoder sees.
-fn is_noise_but_for_stretches(score: &Score, first: &Score) -> bool {
+fn is_noise_but_for_stretches(score: &Score, first: &Score, small: f64) -> bool {
     if score.held_blocks.len() != first.held_blocks.len() {
         return false;
     }
     let pairs = || score.held_blocks.iter().zip(&first.held_blocks);
     let noisy = |m: &f64| {
         *m < NOISE_ERROR * NOISE_ERROR
-            || (*m < SMALL_ERROR * SMALL_ERROR && is_trifle(m.sqrt(), first))
+            || (*m < SMALL_ERROR * SMALL_ERROR && is_trifle(m.sqrt(), first, small))
     };
     let odd = pairs().filter(|(m, _)| !noisy(m)).count();
     let explained = |(m, f): (&f64, &f64)| noisy(m) || *m < STRETCH_SHARE * STRETCH_SHARE * f;
@@ -256,7 +259,11 @@ mod tests {
         assert!(is_plain_noise(&noise(1.09, 1.1)));
         for error in [1.0, 1.09] {
             assert!(!is_plain_noise(&noise(error, 1.5)));
-            assert!(!is_noise(&noise(error, 50.0), &noise(error, 52.0)));
+            assert!(!is_noise(
+                &noise(error, 50.0),
+                &noise(error, 52.0),
+                SMALL_SHARE
+            ));
         }
     }
 }

@@ -12,7 +12,7 @@ use super::locate::locate;
 use super::memory::is_noise_with_memory;
 use super::probes::{Probed, Probes};
 use super::score::{Score, score};
-use super::select::is_noise;
+use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::split::hold_back;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::backlash::{Quality, sighted};
@@ -379,7 +379,13 @@ impl Session {
     pub fn rest(&self, scored: &Scored) -> Rest {
         let remembers =
             || is_noise_with_memory(self.whole(), &scored.fit.motion, self.output_unit());
-        if is_noise(&scored.score, self.first(scored)) {
+        let effects = &scored.fit.structure.effects;
+        let small = if effects.iter().any(|e| e.is_of_record()) {
+            SAMPLED_SHARE
+        } else {
+            SMALL_SHARE
+        };
+        if is_noise(&scored.score, self.first(scored), small) {
             Rest::Noise
         } else if scored.score.error < MOST_REMEMBERED && remembers() {
             Rest::NoiseWithMemory
