@@ -80,16 +80,16 @@ fn white_noise_has_a_floor_of_one() {
     assert!(!d.verdict.text.contains("remembers"), "{}", d.verdict.text);
 }
 
-/// What depends on the motion is not noise, however small and short it is.
+/// What acts once is not noise, however small and short it is.
 #[test]
 fn a_faint_stranger_does_not_pass_for_noise_that_remembers() {
-    let bump = Stranger::SpeedBump {
-        torque: 0.012,
-        centre: 20.0,
-        width: 6.0,
+    let push = Stranger::Pulse {
+        torque: 6e-3,
+        from: 0.8,
+        length: 0.1,
     };
-    let d = diagnose(&with_noise(drive(0.0, Some(bump)), 0.0, 5));
-    let error = d.steps.last().unwrap().error;
+    let d = diagnose(&with_noise(drive(0.0, Some(push)), 0.0, 5));
+    let error = d.steps.last().unwrap().error_fit;
     assert!((1.15..2.0).contains(&error), "{error}: {}", d.verdict.text);
     assert!(d.verdict.unknown, "{}", d.verdict.text);
 }

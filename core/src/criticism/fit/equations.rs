@@ -15,7 +15,7 @@ use crate::model::Start;
 const LOAD_DIFFERENCE: f64 = 0.1;
 
 /// Size of a parameter in its standard errors from which data tell it.
-const MARKED: f64 = 2.0;
+const MARKED: f64 = 3.0;
 
 impl Fit {
     /// The most by which a step may lower the squared residuals, as far as they are linear: twice the
