@@ -173,8 +173,7 @@ pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
 /// Whether a loop can be computed.
 pub fn check(input: &ExploreInput) -> Result<(), String> {
     let sentence = |e: &dyn std::fmt::Display| format!("This loop cannot be: {e}.");
-    input.plant.validate().map_err(|e| sentence(&e))?;
-    input.relay.validate().map_err(|e| sentence(&e))?;
+    input.validate().map_err(|e| sentence(&e))?;
     match input.noise {
         Some(noise) if !(noise.std_dev >= 0.0 && noise.std_dev.is_finite()) => {
             Err(sentence(&"its noise must be 0 or more"))

@@ -48,6 +48,16 @@ pub enum ExploreError {
     /// The noise or the run.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// A lag beside which the plant is over in no time: what follows it would be computed for minutes.
+    #[error(
+        "its dead time and delay are {lag:.2e} s, where its fastest pole allows {most:.2e} s at most"
+    )]
+    Lag {
+        /// Dead time and delay, s.
+        lag: f64,
+        /// The longest that is taken, s.
+        most: f64,
+    },
 }
 
 /// What there is to see.
@@ -88,6 +98,27 @@ pub struct ExploreData {
     pub cycle: Vec<[f64; 2]>,
 }
 
+/// Dead time and delay per time constant of the fastest pole that are taken: the cost grows with them.
+const MOST_LAG: f64 = 1e6;
+
+/// Values of the noise in a run: each takes some microseconds.
+const MOST_NOISE: f64 = 500_000.0;
+
+impl ExploreInput {
+    /// Checks plant and relay, and that the loop can be computed in a moment.
+    pub fn validate(&self) -> Result<(), ExploreError> {
+        self.plant.validate()?;
+        self.relay.validate()?;
+        let lag = self.plant.dead_time + self.relay.delay;
+        let rates = self.plant.poles().into_iter().map(|p| p.norm());
+        let most = MOST_LAG / rates.fold(0.0, f64::max);
+        if lag > most {
+            return Err(ExploreError::Lag { lag, most });
+        }
+        Ok(())
+    }
+}
+
 /// Points of the Nyquist curve.
 const NYQUIST_POINTS: usize = 600;
 
@@ -115,8 +146,7 @@ pub fn ultimate_gain(relay: &Relay, amplitude: f64) -> f64 {
 
 /// Computes everything; the same input gives the same data.
 pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
-    input.plant.validate()?;
-    input.relay.validate()?;
+    input.validate()?;
     let (plant, relay) = (&input.plant, &input.relay);
     let prediction = predict(plant, relay).map_err(|e| match e {
         crate::limit_cycle::PredictError::Plant(e) => ExploreError::Plant(e),
@@ -191,11 +221,26 @@ fn trajectory(
     if input.noise.is_none() {
         return Ok(simulate(space, &input.relay, lag, step, steps));
     }
+    let duration = step * steps as f64;
+    check_noise(duration, input.noise)?;
     let options = Options {
         noise: input.noise,
-        ..Options::new(step * steps as f64, step)
+        ..Options::new(duration, step)
     };
     run(space, &input.relay, lag, &options)
+}
+
+/// Whether the noise of a run is computed in a moment.
+fn check_noise(duration: f64, noise: Option<Noise>) -> Result<(), SimulateError> {
+    let values = noise.map_or(0.0, |n| duration / n.interval);
+    if values <= MOST_NOISE {
+        return Ok(());
+    }
+    Err(SimulateError::Option {
+        name: "number of noise values",
+        value: values.round(),
+        range: "at most 500,000: a faster loop or a longer interval",
+    })
 }
 
 /// Period and amplitude of the last cycle, if the run has settled into one.

@@ -236,9 +236,7 @@ impl MapInput {
         }
         let last = self.size - 1;
         for place in [[0, 0], [0, last], [last, 0], [last, last]] {
-            let input = self.at(place);
-            input.plant.validate().map_err(ExploreError::from)?;
-            input.relay.validate().map_err(ExploreError::from)?;
+            self.at(place).validate()?;
         }
         Ok(())
     }
