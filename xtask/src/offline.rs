@@ -65,7 +65,7 @@ const script = (version) => SOURCE.replace("VERSION", version).replace("FILE_LIS
   await run(script("1"), "https://example.org/b/");
   await run(script("2"), "https://example.org/b/");
   console.log([...stores.keys()].join("|"));
-  console.log(asked.every((r) => r.cache === "reload"));
+  console.log(asked.every((r) => r.cache === "no-cache"));
 })();
 "#;
 

@@ -6,8 +6,9 @@ const STORE = OURS + "VERSION";
 const FILES = FILE_LIST;
 
 self.addEventListener("install", (event) => {
-  // Past the browser's own cache, which may still have files of the build before.
-  const fresh = FILES.map((file) => new Request(file, { cache: "reload" }));
+  // The browser's own cache may still have files of the build before: it asks the server whether each is the newest,
+  // and what the page has just loaded is not loaded again.
+  const fresh = FILES.map((file) => new Request(file, { cache: "no-cache" }));
   event.waitUntil(caches.open(STORE).then((store) => store.addAll(fresh)));
 });
 
