@@ -359,3 +359,45 @@ fn the_numbers_of_a_page_are_saved_as_a_table() {
         harness.get_by_label(item);
     }
 }
+
+/// What the app keeps, in memory.
+#[derive(Default)]
+struct Memory(std::collections::BTreeMap<String, String>);
+
+impl eframe::Storage for Memory {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+
+    fn flush(&mut self) {}
+}
+
+#[test]
+fn only_what_someone_has_chosen_is_kept_of_look_language_and_motion() {
+    let mut harness = app("start", WIDE);
+    let keys = ["hysteron look", "hysteron language", "hysteron motion"];
+    let kept = |harness: &mut App| {
+        let mut memory = Memory::default();
+        eframe::App::save(harness.state_mut(), &mut memory);
+        keys.map(|key| memory.0.get(key).cloned())
+    };
+    assert_eq!(kept(&mut harness), [None, None, None]);
+    let choices = [
+        ("Light", [Some("Light"), None, None]),
+        ("Less motion", [Some("Light"), None, Some("reduced")]),
+        ("Deutsch", [Some("Light"), Some("de"), Some("reduced")]),
+    ];
+    for (choice, expected) in choices {
+        click(&mut harness, "Look");
+        click(&mut harness, choice);
+        assert_eq!(kept(&mut harness), expected.map(|v| v.map(str::to_owned)));
+    }
+}

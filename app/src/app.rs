@@ -31,11 +31,12 @@ pub struct HysteronApp {
     untouched: Document,
     /// What was set before; never what was computed.
     history: Undoer<Document>,
-    /// How the app looks; as the system does until someone has chosen.
+    /// How the app looks; as the system does where it is unknown.
     look: Option<Look>,
     language: Language,
     /// Whether nothing moves by itself.
     calm: bool,
+    chosen: Chosen,
     /// Width and height of the window, points.
     size: [u32; 2],
     fingers: Fingers,
@@ -51,6 +52,14 @@ pub struct HysteronApp {
     #[cfg(target_arch = "wasm32")]
     address: address::Address,
     frame: u64,
+}
+
+/// Which of these someone has chosen: they are kept. All others are as the system has them, on every day anew.
+#[derive(Default)]
+struct Chosen {
+    look: bool,
+    language: bool,
+    calm: bool,
 }
 
 /// Whether a finger was ever seen, and whether what is pressed is large enough for one.
@@ -72,6 +81,7 @@ impl Default for HysteronApp {
             look: None,
             language: Language::English,
             calm: false,
+            chosen: Chosen::default(),
             size: [0; 2],
             fingers: Fingers::default(),
             sheet: false,
@@ -257,10 +267,16 @@ impl HysteronApp {
                     self.save_table(ctx, &name.replace(' ', "-"), &table);
                 }
             }
-            Command::NextLook => self.set_look(ctx, self.look().next()),
-            Command::SetLook(look) => self.set_look(ctx, look),
-            Command::Calm(calm) => self.set_calm(ctx, calm),
-            Command::Speak(language) => self.speak(language),
+            Command::NextLook => self.choose_look(ctx, self.look().next()),
+            Command::SetLook(look) => self.choose_look(ctx, look),
+            Command::Calm(calm) => {
+                self.chosen.calm = true;
+                self.set_calm(ctx, calm);
+            }
+            Command::Speak(language) => {
+                self.chosen.language = true;
+                self.speak(language);
+            }
             Command::Sheet => self.sheet = !self.sheet,
             Command::Close => {
                 self.sheet = false;
@@ -319,6 +335,11 @@ impl HysteronApp {
         {
             self.notice = Some(Notice::refused(sentence));
         }
+    }
+
+    fn choose_look(&mut self, ctx: &egui::Context, look: Look) {
+        self.chosen.look = true;
+        self.set_look(ctx, look);
     }
 
     fn set_look(&mut self, ctx: &egui::Context, look: Look) {
@@ -495,13 +516,8 @@ impl HysteronApp {
     /// The app as it was left.
     pub fn restored(context: &eframe::CreationContext<'_>) -> Self {
         let mut app = Self::default();
-        let kept = |key| context.storage.and_then(|s| s.get_string(key));
-        if let Some(look) = kept(KEPT_LOOK).as_deref().and_then(Look::named) {
-            app.look = Some(look);
-        }
-        let language = kept(KEPT_LANGUAGE).and_then(|code| Language::of_locale(&code));
-        app.language = language.unwrap_or_else(Language::of_system);
-        app.calm = kept(KEPT_MOTION).map_or_else(motion::of_system, |m| m == CALM);
+        let kept = |key: &str| context.storage.and_then(|s| s.get_string(key));
+        app.prefer(&kept);
         if let Some(recent) = kept(KEPT_RECENT) {
             app.desk.recent = serde_json::from_str(&recent).unwrap_or_default();
         }
@@ -512,6 +528,32 @@ impl HysteronApp {
             app.restore(&context.egui_ctx, &text);
         }
         app
+    }
+
+    /// Takes up what someone has chosen before, and all else from the system.
+    fn prefer(&mut self, kept: impl Fn(&str) -> Option<String>) {
+        self.look = kept(KEPT_LOOK).as_deref().and_then(Look::named);
+        let language = kept(KEPT_LANGUAGE).and_then(|code| Language::of_locale(&code));
+        let calm = kept(KEPT_MOTION).map(|motion| motion == CALM);
+        self.chosen = Chosen {
+            look: self.look.is_some(),
+            language: language.is_some(),
+            calm: calm.is_some(),
+        };
+        self.language = language.unwrap_or_else(Language::of_system);
+        self.calm = calm.unwrap_or_else(motion::of_system);
+    }
+
+    /// What someone has chosen, by the key under which it is kept.
+    fn preferred(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let motion = if self.calm { CALM } else { "usual" };
+        let all = [
+            (self.chosen.look, KEPT_LOOK, self.look().name()),
+            (self.chosen.language, KEPT_LANGUAGE, self.language.code()),
+            (self.chosen.calm, KEPT_MOTION, motion),
+        ];
+        let chosen = all.into_iter().filter(|(chosen, ..)| *chosen);
+        chosen.map(|(_, key, value)| (key, value))
     }
 
     /// The whole state as a text, for [`Self::restore`].
@@ -534,13 +576,12 @@ impl eframe::App for HysteronApp {
         storage.set_string(KEPT, self.kept());
         let solved: Vec<&str> = self.desk.study.solved.iter().map(String::as_str).collect();
         storage.set_string(KEPT_SOLVED, solved.join(" "));
-        storage.set_string(KEPT_LANGUAGE, self.language.code().to_owned());
-        let motion = if self.calm { CALM } else { "usual" };
-        storage.set_string(KEPT_MOTION, motion.to_owned());
+        for (key, value) in self.preferred() {
+            storage.set_string(key, value.to_owned());
+        }
         if let Ok(recent) = serde_json::to_string(&self.desk.recent) {
             storage.set_string(KEPT_RECENT, recent);
         }
-        storage.set_string(KEPT_LOOK, self.look().name().to_owned());
     }
 
     /// What egui keeps by itself is where everything is scrolled to: a page that is opened again begins with its
