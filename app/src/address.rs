@@ -34,6 +34,17 @@ pub struct Address(String);
 
 #[cfg(target_arch = "wasm32")]
 impl Address {
+    /// What was kept of it. A page that is loaded again goes on where it was left: the link in its address is not
+    /// shown once more, over what was done since.
+    pub fn resumed(kept: Option<String>) -> Self {
+        Self(kept.filter(|_| is_resumed()).unwrap_or_default())
+    }
+
+    /// What is to be kept of it.
+    pub fn kept(&self) -> &str {
+        &self.0
+    }
+
     /// A link that stands in the address bar since the last look.
     pub fn changed(&mut self) -> Option<String> {
         let fragment = web_sys::window()?.location().hash().ok()?;
@@ -43,4 +54,13 @@ impl Address {
         self.0.clone_from(&fragment);
         (fragment.len() > 1).then_some(fragment)
     }
+}
+
+/// Whether this is the page of before, loaded again or come back to, and no new visit.
+#[cfg(target_arch = "wasm32")]
+fn is_resumed() -> bool {
+    use web_sys::PerformanceNavigation as Way;
+    let performance = web_sys::window().and_then(|w| w.performance());
+    let way = performance.map(|p| p.navigation().type_());
+    way.is_some_and(|way| [Way::TYPE_RELOAD, Way::TYPE_BACK_FORWARD].contains(&way))
 }

@@ -508,6 +508,8 @@ const KEPT_LANGUAGE: &str = "hysteron language";
 const KEPT_MOTION: &str = "hysteron motion";
 const KEPT_RECENT: &str = "hysteron files";
 const KEPT_SOLVED: &str = "hysteron lessons";
+#[cfg(target_arch = "wasm32")]
+const KEPT_ADDRESS: &str = "hysteron address";
 
 /// What is kept under the key of motion where nothing may move by itself.
 const CALM: &str = "reduced";
@@ -526,6 +528,10 @@ impl HysteronApp {
         }
         if let Some(text) = kept(KEPT) {
             app.restore(&context.egui_ctx, &text);
+        }
+        #[cfg(target_arch = "wasm32")]
+        {
+            app.address = address::Address::resumed(kept(KEPT_ADDRESS));
         }
         app
     }
@@ -582,6 +588,8 @@ impl eframe::App for HysteronApp {
         if let Ok(recent) = serde_json::to_string(&self.desk.recent) {
             storage.set_string(KEPT_RECENT, recent);
         }
+        #[cfg(target_arch = "wasm32")]
+        storage.set_string(KEPT_ADDRESS, self.address.kept().to_owned());
     }
 
     /// What egui keeps by itself is where everything is scrolled to: a page that is opened again begins with its
