@@ -213,6 +213,59 @@ fn a_zoom_is_taken_back_and_is_not_of_the_next_record() {
     assert_eq!(state(&harness)["link"], "v1;compare");
 }
 
+/// The bytes of a file of the tests.
+fn data(name: &str) -> Vec<u8> {
+    let file = format!("{}/../tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read(file).expect("a file of the tests")
+}
+
+/// Opens a file of the user's, and waits until undo takes it for a step.
+fn open(harness: &mut App, name: &str, bytes: &[u8]) {
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open(&ctx, name, bytes);
+    finish(harness);
+    harness.run_steps(12);
+}
+
+#[test]
+fn a_file_of_ones_own_can_be_gone_back_to() {
+    for page in ["compare", "backlash"] {
+        let mut harness = app(page, TALL);
+        finish(&mut harness);
+        harness.run_steps(12);
+        open(&mut harness, "one.csv", &data("drive-12.csv"));
+        let opened = state(&harness);
+        assert_eq!(opened["file"], "one.csv", "{page}");
+        click(&mut harness, "Undo");
+        finish(&mut harness);
+        assert_eq!(state(&harness)["file"], Value::Null, "{page}");
+        click(&mut harness, "Redo");
+        finish(&mut harness);
+        assert_eq!(state(&harness)["notice"], Value::Null, "{page}");
+        for key in ["file", "link", "answer", "error"] {
+            assert_eq!(state(&harness)[key], opened[key], "{page}: {key}");
+        }
+    }
+}
+
+#[test]
+fn a_model_of_ones_own_can_be_gone_back_to() {
+    let mut harness = app("compare", TALL);
+    open(&mut harness, "one.csv", &data("drive-02.csv"));
+    let without = state(&harness);
+    let model = "kind = \"drive\"\n[[effects]]\nid = \"coulomb_friction\"\n";
+    open(&mut harness, "rig.toml", model.as_bytes());
+    let with = state(&harness);
+    assert_eq!(with["model"], "rig.toml");
+    for (button, expected) in [("Undo", without), ("Redo", with)] {
+        click(&mut harness, button);
+        finish(&mut harness);
+        for key in ["notice", "model", "file", "error"] {
+            assert_eq!(state(&harness)[key], expected[key], "{button}: {key}");
+        }
+    }
+}
+
 #[test]
 fn what_compare_shows_comes_back_in_another_window() {
     let mut here = app("compare", TALL);

@@ -3,6 +3,11 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use hysteron_core::measurement::Kind;
+use hysteron_core::user_model::UserModel;
+
+use crate::content::Content;
+use crate::enclosed::Enclosed;
 use crate::reading::Reading;
 use crate::recent::Recent;
 
@@ -55,6 +60,33 @@ impl Read {
     }
 }
 
+/// Files of the user's that are held for undo and redo.
+const MOST_HELD: usize = 8;
+
+/// A measurement that can be opened by its name: one that comes with the app, or that was open in this session.
+#[derive(Clone)]
+pub struct Held {
+    /// Its name.
+    pub name: String,
+    /// What it is of.
+    pub kind: Kind,
+    /// What is in it.
+    pub content: Content,
+    /// What it does not say itself.
+    pub reading: Reading,
+}
+
+impl From<&Enclosed> for Held {
+    fn from(file: &Enclosed) -> Self {
+        Self {
+            name: file.id.to_owned(),
+            kind: file.kind,
+            content: file.content(),
+            reading: Reading::default(),
+        }
+    }
+}
+
 /// Files on their way.
 pub struct Files {
     sender: Sender<Read>,
@@ -62,6 +94,10 @@ pub struct Files {
     /// The last one that has arrived: nobody knows yet whether it is what its page takes.
     arrived: Option<Recent>,
     opened: Vec<Recent>,
+    /// What was open, the last one first.
+    held: Vec<Held>,
+    /// Models that were open, by their names, the last one first.
+    models: Vec<(String, UserModel)>,
 }
 
 impl Default for Files {
@@ -72,6 +108,8 @@ impl Default for Files {
             receiver,
             arrived: None,
             opened: Vec::new(),
+            held: Vec::new(),
+            models: Vec::new(),
         }
     }
 }
@@ -108,6 +146,30 @@ impl Files {
     /// What has been opened since it was last asked for.
     pub fn opened(&mut self) -> Vec<Recent> {
         std::mem::take(&mut self.opened)
+    }
+
+    /// Holds a file that is open, so that it can be gone back to.
+    pub fn hold(&mut self, file: Held) {
+        self.held.retain(|h| h.name != file.name);
+        self.held.insert(0, file);
+        self.held.truncate(MOST_HELD);
+    }
+
+    /// The file of this name that was open before in this session.
+    pub fn held(&self, name: &str) -> Option<&Held> {
+        self.held.iter().find(|h| h.name == name)
+    }
+
+    /// Holds a model that is open.
+    pub fn hold_model(&mut self, name: &str, model: &UserModel) {
+        self.models.retain(|(n, _)| n != name);
+        self.models.insert(0, (name.to_owned(), model.clone()));
+        self.models.truncate(MOST_HELD);
+    }
+
+    /// The model of this name that was open before in this session.
+    pub fn held_model(&self, name: &str) -> Option<&UserModel> {
+        self.models.iter().find(|(n, _)| n == name).map(|(_, m)| m)
     }
 
     /// Reads a file that was opened before.

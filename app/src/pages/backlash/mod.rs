@@ -11,6 +11,7 @@ mod side;
 mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
+use hysteron_core::measurement::Kind;
 
 use super::playback::Playback;
 use super::{Desk, Hint, View};
@@ -20,7 +21,7 @@ pub use settings::is_built_in;
 use crate::content::Content;
 use crate::document::parsed;
 use crate::export::Table;
-use crate::files::{Files, MEASUREMENT};
+use crate::files::{Files, Held, MEASUREMENT};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
@@ -68,8 +69,8 @@ pub struct Backlash {
     files: Files,
     /// Name of the measurement that is open, or about to be.
     file: Option<String>,
-    /// How the file that was opened last is read.
-    reading: Reading,
+    /// The file that was opened last.
+    last: Option<Held>,
     message: Option<String>,
 }
 
@@ -87,7 +88,7 @@ impl Default for Backlash {
             estimation: None,
             files: Files::default(),
             file: None,
-            reading: Reading::default(),
+            last: None,
             message: None,
         }
     }
@@ -147,22 +148,33 @@ impl Backlash {
 
     /// Opens a measurement; a bad one leaves everything as it was.
     fn open_as(&mut self, ctx: &egui::Context, name: &str, content: Content, reading: Reading) {
+        self.open_held(
+            ctx,
+            Held {
+                name: name.to_owned(),
+                kind: Kind::Drive,
+                content,
+                reading,
+            },
+        );
+    }
+
+    fn open_held(&mut self, ctx: &egui::Context, file: Held) {
         self.simulation = None;
+        self.file = Some(file.name.clone());
+        self.last = Some(file.clone());
         let task = GapTask::Measured(Box::new(ReadTask {
-            file: name.to_owned(),
-            content,
-            reading: reading.clone(),
+            file: file.name,
+            content: file.content,
+            reading: file.reading,
         }));
         self.estimation = Some((None, Job::run(ctx, task)));
-        self.reading = reading;
-        self.file = Some(name.to_owned());
         self.playback.clock = 0.0;
         self.message = None;
     }
 
     fn open_built_in(&mut self, ctx: &egui::Context, built_in: &BuiltIn) {
-        let file = &built_in.file;
-        self.open_as(ctx, file.id, file.content(), Reading::default());
+        self.open_held(ctx, Held::from(&built_in.file));
     }
 
     /// Takes what jobs and files have brought.
@@ -208,7 +220,10 @@ impl Backlash {
                 Ok(scene) => {
                     self.scene = Some(scene);
                     self.file = self.open_file();
-                    self.files.taken(&measurement.name, &self.reading);
+                    if let Some(last) = self.last.take() {
+                        self.files.taken(&measurement.name, &last.reading);
+                        self.files.hold(last);
+                    }
                     self.figure = None;
                 }
                 Err(error) => self.keep(error),

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Backlash;
 use super::built_in::BUILT_IN;
+use crate::files::Held;
 
 /// The most that a link may ask for: a longer run, or one of more events, would fill the memory.
 const LONGEST_RUN: f64 = 120.0;
@@ -53,8 +54,8 @@ impl Backlash {
         settings.check()?;
         let file = match &settings.file {
             Some(name) if settings.file != self.file => {
-                let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
-                Some(built_in.ok_or_else(|| crate::document::not_enclosed(name))?)
+                let file = self.known(name);
+                Some(file.ok_or_else(|| crate::document::not_enclosed(name))?)
             }
             _ => None,
         };
@@ -68,13 +69,22 @@ impl Backlash {
         self.design.torque = settings.largest_torque;
         self.speed = settings.speed;
         self.message = None;
-        if let Some(built_in) = file {
-            self.open_built_in(ctx, built_in);
+        if let Some(file) = file {
+            self.open_held(ctx, file);
         } else if settings.file.is_none() && self.file.is_some() {
             self.close();
         }
         self.playback.set(settings.paused);
         Ok(())
+    }
+}
+
+impl Backlash {
+    /// The measurement of this name, if it comes with the page or was open before.
+    fn known(&self, name: &str) -> Option<Held> {
+        let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
+        let built_in = built_in.map(|b| Held::from(&b.file));
+        built_in.or_else(|| self.files.held(name).cloned())
     }
 }
 

@@ -10,6 +10,7 @@ use super::reveal::Sealed;
 use super::settings::Awaited;
 use super::{Compare, Look, own};
 use crate::content::Content;
+use crate::files::Held;
 use crate::jobs::{Job, News};
 use crate::reading::Reading;
 use crate::recent::Recent;
@@ -41,6 +42,11 @@ impl Opening {
             then: Some(awaited),
             ..self
         }
+    }
+
+    /// A file that was open before.
+    pub fn again(ctx: &egui::Context, file: Held) -> Self {
+        Self::read_as(ctx, &file.name, file.content, file.reading)
     }
 
     fn read_as(ctx: &egui::Context, file: &str, content: Content, reading: Reading) -> Self {
@@ -142,6 +148,7 @@ impl Compare {
         let Opening {
             job,
             origin,
+            content,
             reading,
             then,
             ..
@@ -151,6 +158,12 @@ impl Compare {
         self.form = None;
         self.files.comes_from(origin);
         self.files.taken(&measurement.name, &reading);
+        self.files.hold(Held {
+            name: measurement.name.clone(),
+            kind: measurement.kind,
+            content,
+            reading: reading.clone(),
+        });
         self.reading = reading;
         self.message = measurement.warnings.first().cloned();
         if self
@@ -191,6 +204,7 @@ impl Compare {
             }
             (Ok(model), _) => {
                 self.files.taken(name, &Reading::default());
+                self.files.hold_model(name, &model);
                 self.message = None;
                 self.forget_model();
                 self.model = Some(model);

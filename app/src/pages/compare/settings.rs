@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::open::Opening;
 use super::{BUILT_IN, Command, Compare, Look};
 use crate::content::Content;
+use crate::files::Held;
+use crate::reading::Reading;
 
 /// Effects that a link may add.
 const MOST_EFFECTS: usize = 12;
@@ -78,46 +80,106 @@ impl Compare {
 
     pub(super) fn take(&mut self, ctx: &egui::Context, settings: &Settings) -> Result<(), String> {
         let present = self.set_to();
-        let other = settings.other_file(&present)?;
-        if let Some(name) = &settings.model
-            && settings.model != present.model
-        {
-            return Err(crate::document::not_enclosed(name));
-        }
+        let other = self.other_file(settings, &present)?;
         if settings.effects.len() > MOST_EFFECTS || settings.own.len() > MOST_EFFECTS {
             return Err(format!("A link may add {MOST_EFFECTS} effects."));
         }
         if settings.file.is_none() && settings.mystery.is_none() {
+            if let Some(name) = &settings.model {
+                self.held_model(name)?;
+            }
             if self.measurement.is_some() || self.opening.is_some() {
                 self.carry_out(ctx, Command::Close);
             }
             return Ok(());
         }
-        if let Some((file, kind, content)) = other {
-            let then = Awaited::of(settings, kind)?;
+        if let Some(file) = other {
+            let then = self.awaited(settings, file.kind)?;
             self.carry_out(ctx, Command::Close);
-            self.opening = Some(Opening::new(ctx, &file, content).with(then));
+            self.opening = Some(Opening::again(ctx, file).with(then));
             return Ok(());
         }
-        if let Some(awaited) = self.opening.as_mut().and_then(|o| o.then.as_mut()) {
-            *awaited = Awaited::of(settings, awaited.kind)?;
-            return Ok(());
-        }
-        if settings.model != present.model {
-            self.forget_model();
-            self.restart(ctx);
-        }
-        let model = match (&self.measurement, &self.model_file) {
-            (Some(measurement), None) if settings.own != self.own => {
-                model_of(&settings.own, measurement.kind)?
+        if let Some(kind) = self
+            .opening
+            .as_ref()
+            .and_then(|o| Some(o.then.as_ref()?.kind))
+        {
+            let then = self.awaited(settings, kind)?;
+            if let Some(opening) = &mut self.opening {
+                opening.then = Some(then);
             }
-            (Some(_), Some(name)) if settings.own != self.own => {
-                return Err(crate::document::not_enclosed(name));
+            return Ok(());
+        }
+        let other_model = settings.model != present.model;
+        let model = match &self.measurement {
+            Some(measurement) if other_model || settings.own != self.own => {
+                self.model_of(settings, measurement.kind)?
             }
             _ => self.model.clone(),
         };
-        self.adopt(ctx, settings, settings.meant(model)?);
+        let meant = settings.meant(model)?;
+        if other_model {
+            self.forget_model();
+            self.model.clone_from(&meant.model);
+            self.restart(ctx);
+        }
+        self.adopt(ctx, settings, meant);
         Ok(())
+    }
+
+    /// The measurement of `settings`, if it is another than is open at `present`.
+    fn other_file(&self, settings: &Settings, present: &Settings) -> Result<Option<Held>, String> {
+        match (&settings.file, &settings.mystery) {
+            (Some(_), Some(_)) => Err("A link may open a file or a mystery, not both.".to_owned()),
+            (Some(name), None) if settings.file != present.file => {
+                let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
+                let file = built_in.map(|b| Held::from(&b.file));
+                let file = file.or_else(|| self.files.held(name).cloned());
+                let file = file.ok_or_else(|| crate::document::not_enclosed(name))?;
+                Ok(Some(file))
+            }
+            (None, Some(text)) if settings.mystery != present.mystery => {
+                let mystery = Mystery::from_link(text).map_err(|e| e.to_string())?;
+                Ok(Some(Held {
+                    name: mystery.name(),
+                    kind: mystery.kind,
+                    content: Content::Mystery(Box::new(mystery)),
+                    reading: Reading::default(),
+                }))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// What is set as soon as a measurement of this kind is open.
+    fn awaited(&self, settings: &Settings, kind: Kind) -> Result<Awaited, String> {
+        Ok(Awaited {
+            meant: settings.meant(self.model_of(settings, kind)?)?,
+            settings: settings.clone(),
+            kind,
+        })
+    }
+
+    /// The user's model as in `settings`: that of a file, and the effects of their own.
+    fn model_of(&self, settings: &Settings, kind: Kind) -> Result<Option<UserModel>, String> {
+        let mut model = match &settings.model {
+            Some(name) => {
+                let model = self.held_model(name)?.clone();
+                let fits = (model.kind == kind).then_some(model);
+                fits.ok_or_else(|| crate::document::not_enclosed(name))?
+            }
+            None if settings.own.is_empty() => return Ok(None),
+            None => UserModel::blank(kind),
+        };
+        for line in &settings.own {
+            model.add_candidate(line)?;
+        }
+        Ok(Some(model))
+    }
+
+    fn held_model(&self, name: &str) -> Result<&UserModel, String> {
+        let model = self.files.held_model(name);
+        model.ok_or_else(|| crate::document::not_enclosed(name))
     }
 
     /// Sets what was to be set as soon as the measurement is open, which it is now.
@@ -142,6 +204,7 @@ impl Compare {
             self.own.clone_from(&settings.own);
         }
         self.model = meant.model;
+        self.model_file.clone_from(&settings.model);
         if meant.effects != self.effects {
             self.go_to(ctx, meant.effects);
         }
@@ -155,37 +218,7 @@ impl Compare {
     }
 }
 
-impl Awaited {
-    fn of(settings: &Settings, kind: Kind) -> Result<Self, String> {
-        Ok(Self {
-            meant: settings.meant(model_of(&settings.own, kind)?)?,
-            settings: settings.clone(),
-            kind,
-        })
-    }
-}
-
 impl Settings {
-    /// The measurement, if it is another than is open at `present`: its name, what it is of, and what is in it.
-    fn other_file(&self, present: &Self) -> Result<Option<(String, Kind, Content)>, String> {
-        match (&self.file, &self.mystery) {
-            (Some(_), Some(_)) => Err("A link may open a file or a mystery, not both.".to_owned()),
-            (Some(name), None) if self.file != present.file => {
-                let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
-                let file = &built_in
-                    .ok_or_else(|| crate::document::not_enclosed(name))?
-                    .file;
-                Ok(Some((name.clone(), file.kind, file.content())))
-            }
-            (None, Some(text)) if self.mystery != present.mystery => {
-                let mystery = Mystery::from_link(text).map_err(|e| e.to_string())?;
-                let (name, kind) = (mystery.name(), mystery.kind);
-                Ok(Some((name, kind, Content::Mystery(Box::new(mystery)))))
-            }
-            _ => Ok(None),
-        }
-    }
-
     /// What it names, where the user's `model` is this.
     fn meant(&self, model: Option<UserModel>) -> Result<Meant, String> {
         let effect = |id: &String| effect_of(id, model.as_ref());
@@ -195,15 +228,6 @@ impl Settings {
             model,
         })
     }
-}
-
-/// The model of a user who has only effects of their own to add.
-fn model_of(lines: &[String], kind: Kind) -> Result<Option<UserModel>, String> {
-    let mut model = UserModel::blank(kind);
-    for line in lines {
-        model.add_candidate(line)?;
-    }
-    Ok((!lines.is_empty()).then_some(model))
 }
 
 /// An effect of the library, or of the user's own.
