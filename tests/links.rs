@@ -228,6 +228,21 @@ fn open(harness: &mut App, name: &str, bytes: &[u8]) {
 }
 
 #[test]
+fn it_is_said_which_files_a_link_cannot_carry() {
+    let mut harness = app("compare", TALL);
+    let copy = |harness: &mut App| {
+        click(harness, "Copy link");
+        let said = state(harness)["notice"].clone();
+        said.as_str().expect("a notice").to_owned()
+    };
+    open(&mut harness, "drive-02", &data("drive-02.csv"));
+    open(&mut harness, "rig.toml", b"kind = \"drive\"\n");
+    assert!(copy(&mut harness).contains("The file rig.toml is not"));
+    open(&mut harness, "one.csv", &data("drive-02.csv"));
+    assert!(copy(&mut harness).contains("The files one.csv, rig.toml are not"));
+}
+
+#[test]
 fn a_file_of_ones_own_can_be_gone_back_to() {
     for page in ["compare", "backlash"] {
         let mut harness = app(page, TALL);

@@ -10,7 +10,7 @@ pub use give::GivenFile;
 
 use crate::address;
 use crate::bar::{self, Bar};
-use crate::document::Document;
+use crate::document::{Document, not_enclosed};
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
@@ -177,9 +177,12 @@ impl HysteronApp {
         self.take_pasted_link(ui.ctx());
         for page in &mut self.pages {
             page.update(ui.ctx());
-            page.opened()
-                .into_iter()
-                .for_each(|r| self.desk.recent.note(r));
+            for recent in page.opened() {
+                // A link that was refused for want of this file.
+                let wanted = not_enclosed(&recent.name);
+                self.notice.take_if(|notice| notice.text() == wanted);
+                self.desk.recent.note(recent);
+            }
         }
         let present = self.document();
         let now = ui.input(|i| i.time);
@@ -285,11 +288,15 @@ impl HysteronApp {
             Command::CopyLink => {
                 let link = self.link();
                 ctx.copy_text(address::of(&link));
-                let saying = match self.document().file() {
-                    Some(name) => format!(
+                let saying = match self.document().files().as_slice() {
+                    [] => "The link to this page, as it is now, is copied.".to_owned(),
+                    [name] => format!(
                         "The link is copied. The file {name} is not part of it: send it along."
                     ),
-                    None => "The link to this page, as it is now, is copied.".to_owned(),
+                    names => format!(
+                        "The link is copied. The files {} are not part of it: send them along.",
+                        names.join(", ")
+                    ),
                 };
                 self.notice = Some(Notice::done(ctx, saying));
             }

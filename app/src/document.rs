@@ -52,10 +52,13 @@ impl Document {
         link::write(&self.page, &shown, &defaults.settings)
     }
 
-    /// The file on the page in front that no link can carry: one of the user's.
-    pub fn file(&self) -> Option<&str> {
-        let name = self.settings[&self.page]["file"].as_str()?;
-        (!crate::pages::is_built_in(name)).then_some(name)
+    /// The files on the page in front that no link can carry: the user's own, a measurement and a model.
+    pub fn files(&self) -> Vec<&str> {
+        let named = ["file", "model"].map(|key| self.settings[&self.page][key].as_str());
+        let named = named.into_iter().flatten();
+        named
+            .filter(|name| !crate::pages::is_built_in(name))
+            .collect()
     }
 
     /// As a text that keeps everything.
