@@ -12,8 +12,7 @@ use crate::reading::Reading;
 /// Files that are remembered.
 const MOST: usize = 8;
 
-/// Bytes of all texts that are kept in a browser, whose storage has some five million.
-#[cfg(target_arch = "wasm32")]
+/// Bytes of all texts that are kept: a browser has room for some five million. Where paths are kept there are hardly any.
 const MOST_BYTES: usize = 1_000_000;
 
 /// A file that was opened before.
@@ -85,14 +84,13 @@ impl Recents {
             .retain(|r| (&r.name, &r.path) != (&recent.name, &recent.path));
         self.0.insert(0, recent);
         self.0.truncate(MOST);
-        #[cfg(target_arch = "wasm32")]
-        {
-            let mut bytes = 0;
-            self.0.retain(|r| {
-                bytes += r.text.len();
-                bytes <= MOST_BYTES
-            });
-        }
+        // What is too large for the rest of the room makes way for what is not.
+        let mut room = MOST_BYTES;
+        self.0.retain(|r| {
+            let left = room.checked_sub(r.text.len());
+            room = left.unwrap_or(room);
+            left.is_some()
+        });
     }
 
     /// Draws a button for each whose name ends so; the one that was clicked.
@@ -148,6 +146,21 @@ mod tests {
             recents.note(Recent::new(&i.to_string(), "", b""));
         }
         assert_eq!(recents.0.len(), MOST);
+    }
+
+    #[test]
+    fn a_file_too_large_to_be_kept_drops_no_other() {
+        let mut recents = Recents::default();
+        let large = vec![b'0'; MOST_BYTES + 1];
+        for (name, bytes) in [
+            ("a.csv", b"t [s]".as_slice()),
+            ("large.csv", &large),
+            ("b.csv", b"t [s]"),
+        ] {
+            recents.note(Recent::new(name, "", bytes));
+        }
+        let names: Vec<&str> = recents.0.iter().map(|r| r.name.as_str()).collect();
+        assert_eq!(names, ["b.csv", "a.csv"]);
     }
 
     #[test]
