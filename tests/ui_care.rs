@@ -391,6 +391,45 @@ fn a_refused_file_is_not_among_those_opened_before() {
 }
 
 #[test]
+fn a_model_without_a_measurement_is_told_where_it_belongs() {
+    for (page, said) in [
+        ("compare", "open the measurement first"),
+        ("backlash", "open it in Compare"),
+    ] {
+        let mut harness = app(page, TALL);
+        finish(&mut harness);
+        drop_file(&mut harness, "rig.toml", b"kind = \"drive\"\n");
+        let message = state(&harness)["message"].clone();
+        let message = message.as_str().expect("a message");
+        assert!(
+            message.contains("rig.toml") && message.contains(said),
+            "{message}"
+        );
+        assert!(texts(&harness).iter().any(|t| t == message), "{page}");
+        harness.state_mut().speak(Language::German);
+        finish(&mut harness);
+        let german = |t: &String| t.contains("rig.toml ist ein Modell");
+        assert!(texts(&harness).iter().any(german), "{page}");
+    }
+}
+
+#[test]
+fn a_wish_for_a_file_goes_once_it_is_open() {
+    let good = format!("{}/../tests/data/drive-02.csv", env!("CARGO_MANIFEST_DIR"));
+    let good = std::fs::read(good).expect("a file of the tests");
+    let mut harness = app("compare", TALL);
+    let ctx = harness.ctx.clone();
+    let link = "v1;compare;compare.file=one.csv";
+    assert!(harness.state_mut().open_link(&ctx, link).is_err());
+    harness.step();
+    assert!(notice(&harness).contains("one.csv"));
+    drop_file(&mut harness, "two.csv", &good);
+    assert!(notice(&harness).contains("one.csv"));
+    drop_file(&mut harness, "one.csv", &good);
+    assert_eq!(state(&harness)["notice"], serde_json::Value::Null);
+}
+
+#[test]
 fn backlash_points_to_the_page_that_asks_for_columns() {
     let file = format!("{}/../tests/data/flat-v7.mat", env!("CARGO_MANIFEST_DIR"));
     let bytes = std::fs::read(file).expect("a file of the tests");

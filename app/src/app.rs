@@ -418,7 +418,9 @@ impl HysteronApp {
 
     /// What lies over the page, which ends at `foot`.
     fn overlays_ui(&mut self, ctx: &egui::Context, foot: f32) {
-        drop_hint_ui(ctx);
+        if let Some(page) = self.pages.get(self.front) {
+            drop_hint_ui(ctx, page.drop_hint());
+        }
         if self.sheet {
             let titles: Vec<_> = self.pages.iter().map(|p| p.title()).collect();
             self.sheet = shortcuts::sheet_ui(ctx, &titles);
@@ -496,14 +498,12 @@ fn hint_ui(ui: &mut egui::Ui, hint: Hint, desk: &mut Desk) {
     });
 }
 
-fn drop_hint_ui(ctx: &egui::Context) {
+fn drop_hint_ui(ctx: &egui::Context, sentence: &str) {
     if ctx.input(|i| !i.raw.hovered_files.is_empty()) {
         egui::Area::new(egui::Id::unique("drop"))
             .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
             .show(ctx, |ui| {
-                egui::Frame::popup(ui.style()).show(ui, |ui| {
-                    ui.heading(tr("Drop the measurement to compare it"))
-                });
+                egui::Frame::popup(ui.style()).show(ui, |ui| ui.heading(tr(sentence)));
             });
     }
 }

@@ -67,6 +67,10 @@ pub trait View {
     fn takes_files(&self) -> bool {
         false
     }
+    /// What it does with a file that is held over the window.
+    fn drop_hint(&self) -> &'static str {
+        "Drop the measurement to compare it"
+    }
     /// Files that the user has opened on it since the last call.
     fn opened(&mut self) -> Vec<Recent> {
         Vec::new()

@@ -28,7 +28,7 @@ use crate::language::tr;
 use crate::layout;
 use crate::pages::controls::claim_ui;
 use crate::reading::Reading;
-use crate::recent::{Recent, Recents};
+use crate::recent::{Recent, Recents, measurement};
 use crate::tasks::{GapReport, GapTask, ReadTask};
 use crate::theme;
 use design::Design;
@@ -160,6 +160,13 @@ impl Backlash {
     }
 
     fn open_held(&mut self, ctx: &egui::Context, file: Held) {
+        if !measurement(&file.name) {
+            self.message = Some(format!(
+                "{} is a model, which this page has no use for: open it in Compare, beside a measurement.",
+                file.name
+            ));
+            return;
+        }
         self.simulation = None;
         self.file = Some(file.name.clone());
         self.last = Some(file.clone());
@@ -379,6 +386,10 @@ impl View for Backlash {
 
     fn takes_files(&self) -> bool {
         true
+    }
+
+    fn drop_hint(&self) -> &'static str {
+        "Drop the measurement to find the gap in it"
     }
 
     fn opened(&mut self) -> Vec<Recent> {

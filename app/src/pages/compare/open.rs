@@ -202,7 +202,10 @@ impl Compare {
                     measurement.kind.name()
                 ));
             }
-            (Ok(model), _) => {
+            (Ok(_), None) => self.refuse(format!(
+                "{name} is a model, which goes with a measurement: open the measurement first."
+            )),
+            (Ok(model), Some(_)) => {
                 self.files.taken(name, &Reading::default());
                 self.files.hold_model(name, &model);
                 self.message = None;
