@@ -63,3 +63,17 @@ fn harmonics_of_a_symmetric_cycle_are_odd_and_fall_with_the_plant() {
     assert!((share(3) - gain(3.0) / gain(1.0) / 3.0).abs() < 1e-9);
     assert!(data.swing.last().unwrap()[1] > 0.28);
 }
+
+#[test]
+fn a_fast_loop_is_told_in_as_many_digits_as_a_slow_one() {
+    for (scale, period) in [(1.0, "4.788 s"), (1e-3, "0.004788 s"), (1e3, "4788 s")] {
+        let mut input = ExploreInput::default();
+        let order = input.plant.denominator.len() - 1;
+        for (k, c) in input.plant.denominator.iter_mut().enumerate() {
+            *c *= f64::powi(scale, (order - k) as i32);
+        }
+        let text = compute(&input).unwrap().text;
+        assert!(text.contains(&format!("period {period}")), "{text}");
+        assert!(text.contains("amplitude 0.2857"), "{text}");
+    }
+}

@@ -286,7 +286,10 @@ fn sentence(
     run: &Trajectory,
     noisy: bool,
 ) -> String {
-    let values = |c: Cycle| format!("period {:.3} s, amplitude {:.4}", c.period, c.amplitude);
+    let values = |c: Cycle| {
+        let [period, amplitude] = [c.period, c.amplitude].map(significant);
+        format!("period {period} s, amplitude {amplitude}")
+    };
     match (simulated, exact) {
         _ if run.cut == Some(Cut::Chattering) => {
             "The relay chatters: it switches without end, the output slides along the threshold."
@@ -309,6 +312,19 @@ fn sentence(
                 .to_owned()
         }
     }
+}
+
+/// A value with four significant digits.
+fn significant(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e5).contains(&size) {
+        return format!("{value:.3e}");
+    }
+    let decimals = (3.0 - libm::floor(libm::log10(size))).max(0.0) as usize;
+    format!("{value:.decimals$}")
 }
 
 fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> String {
