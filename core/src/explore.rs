@@ -65,6 +65,8 @@ pub enum ExploreError {
 pub struct ExploreData {
     /// Nyquist curve `P(jw)` with all delays, as real and imaginary parts.
     pub nyquist: Vec<[f64; 2]>,
+    /// Its frequencies, rad/s.
+    pub nyquist_frequency: Vec<f64>,
     /// `-1/N(a)`, the same way.
     pub inverse_df: Vec<[f64; 2]>,
     /// Where they meet.
@@ -176,12 +178,11 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     let end = run.time.last().copied().unwrap_or(0.0);
     let switches_per_period =
         exact.and_then(|c| Some(c.cycle.period * switch_rate(&run, 0.5 * end)?));
+    let centre = main.map_or(typical_frequency(plant), |i| i.omega);
+    let (nyquist_frequency, nyquist) = nyquist(plant, relay.delay, centre);
     Ok(ExploreData {
-        nyquist: nyquist(
-            plant,
-            relay.delay,
-            main.map_or(typical_frequency(plant), |i| i.omega),
-        ),
+        nyquist,
+        nyquist_frequency,
         inverse_df: inverse_df(relay, main),
         exact: exact.map(|c| c.cycle),
         simulated,
@@ -390,15 +391,16 @@ fn swing(time: &[f64], output: &[f64]) -> Vec<[f64; 2]> {
     found
 }
 
-fn nyquist(plant: &TransferFunction, delay: f64, centre: f64) -> Vec<[f64; 2]> {
+/// Frequencies around `centre`, rad/s, and what the plant does there with all delays.
+fn nyquist(plant: &TransferFunction, delay: f64, centre: f64) -> (Vec<f64>, Vec<[f64; 2]>) {
     (0..NYQUIST_POINTS)
         .map(|i| {
             let w = centre * libm::pow(10_f64, -2.0 + 3.5 * i as f64 / (NYQUIST_POINTS - 1) as f64);
             let p = plant.response(w) * Complex::from_polar(1.0, -w * delay);
-            [p.re, p.im]
+            (w, [p.re, p.im])
         })
-        .filter(|p| p[0].is_finite() && p[1].is_finite())
-        .collect()
+        .filter(|(_, p)| p[0].is_finite() && p[1].is_finite())
+        .unzip()
 }
 
 /// `-1/N(a)` from the smallest amplitude to twice the predicted one.

@@ -294,6 +294,7 @@ pub fn tables(data: &ExploreData) -> Vec<Table> {
         Table::curve(TABLES[1], ["time [s]", "input u"], &data.input),
         Table::curve(TABLES[2], [y, rate], &data.phase),
         Table::curve(TABLES[3], [y, rate], &data.cycle),
-        Table::curve(TABLES[4], ["real part", "imaginary part"], &data.nyquist),
+        Table::curve(TABLES[4], ["real part", "imaginary part"], &data.nyquist)
+            .with("frequency [rad/s]", data.nyquist_frequency.iter().copied()),
     ]
 }
