@@ -52,12 +52,21 @@ impl Table {
                 }
                 // What is not a number, such as the period of a loop that does not swing, is left out.
                 if let Some(value) = values.get(row).filter(|v| v.is_finite()) {
-                    text.push_str(&value.to_string());
+                    text.push_str(&written(*value));
                 }
             }
             text.push('\n');
         }
         text
+    }
+}
+
+/// A number to the last bit, with an exponent where it would be a row of zeros.
+fn written(value: f64) -> String {
+    if value == 0.0 || (1e-5..1e15).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }
 
@@ -84,5 +93,10 @@ mod tests {
         let (time, rest) = lines[2].split_once(',').expect("two columns");
         assert_eq!(time.parse(), Ok(0.1 + 0.2));
         assert_eq!(rest, "", "no number, no text");
+        assert_eq!(lines[1], "0,1e-300");
+        for value in [1.35e-17, -2.5e-9, 0.001, 123_456.789, 1e20] {
+            assert_eq!(written(value).parse(), Ok(value));
+            assert!(written(value).len() < 12, "{}", written(value));
+        }
     }
 }
