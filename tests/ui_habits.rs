@@ -245,6 +245,30 @@ fn a_zoomed_plot_shows_all_of_it_again_after_a_double_click() {
 }
 
 #[test]
+fn nothing_is_read_at_the_pointer_over_an_open_menu() {
+    let mut harness = app("start", TALL);
+    show(&mut harness, "v1;explore;explore.paused=20");
+    let (_, menu) = plots(&harness).pop().expect("a plot");
+    let read = |harness: &mut App, at: Pos2| {
+        harness.hover_at(at);
+        harness.run_steps(3);
+        texts(harness)
+            .iter()
+            .any(|t| t.lines().count() > 1 && t.contains(": "))
+    };
+    let aside = menu.left_top() - Vec2::new(60.0, 40.0);
+    assert!(read(&mut harness, aside));
+    harness.hover_at(menu.center());
+    harness.step();
+    let click = [true, false].map(|p| button(menu.center(), PointerButton::Primary, p));
+    harness.input_mut().events.extend(click);
+    harness.run_steps(2);
+    harness.get_by_label("Data of this plot (CSV)");
+    assert!(!read(&mut harness, menu.center()));
+    assert!(!read(&mut harness, aside));
+}
+
+#[test]
 fn every_plot_gives_its_picture_and_its_numbers() {
     let mut count = 0;
     let mut harness = app("start", TALL);

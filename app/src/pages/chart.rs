@@ -209,6 +209,10 @@ impl<'a> Chart<'a> {
         } = self;
         let id = ui.scope_id().with(salt);
         plot = plot.id(id);
+        if egui::Popup::is_any_open(ui.ctx()) {
+            // What is read at the pointer would cover the menu.
+            plot = plot.label_formatter(|_| None);
+        }
         if drag_zoomed {
             let memory = PlotMemory::load(ui.ctx(), id);
             let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
