@@ -303,6 +303,12 @@ fn every_plot_gives_its_picture_and_its_numbers() {
                 } else {
                     assert!(first.contains(&x) && first.contains(&y), "{place}: {first}");
                     assert!(text.lines().count() > 1, "{place}: {menu}");
+                    let titles: Vec<&str> = first.split(',').collect();
+                    let distinct: BTreeSet<&&str> = titles.iter().collect();
+                    assert!(
+                        first.contains('"') || distinct.len() == titles.len(),
+                        "{place}: {first}"
+                    );
                 }
             }
             count += 1;

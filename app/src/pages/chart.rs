@@ -287,15 +287,35 @@ impl<'d> Pen<'_, 'd> {
             return;
         }
         let name = item.name().replace('\u{a0}', " ");
-        let title = |axis: &String| format!("{name}: {axis}");
+        let titles = distinct(table, &name, &self.axes);
         let place = |p: &PlotPoint| {
             if self.decades { 10_f64.powf(p.x) } else { p.x }
         };
-        let columns = [
-            (title(&self.axes[0]), points.iter().map(place).collect()),
-            (title(&self.axes[1]), points.iter().map(|p| p.y).collect()),
+        let values = [
+            points.iter().map(place).collect(),
+            points.iter().map(|p| p.y).collect(),
         ];
-        table.columns.extend(columns);
+        table.columns.extend(titles.into_iter().zip(values));
+    }
+}
+
+/// Titles of the columns of a curve that no other in the table has: curves of the same name are numbered.
+fn distinct(table: &Table, name: &str, axes: &[String; 2]) -> [String; 2] {
+    let taken = |title: &String| table.columns.iter().any(|(t, _)| t == title);
+    let mut count = 1;
+    loop {
+        let number = if count == 1 {
+            String::new()
+        } else {
+            format!(" {count}")
+        };
+        let titles = axes
+            .each_ref()
+            .map(|axis| format!("{name}{number}: {axis}"));
+        if !titles.iter().any(taken) {
+            return titles;
+        }
+        count += 1;
     }
 }
 
