@@ -43,7 +43,7 @@ fn the_first_minute_shows_a_running_loop_a_question_and_three_doors() {
         ("Open Compare", "compare"),
         ("Tune a controller from one experiment", "tune"),
         ("Maps of period and amplitude", "maps"),
-        ("Lessons of ten minutes", "lessons"),
+        ("Lessons of five to ten minutes", "lessons"),
     ] {
         let mut harness = app("start", WIDE);
         harness.get_by_label(door).click();

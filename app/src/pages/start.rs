@@ -54,7 +54,7 @@ const DOORS: [Door; 3] = [
 
 /// Doors of the second row: pages and their buttons.
 const MORE: [(&str, &str); 4] = [
-    ("lessons", "Lessons of ten minutes"),
+    ("lessons", "Lessons of five to ten minutes"),
     ("tune", "Tune a controller from one experiment"),
     ("maps", "Maps of period and amplitude"),
     ("mystery", "A mystery to solve or to set"),
