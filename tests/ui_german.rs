@@ -120,9 +120,10 @@ const NOT_DRAWN: [&str; 28] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 25] = [
+const NO_TEXTS: [&str; 26] = [
     "Crew",
     "hysteron files",
+    "hysteron address",
     "hysteron motion",
     "reduced motion",
     "(prefers-reduced-motion: reduce)",
