@@ -70,7 +70,7 @@ fn a_fast_loop_is_told_in_as_many_digits_as_a_slow_one() {
         let mut input = ExploreInput::default();
         let order = input.plant.denominator.len() - 1;
         for (k, c) in input.plant.denominator.iter_mut().enumerate() {
-            *c *= f64::powi(scale, (order - k) as i32);
+            *c *= f64::powf(scale, (order - k) as f64);
         }
         let text = compute(&input).unwrap().text;
         assert!(text.contains(&format!("period {period}")), "{text}");

@@ -526,7 +526,7 @@ impl HysteronApp {
     pub fn restored(context: &eframe::CreationContext<'_>) -> Self {
         let mut app = Self::default();
         let kept = |key: &str| context.storage.and_then(|s| s.get_string(key));
-        app.prefer(&kept);
+        app.prefer(kept);
         if let Some(recent) = kept(KEPT_RECENT) {
             app.desk.recent = serde_json::from_str(&recent).unwrap_or_default();
         }

@@ -112,7 +112,7 @@ impl ExploreInput {
         self.plant.validate()?;
         self.relay.validate()?;
         let lag = self.plant.dead_time + self.relay.delay;
-        let rates = self.plant.poles().into_iter().map(|p| p.norm());
+        let rates = self.plant.poles().into_iter().map(Complex::norm);
         let most = MOST_LAG / rates.fold(0.0, f64::max);
         if lag > most {
             return Err(ExploreError::Lag { lag, most });
