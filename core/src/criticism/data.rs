@@ -12,7 +12,7 @@ use super::window::drive_window;
 use crate::crew::Crew;
 use crate::effect::Scales;
 use crate::measurement::{Kind, Measurement, Quantity};
-use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start};
+use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start, smoothed};
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
@@ -146,6 +146,16 @@ impl Data {
             Kind::Drive => position_estimate(&measurement.time, &outputs),
             Kind::Process => Vec::new(),
         };
+        let smooth = match measurement.kind {
+            Kind::Drive => {
+                let seen = |is_velocity: bool| {
+                    let output = outputs.iter().find(|o| o.is_velocity == is_velocity);
+                    output.map(|o| (o.values.as_slice(), o.noise))
+                };
+                smoothed(&measurement.time, seen(false), seen(true))
+            }
+            Kind::Process => Vec::new(),
+        };
         let position_first = outputs.iter().min_by_key(|o| o.is_velocity);
         let followed = position_first.map(|o| {
             if o.is_velocity {
@@ -166,7 +176,8 @@ impl Data {
                 position,
                 followed,
             )
-            .with_shown(shown),
+            .with_shown(shown)
+            .with_followed(smooth),
             input: input.clone(),
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),

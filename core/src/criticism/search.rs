@@ -210,8 +210,8 @@ impl Search {
         let mut acting = data.excitation.effective_input(&model);
         if let Some(load) = &model.load {
             // What a load takes does not move the body.
-            let (position, spans) = (data.position_estimate(), data.spans());
-            let torque = load_torque(load, &position, data.excitation.mean_step(), &spans);
+            let (position, spans) = (data.excitation.followed(), data.spans());
+            let torque = load_torque(load, position, data.excitation.mean_step(), &spans);
             for (input, torque) in acting.iter_mut().zip(torque) {
                 *input -= torque;
             }

@@ -240,6 +240,7 @@ impl Session {
             kind: data.kind,
             scales: self.scales,
             position: &data.position_estimate(),
+            followed: data.excitation.followed(),
             velocity: &data.velocity_estimate(),
             input: &data.input,
             acting: &data.excitation.effective_input(&model),

@@ -58,6 +58,7 @@ pub struct Probe {
     /// Typical sizes.
     pub scales: Scales,
     position: Vec<f64>,
+    followed: Vec<f64>,
     velocity: Vec<f64>,
     input: Vec<f64>,
     /// Input that reaches the body, one value per interval.
@@ -154,6 +155,8 @@ pub struct ProbeInput<'a> {
     pub scales: Scales,
     /// Measured position, or an estimate.
     pub position: &'a [f64],
+    /// The same for a load to follow, without its noise; empty for a process.
+    pub followed: &'a [f64],
     /// Measured velocity (output of a process), or an estimate.
     pub velocity: &'a [f64],
     /// Commanded input.
@@ -204,6 +207,7 @@ impl Probe {
             kind: input.kind,
             scales: input.scales,
             position: input.position[..n].to_vec(),
+            followed: input.followed.iter().take(n).copied().collect(),
             velocity: input.velocity[..n].to_vec(),
             input: input.input[..n].to_vec(),
             acting: input.acting.iter().take(n).copied().collect(),
@@ -533,7 +537,7 @@ impl Probe {
 
     /// Torque that `load` would put on the motor, moved as measured, where the windows are.
     pub fn load_torque(&self, load: &Load) -> Vec<f64> {
-        load_torque(load, &self.position, self.scales.step, &self.spans)
+        load_torque(load, &self.followed, self.scales.step, &self.spans)
     }
 
     /// Natural frequencies that a load may have, rad/s: from a few periods in the record to a few

@@ -21,6 +21,7 @@ mod replay;
 mod runge_kutta;
 mod seen_load;
 mod short;
+mod smoothed;
 mod swing;
 
 pub use closed_loop::{Run, run_controlled};
@@ -31,6 +32,7 @@ pub(crate) use flow::free_body;
 pub use load::{Coupling, FollowedNoise, Load, load_torque};
 pub use replay::{Excitation, FollowedLoad, Sensor, Start};
 pub(crate) use seen_load::{LoadState, Play, SeenContact, SeenLoad, Sharpness};
+pub(crate) use smoothed::smoothed;
 
 /// Static map of the input or the output, applied sample by sample.
 pub type StaticMap = Box<dyn Fn(f64) -> f64 + Send + Sync>;

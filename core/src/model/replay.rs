@@ -56,7 +56,7 @@ pub struct Excitation {
     slow_sensor: Sensor,
     /// What a slow sensor showed: the measured values of its output, or empty.
     shown: Vec<f64>,
-    /// Measured position, or an estimate, which hidden states follow; empty for a process.
+    /// Position that a load follows, free of noise as far as known; empty for a process.
     position: Vec<f64>,
     /// The noise of what it stands for.
     noise: Option<FollowedNoise>,
@@ -123,6 +123,17 @@ impl Excitation {
     pub(crate) fn with_seen_load(self, seen: SeenLoad) -> Self {
         let seen = Some(seen);
         Self { seen, ..self }
+    }
+
+    /// The same with a position that is better than the measured one, for a load to follow.
+    #[must_use]
+    pub(crate) fn with_followed(self, position: Vec<f64>) -> Self {
+        Self { position, ..self }
+    }
+
+    /// Position that a load follows; empty for a process.
+    pub(crate) fn followed(&self) -> &[f64] {
+        &self.position
     }
 
     /// Whether a load is told by contacts that the motor felt.
