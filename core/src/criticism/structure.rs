@@ -23,6 +23,9 @@ pub(super) struct Structure {
     pub kind: Kind,
     pub effects: Vec<&'static dyn Effect>,
     pub knowledge: Knowledge,
+    /// Where windows follow on each other, a load begins where the model left it, not where it would be if the body had
+    /// moved as measured.
+    pub carries_load: bool,
 }
 
 impl Structure {
@@ -31,6 +34,7 @@ impl Structure {
             kind,
             effects,
             knowledge,
+            carries_load: false,
         }
     }
 
@@ -38,6 +42,7 @@ impl Structure {
     pub fn with(&self, effect: &'static dyn Effect) -> Self {
         let mut next = self.clone();
         next.effects.push(effect);
+        next.carries_load = false;
         next
     }
 
@@ -62,6 +67,7 @@ impl Structure {
     pub fn without(&self, index: usize) -> Self {
         let mut next = self.clone();
         next.effects.remove(index);
+        next.carries_load = false;
         next
     }
 

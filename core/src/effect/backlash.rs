@@ -24,10 +24,13 @@ const GAP_SPACING: f64 = 1.0 / 160.0;
 const LOAD_FRICTION: [(f64, f64); 4] = [(1e-3, 0.01), (1e-3, 0.0), (4e-3, 0.0), (1e-3, 0.05)];
 
 /// Stiffness of the contact: squared radians of its oscillation in a sample.
-const STIFFNESS: [f64; 3] = [0.03, 0.01, 0.2];
+const STIFFNESS: [f64; 4] = [0.03, 0.01, 0.2, 1.0];
 
 /// Damping ratio of the contact.
 const DAMPING_RATIO: f64 = 0.3;
+
+/// A contact that a fit left soft, and so damped that it hardly bounces, may as well be as many times as stiff.
+const STIFFER: [f64; 3] = [6.0, 40.0, 250.0];
 
 /// Stiffness of a contact that was felt, in times of what the length of its push tells.
 const FELT_STIFFNESS: [f64; 10] = [0.01, 0.018, 0.032, 0.056, 0.1, 0.18, 0.32, 0.56, 1.0, 3.2];
@@ -322,6 +325,16 @@ impl Effect for Backlash {
             .filter(|trial| Probe::may_be(trial.left))
             .map(|trial| trial.values())
             .collect()
+    }
+
+    fn other_valleys(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let stiffer = |times: &f64| {
+            let mut values = values.to_vec();
+            values[4] *= times;
+            values[5] = 2.0 * DAMPING_RATIO * (values[4] * values[1]).sqrt();
+            values
+        };
+        STIFFER.iter().map(stiffer).collect()
     }
 
     fn least_errors(&self, values: &[f64], gap: &SeenGap) -> Vec<f64> {

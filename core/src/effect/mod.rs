@@ -66,6 +66,10 @@ pub trait Effect: Sync {
     fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {
         Vec::new()
     }
+    /// Values from which a fit may come to a lower valley, where it has stalled at these.
+    fn other_valleys(&self, _values: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
     /// Least standard errors of these values, where the record shows a gap: a fit that has many valleys side by side knows
     /// its own only.
     fn least_errors(&self, _values: &[f64], _gap: &SeenGap) -> Vec<f64> {

@@ -29,7 +29,8 @@ pub struct FollowedLoad {
     /// None where there is none, or where it hangs on the body too.
     load: Option<Load>,
     samples: Vec<usize>,
-    at: Vec<Followed>,
+    /// None where it goes on from the window before.
+    at: Vec<Option<Followed>>,
 }
 
 impl FollowedLoad {
@@ -221,9 +222,15 @@ impl Excitation {
     }
 
     /// Where the load of `model` is at each of `starts` if the body moved as measured; taken over from what is `known`,
-    /// if that is the same.
-    pub fn follow(&self, model: &Model, starts: &[Start], known: &FollowedLoad) -> FollowedLoad {
-        if known.suits(model, starts) {
+    /// if that is the same. If it is `carried`, it is so only where a run begins.
+    pub fn follow(
+        &self,
+        model: &Model,
+        starts: &[Start],
+        known: &FollowedLoad,
+        carried: bool,
+    ) -> FollowedLoad {
+        if !carried && known.suits(model, starts) {
             return known.clone();
         }
         let Some(load) = model.load.filter(|_| self.position.len() == self.len()) else {
@@ -231,19 +238,24 @@ impl Excitation {
         };
         let mut follower = Follower::new(&load, self.position[0], self.mean_step());
         let mut tracker = self.tracker(model);
+        let carried = carried && tracker.is_none();
+        let begins = |i: usize| self.runs.binary_search_by_key(&i, |run| run.0).is_ok();
         let at = starts.iter().map(|start| {
             let i = start.sample;
+            if carried && !begins(i) {
+                return None;
+            }
             if let Some(tracker) = &mut tracker {
                 self.take_sight(&mut follower, &tracker.at(self.time[i]), i);
             }
             follower.reach(&self.position, i, |k| self.step_after(k));
-            follower.now
+            Some(follower.now)
         });
         FollowedLoad {
             at: at.collect(),
             samples: starts.iter().map(|s| s.sample).collect(),
             // Where it was seen, it is followed by its contacts, and the body bounces off in them.
-            load: tracker.is_none().then_some(load),
+            load: (tracker.is_none() && !carried).then_some(load),
         }
     }
 
@@ -285,7 +297,7 @@ impl Excitation {
             for i in *from..*end {
                 if let Some((window, start)) = next.next_if(|(_, s)| s.sample == i) {
                     state = state.restarted(start.position, start.velocity);
-                    if let Some(load) = loads.at.get(window) {
+                    if let Some(Some(load)) = loads.at.get(window) {
                         let shift = match &tracker {
                             Some(tracker) => tracker.shift(self.time[i], start.load),
                             None => [doubt[0] * start.load[0], doubt[1] * start.load[1]],

@@ -45,6 +45,12 @@ const RESTART_DAMPING: f64 = 1e-3;
 /// A fit is stuck where its last step should have lowered the cost by more than this share of it, and did not.
 const STUCK: f64 = 1e-4;
 
+/// Times that other valleys are looked for, the iterations that each is given, and the share of the cost below which one
+/// is lower.
+const MOST_VALLEYS: usize = 2;
+const VALLEY_ITERATIONS: usize = 4;
+const LOWER_VALLEY: f64 = 0.98;
+
 /// Share of their size by which values may differ that say the same.
 const SAME_PLACE: f64 = 0.01;
 
@@ -113,6 +119,8 @@ pub(super) struct Fit {
     held: usize,
     iterations: usize,
     stalls: usize,
+    /// Times that other valleys were looked for.
+    valleys_seen: usize,
     pub done: bool,
     /// Values from which it began.
     origin: Vec<f64>,
@@ -147,6 +155,7 @@ impl Fit {
             held: usize::MAX,
             iterations: 0,
             stalls: 0,
+            valleys_seen: 0,
             done: !cost.is_finite(),
             information: DMatrix::identity(p, p),
         };
@@ -208,11 +217,43 @@ impl Fit {
         }
         if !lowered {
             self.damping = RESTART_DAMPING;
-            if !self.mend_odd_windows(data, scales) {
-                self.stalls += 1;
-            }
+            let found = self.mend_odd_windows(data, scales)
+                || self.try_carrying(data, scales)
+                || self.try_other_valleys(data, scales);
+            self.stalls += usize::from(!found);
         }
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
+    }
+
+    /// Looks where an effect says that a lower valley may be, if the load behind a gap is hidden; true if one is.
+    fn try_other_valleys(&mut self, data: &Data, scales: &Scales) -> bool {
+        let model = self.structure.model(&self.values);
+        let hidden = self.structure.carries_load && !data.excitation.sees_load_of(&model);
+        if !hidden || self.valleys_seen >= MOST_VALLEYS {
+            return false;
+        }
+        self.valleys_seen += 1;
+        let present = self.cost;
+        for (index, effect) in self.structure.effects.clone().into_iter().enumerate() {
+            let range = self.structure.range(index);
+            for other in effect.other_valleys(&self.values[range.clone()]) {
+                let mut trial = self.clone();
+                trial.values[range.clone()].copy_from_slice(&other);
+                trial.structure.clamp(&mut trial.values, scales);
+                trial.follow_starts(data);
+                trial.valleys_seen = MOST_VALLEYS;
+                trial.damping = FIRST_DAMPING;
+                for _ in 0..VALLEY_ITERATIONS {
+                    trial.iterate(data, scales);
+                }
+                if trial.cost < self.cost {
+                    trial.valleys_seen = self.valleys_seen;
+                    *self = trial;
+                }
+            }
+        }
+        self.stalls = 0;
+        self.cost < LOWER_VALLEY * present
     }
 
     /// Whether it stopped short of the least cost: its steps should have lowered it and did not, as where the motion
@@ -313,7 +354,9 @@ fn simulate(
 ) -> Motion {
     let mut motion = Motion::still(data.len());
     let model = structure.model(values);
-    motion.loads = data.excitation.follow(&model, starts, known);
+    motion.loads = data
+        .excitation
+        .follow(&model, starts, known, structure.carries_load);
     let (position, velocity) = (&mut motion.position, &mut motion.velocity);
     let moves = data
         .excitation

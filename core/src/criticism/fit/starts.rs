@@ -12,6 +12,9 @@ const FEWEST_POLISHINGS: usize = 2;
 const POLISHINGS: usize = 6;
 const POLISHED_ENOUGH: f64 = 0.999;
 
+/// Share of the cost that is left at most where a load is carried from window to window.
+const CARRIED: f64 = 0.98;
+
 /// Shares of the step of a window's state that are tried where a contact bends the motion.
 const POLISHED: [f64; 3] = [1.0, 0.3, 0.1];
 
@@ -86,6 +89,27 @@ impl Fit {
         sees_load
     }
 
+    /// Has a load behind a gap go on from window to window, if that fits better than where it would be if the body had
+    /// moved as measured: a stiff contact makes much of little noise. True if so.
+    pub(super) fn try_carrying(&mut self, data: &Data, scales: &Scales) -> bool {
+        let model = self.structure.model(&self.values);
+        let gap = model.load.is_some_and(|load| load.coupling.half_gap > 0.0);
+        if !gap || self.structure.carries_load || data.excitation.sees_load_of(&model) {
+            return false;
+        }
+        let mut trial = self.clone();
+        trial.structure.carries_load = true;
+        trial.follow_starts(data);
+        for _ in 0..FEWEST_POLISHINGS {
+            trial.polish_once(data, scales);
+        }
+        let better = trial.cost < CARRIED * self.cost;
+        if better {
+            *self = trial;
+        }
+        better
+    }
+
     /// Takes up the motion from the present starts.
     pub(in crate::criticism) fn follow_starts(&mut self, data: &Data) {
         self.motion = self.simulate(data, &self.values, &self.starts);
@@ -94,11 +118,13 @@ impl Fit {
 
     /// Takes for each window its state of `trial` where that fits better.
     pub(in crate::criticism) fn take_better(&mut self, data: &Data, trial: &[Start]) {
+        let kept = (self.starts.clone(), self.cost);
         let motion = self.simulate(data, &self.values, trial);
         let before = window_costs(data, &self.motion);
         let after = window_costs(data, &motion);
-        // A slow sensor carries over from window to window; apart from that each has its own motion.
-        let apart = self.structure.model(&self.values).sensor_lag.is_none();
+        // A slow sensor carries over from window to window, and a load may; apart from that each has its own motion.
+        let slow = self.structure.model(&self.values).sensor_lag.is_some();
+        let apart = !slow && !self.structure.carries_load;
         let spans = data.spans();
         let better = (0..trial.len()).filter(|k| after[*k] < before[*k]);
         for k in better {
@@ -111,6 +137,10 @@ impl Fit {
             self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
         } else {
             self.follow_starts(data);
+            if self.structure.carries_load && self.cost > kept.1 {
+                self.starts = kept.0;
+                self.follow_starts(data);
+            }
         }
     }
 }
