@@ -231,6 +231,21 @@ fn behind(probe: &Probe, gaps: &[f64]) -> Vec<Trial> {
     best(refined, BEST)
 }
 
+/// The best loads behind a gap that nobody has seen, where one may leave less than this share of the unexplained force.
+fn hidden(stretch: &Probe, share: f64) -> Vec<Trial> {
+    let gaps = gap_shares().map(|share| share * stretch.scales.travel);
+    let guesses = gaps.map(|gap| Guess::new(gap, LOAD_FRICTION[0], STIFFNESS[0]));
+    let scanned = tried(stretch, &guesses.collect::<Vec<_>>());
+    let gaps: Vec<f64> = best(scanned, REFINED)
+        .iter()
+        .filter(|trial| trial.left < PROMISING.min(share))
+        .map(|trial| trial.guess.half_gap)
+        .collect();
+    let mut found = behind(stretch, &gaps);
+    found.retain(|trial| Probe::may_be(trial.left));
+    found
+}
+
 impl Effect for Backlash {
     fn id(&self) -> EffectId {
         EffectId::new("backlash")
@@ -311,20 +326,12 @@ impl Effect for Backlash {
         if seen.first().is_some_and(|trial| trial.left < WELL_SEEN) {
             return seen.iter().map(Trial::values).collect();
         }
-        let stretch = &probe.stretch();
-        let gaps = gap_shares().map(|share| share * probe.scales.travel);
-        let guesses = gaps.map(|gap| Guess::new(gap, LOAD_FRICTION[0], STIFFNESS[0]));
-        let scanned = tried(stretch, &guesses.collect::<Vec<_>>());
-        let gaps: Vec<f64> = best(scanned, REFINED)
-            .iter()
-            .filter(|trial| trial.left < PROMISING.min(share))
-            .map(|trial| trial.guess.half_gap)
-            .collect();
-        let found = behind(stretch, &gaps).into_iter();
-        found
-            .filter(|trial| Probe::may_be(trial.left))
-            .map(|trial| trial.values())
-            .collect()
+        let stretch = probe.stretch();
+        let mut found = hidden(&stretch, share);
+        if found.first().is_none_or(|trial| trial.left > WELL_SEEN) {
+            found.extend(hidden(&stretch.as_measured(), share));
+        }
+        found.iter().map(Trial::values).collect()
     }
 
     fn other_valleys(&self, values: &[f64]) -> Vec<Vec<f64>> {

@@ -524,6 +524,16 @@ impl Probe {
         stretch
     }
 
+    /// The same with loads that follow the position as it was measured: what is free of noise is rounded where a load is
+    /// met between two samples.
+    #[must_use]
+    pub fn as_measured(&self) -> Self {
+        Self {
+            followed: self.position.clone(),
+            ..self.clone()
+        }
+    }
+
     /// By how much the acting input changes from each sample to the next.
     pub fn input_changes(&self) -> Vec<f64> {
         let acting = |k: usize| self.acting.get(k).or(self.acting.last());
