@@ -194,6 +194,7 @@ impl Explore {
             // Large type leaves less room than the plots need.
             theme::scroll("explore").show(ui, |ui| {
                 self.answer_ui(ui);
+                self.reasons_ui(ui);
                 let height = (0.5 * ui.available_height() - 34.0).max(150.0);
                 if layout::room_for_two(ui) {
                     ui.columns(2, |columns| {
@@ -211,9 +212,11 @@ impl Explore {
     }
 
     fn narrow_ui(&mut self, ui: &mut egui::Ui) {
+        // The sliders stand below the plots: the answer stays in view while one is turned.
+        egui::Panel::top("explore_answer").show(ui, |ui| self.answer_ui(ui));
         egui::CentralPanel::default().show(ui, |ui| {
             theme::scroll("explore").show(ui, |ui| {
-                self.answer_ui(ui);
+                self.reasons_ui(ui);
                 self.nyquist_ui(ui, 260.0);
                 self.time_ui(ui, 220.0);
                 self.controls_ui(ui);
@@ -223,23 +226,31 @@ impl Explore {
         });
     }
 
-    fn answer_ui(&mut self, ui: &mut egui::Ui) {
+    fn answer_ui(&self, ui: &mut egui::Ui) {
         match self.finished.as_ref().map(|f| &f.data) {
-            Some(Ok((data, claims))) => {
-                theme::answer_ui(ui, &data.text);
-                ui.label(tr(&data.stability));
-                if let Some(number) = self.figure {
-                    if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
-                        claim_ui(ui, number, figure.title, figure.claim, claims);
-                    }
-                } else {
-                    ui.label(tr(&data.trust.text));
-                }
-            }
+            Some(Ok((data, _))) => theme::answer_ui(ui, &data.text),
             Some(Err(error)) => {
                 ui.colored_label(ui.visuals().warn_fg_color, tr(error));
             }
             None => {}
+        }
+    }
+
+    /// What the answer rests on.
+    fn reasons_ui(&self, ui: &mut egui::Ui) {
+        let Some((data, claims)) = self.data() else {
+            return;
+        };
+        ui.label(tr(&data.stability));
+        match self.figure {
+            Some(number) => {
+                if let Some(figure) = figures().into_iter().find(|f| f.number == number) {
+                    claim_ui(ui, number, figure.title, figure.claim, claims);
+                }
+            }
+            None => {
+                ui.label(tr(&data.trust.text));
+            }
         }
     }
 
