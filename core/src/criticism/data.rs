@@ -143,10 +143,6 @@ impl Data {
         let shown = velocity.or(outputs.first());
         let shown = shown.map_or_else(Vec::new, |o| o.values.clone());
         let position = match measurement.kind {
-            Kind::Drive => position_estimate(&measurement.time, &outputs),
-            Kind::Process => Vec::new(),
-        };
-        let smooth = match measurement.kind {
             Kind::Drive => {
                 let seen = |is_velocity: bool| {
                     let output = outputs.iter().find(|o| o.is_velocity == is_velocity);
@@ -176,8 +172,7 @@ impl Data {
                 position,
                 followed,
             )
-            .with_shown(shown)
-            .with_followed(smooth),
+            .with_shown(shown),
             input: input.clone(),
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),

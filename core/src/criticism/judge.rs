@@ -59,7 +59,7 @@ const CLEAR_ERRORS: f64 = 3.0;
 const LEAST_ERRORS: f64 = 1.5;
 
 /// Fall of the error that speaks for itself.
-const HUGE_FALL: f64 = 0.5;
+pub(super) const HUGE_FALL: f64 = 0.5;
 
 /// Whether the last effect of `with` helps `model` on both parts of the record, and is itself seen. What only tells how the record was made may be a
 /// trifle: it is not said to be missing from the machine.

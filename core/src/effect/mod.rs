@@ -51,6 +51,17 @@ pub trait Effect: Sync {
     /// Values from which a fit may start, most likely first; several where the error has several valleys. The effect is
     /// only asked for if it leaves less than this `share` of the squared error: what takes long to search for need not be.
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>>;
+    /// The same for a drive without viscous friction, where that of a model without this effect may have taken its
+    /// place.
+    fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// Values from which a fit may come to a lower valley, where it has stalled at these.
+    fn other_valleys(&self, _values: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
     /// How many of its first parameters tell that it is there, each alone by not being 0.
     fn telling(&self) -> usize {
         1
@@ -61,15 +72,6 @@ pub trait Effect: Sync {
         &[]
     }
 
-    /// The same for a drive without viscous friction, where that of a model without this effect may have taken its
-    /// place.
-    fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {
-        Vec::new()
-    }
-    /// Values from which a fit may come to a lower valley, where it has stalled at these.
-    fn other_valleys(&self, _values: &[f64]) -> Vec<Vec<f64>> {
-        Vec::new()
-    }
     /// Least standard errors of these values, where the record shows a gap: a fit that has many valleys side by side knows
     /// its own only.
     fn least_errors(&self, _values: &[f64], _gap: &SeenGap) -> Vec<f64> {

@@ -80,7 +80,7 @@ pub enum Sensor {
 
 impl Excitation {
     /// `time` in s strictly increasing, `input` as long; `before` acted until the record starts;
-    /// `position` as measured or estimated, as long or empty, with the noise of what was measured.
+    /// `position` that a load follows, as long or empty, with the noise of what was measured.
     pub fn new(
         time: &[f64],
         input: &[f64],
@@ -124,12 +124,6 @@ impl Excitation {
     pub(crate) fn with_seen_load(self, seen: SeenLoad) -> Self {
         let seen = Some(seen);
         Self { seen, ..self }
-    }
-
-    /// The same with a position that is better than the measured one, for a load to follow.
-    #[must_use]
-    pub(crate) fn with_followed(self, position: Vec<f64>) -> Self {
-        Self { position, ..self }
     }
 
     /// Position that a load follows; empty for a process.

@@ -3,7 +3,7 @@
 mod choice;
 mod report;
 
-use super::judge::{alike, nested, part_does, same_body};
+use super::judge::{HUGE_FALL, alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
 use super::search::Search;
@@ -27,9 +27,6 @@ const BETTER: f64 = 0.9999;
 
 /// Error, in noise units, up to which little is left.
 const LITTLE_LEFT: f64 = 3.0;
-
-/// Share of the error that is most of it.
-const MOST: f64 = 0.5;
 
 /// What a step is doing.
 enum Stage {
@@ -522,7 +519,7 @@ impl StepJob {
             let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
             // What is needed shows only where little is left.
             if let Some(suggested) = &suggested
-                && fall(&model.score, &suggested.score) > MOST
+                && fall(&model.score, &suggested.score) > HUGE_FALL
             {
                 return Some(suggested.clone());
             }
