@@ -17,7 +17,8 @@ use crate::effect::{Effect, EffectId};
 impl StepJob {
     pub(super) fn report(&self) -> Option<StepReport> {
         let model = self.model.as_ref()?;
-        let suggestion = self.suggestion(model).map(|(e, _)| e.id());
+        let suggested = self.suggestion(model);
+        let suggestion = suggested.map(|(e, _)| e.id());
         let needless = self.needless(model);
         let whole = self.session.completed(model);
         let parameters = self.session.parameters(&whole);
@@ -63,6 +64,10 @@ impl StepJob {
         for candidate in candidates.iter_mut().filter(|_| share.is_finite()) {
             candidate.error *= share;
         }
+        // What is going to be added is said as it will be.
+        if let (Some((_, added)), Some(leads)) = (suggested, candidates.first_mut()) {
+            leads.error = self.session.completed(added).score.error;
+        }
         Some(StepReport {
             fingerprints: fingerprints(&self.session, model, &tried, &findings),
             missing: if unknown {
@@ -88,7 +93,7 @@ impl StepJob {
         })
     }
 
-    /// Every effect tried, best first; the suggested one leads.
+    /// Every effect tried, best first, the simpler one of two as good; the suggested one leads.
     fn candidates(&self, model: &Scored, suggestion: Option<EffectId>) -> Vec<Candidate> {
         let length = model.fit.values.len();
         let first = self.session.first(model);
@@ -141,10 +146,18 @@ impl StepJob {
         candidates.extend(untried);
         candidates.sort_by(|a, b| {
             let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
-            first(a).cmp(&first(b)).then(a.error.total_cmp(&b.error))
+            let simpler = a.parameters.len().cmp(&b.parameters.len());
+            let better = rounded(a.error).total_cmp(&rounded(b.error)).then(simpler);
+            first(a).cmp(&first(b)).then(better)
         });
         candidates
     }
+}
+
+/// To the three digits that are shown.
+fn rounded(error: f64) -> f64 {
+    let digit = libm::exp10(libm::floor(libm::log10(error)) - 2.0);
+    libm::round(error / digit) * digit
 }
 
 /// What a perfect model would leave: where noise remembers, more than neighbouring samples show.
