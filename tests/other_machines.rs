@@ -252,6 +252,38 @@ fn a_load_that_rubs_is_found_behind_its_shaft() {
 }
 
 /// Twelve hundred poles go by: a wave that is met nowhere on a coarse grid of frequencies.
+/// Nobody can simulate for long where such a load is: every contact multiplies what was wrong before it. The momentum that
+/// the motor loses tells it.
+#[test]
+fn a_load_that_is_met_again_and_again_is_found_behind_its_gap() {
+    let load = Load {
+        half_gap: 0.03,
+        stiffness: 800.0,
+        damping: 0.15,
+        inertia: 8.8e-4,
+        viscous: 2e-3,
+        coulomb: 0.0,
+    };
+    let d = diagnose(&DriveRig {
+        excitation: Excitation::Multisine { amplitude: 0.08 },
+        samples: 5000,
+        load: Some(load),
+        ..DriveRig::default()
+    });
+    assert_eq!(classes(&d)[0], ["backlash"], "{}", d.verdict.text);
+    let last = d.steps.last().unwrap();
+    assert!(last.error < 0.1 * d.steps[0].error, "{}", last.error);
+    for (name, truth) in [
+        ("beta", load.half_gap),
+        ("J2", load.inertia),
+        ("J1", DriveRig::default().inertia),
+    ] {
+        let found = last.parameters.iter().find(|p| p.name == name).unwrap();
+        let off = found.value / truth - 1.0;
+        assert!(off.abs() < 0.03, "{name}: {} of {truth}", found.value);
+    }
+}
+
 #[test]
 fn cogging_of_a_long_axis_is_found() {
     let rig = DriveRig {

@@ -179,6 +179,13 @@ impl Search {
                 structure.begin(&mut values, kept.len());
                 points.push((values, at.starts.clone()));
             }
+            for (own, start) in effect.starts_with_body(&probed.probe) {
+                let mut values = kept.clone();
+                values[..own.len()].copy_from_slice(&own);
+                values.extend(start);
+                structure.begin(&mut values, kept.len());
+                points.push((values, data.guessed_starts()));
+            }
             points.extend(Self::other_valleys(
                 data, fit, &rest, &kept, &structure, &own, probed,
             ));

@@ -4,7 +4,7 @@ use super::baseline;
 use super::knowledge::Knowledge;
 use crate::effect::{Effect, EffectId, Scales};
 use crate::measurement::Kind;
-use crate::model::Model;
+use crate::model::{LoadBegin, Model};
 use crate::user_model::Status;
 
 /// Share of a parameter, or of its typical size, by which it is moved for a sensitivity: the motion is exact, so that
@@ -23,9 +23,8 @@ pub(super) struct Structure {
     pub kind: Kind,
     pub effects: Vec<&'static dyn Effect>,
     pub knowledge: Knowledge,
-    /// Where windows follow on each other, a load begins where the model left it, not where it would be if the body had
-    /// moved as measured.
-    pub carries_load: bool,
+    /// Where a load behind a gap begins in the windows.
+    pub load_begin: LoadBegin,
 }
 
 impl Structure {
@@ -34,7 +33,7 @@ impl Structure {
             kind,
             effects,
             knowledge,
-            carries_load: false,
+            load_begin: LoadBegin::Followed,
         }
     }
 
@@ -42,7 +41,7 @@ impl Structure {
     pub fn with(&self, effect: &'static dyn Effect) -> Self {
         let mut next = self.clone();
         next.effects.push(effect);
-        next.carries_load = false;
+        next.load_begin = LoadBegin::Followed;
         next
     }
 
@@ -67,7 +66,7 @@ impl Structure {
     pub fn without(&self, index: usize) -> Self {
         let mut next = self.clone();
         next.effects.remove(index);
-        next.carries_load = false;
+        next.load_begin = LoadBegin::Followed;
         next
     }
 

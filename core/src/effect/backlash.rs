@@ -38,6 +38,9 @@ const FELT_STIFFNESS: [f64; 10] = [0.01, 0.018, 0.032, 0.056, 0.1, 0.18, 0.32, 0
 /// Damping ratio of such a contact.
 const FELT_DAMPING: [f64; 2] = [0.05, 0.25];
 
+/// Stiffness of a contact that is met again and again, in times of what its pushes tell: those are means over samples.
+const MET_STIFFNESS: [f64; 3] = [1.0, 0.5, 2.0];
+
 /// Dry friction of the load, in units of the typical input, that stands for none.
 const LEAST_DRY: f64 = 1e-4;
 
@@ -332,6 +335,25 @@ impl Effect for Backlash {
             found.extend(hidden(&stretch.as_measured(), share));
         }
         found.iter().map(Trial::values).collect()
+    }
+
+    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+        let Some(met) = probe.bounces() else {
+            return Vec::new();
+        };
+        let [inertia, viscous, dry] = met.load;
+        let [stiffness, damping] = met.contact;
+        let start = |times: f64| {
+            vec![
+                met.half_gap,
+                inertia,
+                viscous,
+                dry,
+                times * stiffness,
+                times.sqrt() * damping,
+            ]
+        };
+        MET_STIFFNESS.map(|times| (met.body, start(times))).to_vec()
     }
 
     fn other_valleys(&self, values: &[f64]) -> Vec<Vec<f64>> {

@@ -57,6 +57,11 @@ pub trait Effect: Sync {
         Vec::new()
     }
 
+    /// The same with inertia and viscous friction of the body, where the record tells them together.
+    fn starts_with_body(&self, _probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+        Vec::new()
+    }
+
     /// Values from which a fit may come to a lower valley, where it has stalled at these.
     fn other_valleys(&self, _values: &[f64]) -> Vec<Vec<f64>> {
         Vec::new()

@@ -7,6 +7,7 @@
 //! inertia or viscous friction, and a constant force can explain: a score test (Rao 1948), one linear
 //! regression instead of a fit.
 
+mod bounces;
 mod bristle;
 mod moving;
 mod spatial;

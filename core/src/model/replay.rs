@@ -1,6 +1,7 @@
 //! Replay: a model driven by a measured input, restarted at the windows' estimated states.
 
 use super::bristle::{Bristle, Steady};
+use super::felt_load::Felt;
 use super::load::{Followed, FollowedNoise, Follower};
 use super::seen_load::{SeenLoad, Sight, Tracker};
 use super::{Engine, Load, Model, State};
@@ -31,6 +32,20 @@ pub struct FollowedLoad {
     samples: Vec<usize>,
     /// None where it goes on from the window before.
     at: Vec<Option<Followed>>,
+    /// Roots of the covariances where it is known by the force that the body felt.
+    roots: Vec<[f64; 3]>,
+}
+
+/// Where a load behind a gap begins in a window, if its contacts were not seen one by one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum LoadBegin {
+    /// Where it would be if the body had moved as measured.
+    #[default]
+    Followed,
+    /// Where the window before left it, where windows follow on each other.
+    Carried,
+    /// Where the force that the body felt has moved it.
+    Felt,
 }
 
 impl FollowedLoad {
@@ -142,8 +157,9 @@ impl Excitation {
     }
 
     /// Whether the load of `model` may be off where it is taken to be, by deviations that a [`Start`] tells.
-    pub(crate) fn doubts_load_of(&self, model: &Model) -> bool {
-        self.sees_load_of(model) || self.doubt(model).is_some()
+    pub(crate) fn doubts_load_of(&self, model: &Model, begin: LoadBegin) -> bool {
+        let felt = begin == LoadBegin::Felt && model.load.is_some();
+        felt || self.sees_load_of(model) || self.doubt(model).is_some()
     }
 
     /// Standard deviations of position and velocity of a load that is never free, from the noise of what it follows.
@@ -215,16 +231,15 @@ impl Excitation {
         (self.time[self.len() - 1] - self.time[0]) / (self.len() - 1) as f64
     }
 
-    /// Where the load of `model` is at each of `starts` if the body moved as measured; taken over from what is `known`,
-    /// if that is the same. If it is `carried`, it is so only where a run begins.
-    pub fn follow(
+    /// Where the load of `model` is at each of `starts`; taken over from what is `known`, if that is the same.
+    pub(crate) fn follow(
         &self,
         model: &Model,
         starts: &[Start],
         known: &FollowedLoad,
-        carried: bool,
+        begin: LoadBegin,
     ) -> FollowedLoad {
-        if !carried && known.suits(model, starts) {
+        if begin == LoadBegin::Followed && known.suits(model, starts) {
             return known.clone();
         }
         let Some(load) = model.load.filter(|_| self.position.len() == self.len()) else {
@@ -232,7 +247,10 @@ impl Excitation {
         };
         let mut follower = Follower::new(&load, self.position[0], self.mean_step());
         let mut tracker = self.tracker(model);
-        let carried = carried && tracker.is_none();
+        if begin == LoadBegin::Felt && tracker.is_none() {
+            return self.feel(model, &load, starts);
+        }
+        let carried = begin == LoadBegin::Carried && tracker.is_none();
         let begins = |i: usize| self.runs.binary_search_by_key(&i, |run| run.0).is_ok();
         let at = starts.iter().map(|start| {
             let i = start.sample;
@@ -250,6 +268,26 @@ impl Excitation {
             samples: starts.iter().map(|s| s.sample).collect(),
             // Where it was seen, it is followed by its contacts, and the body bounces off in them.
             load: (tracker.is_none() && !carried).then_some(load),
+            roots: Vec::new(),
+        }
+    }
+
+    /// The same by the force that the body felt.
+    fn feel(&self, model: &Model, load: &Load, starts: &[Start]) -> FollowedLoad {
+        let samples: Vec<usize> = starts.iter().map(|s| s.sample).collect();
+        let felt = Felt {
+            position: &self.position,
+            velocity: (self.slow_sensor == Sensor::Velocity).then_some(self.shown.as_slice()),
+            input: &self.effective_input(model),
+            step: self.mean_step(),
+        };
+        let states = felt.states(model, load, &samples).into_iter();
+        let (at, roots) = states.map(|(state, root)| (Some(state), root)).unzip();
+        FollowedLoad {
+            load: None,
+            samples,
+            at,
+            roots,
         }
     }
 
@@ -294,7 +332,13 @@ impl Excitation {
                     if let Some(Some(load)) = loads.at.get(window) {
                         let shift = match &tracker {
                             Some(tracker) => tracker.shift(self.time[i], start.load),
-                            None => [doubt[0] * start.load[0], doubt[1] * start.load[1]],
+                            None => match loads.roots.get(window) {
+                                Some([x, slope, v]) => {
+                                    let [a, b] = start.load;
+                                    [x * a, slope * a + v * b]
+                                }
+                                None => [doubt[0] * start.load[0], doubt[1] * start.load[1]],
+                            },
                         };
                         state = state.with_load(load, self.position[i], shift);
                     }

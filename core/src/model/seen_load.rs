@@ -249,7 +249,7 @@ impl SeenLoad {
 }
 
 /// Lower triangular root (xx, vx, vv) of a covariance (xx, xv, vv).
-fn root([xx, xv, vv]: [f64; 3]) -> [f64; 3] {
+pub(super) fn root([xx, xv, vv]: [f64; 3]) -> [f64; 3] {
     let x = xx.sqrt();
     let slope = if x > 0.0 { xv / x } else { 0.0 };
     [x, slope, (vv - slope * slope).max(0.0).sqrt()]

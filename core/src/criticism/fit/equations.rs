@@ -69,7 +69,10 @@ impl Fit {
             let starts: Vec<Start> = self.starts.iter().map(|s| changed(s, &change)).collect();
             difference(self.simulate(data, &self.values, &starts), step)
         };
-        let states = if data.excitation.doubts_load_of(&model) {
+        let states = if data
+            .excitation
+            .doubts_load_of(&model, self.structure.load_begin)
+        {
             STATES
         } else {
             BODY_STATES
@@ -162,8 +165,7 @@ impl Fit {
         }
         let moved = self.bounded_step(&schur, &reduced_gradient, scales)?;
         let values: Vec<f64> = self.values.iter().zip(&moved).map(|(v, d)| v + d).collect();
-        let model = self.structure.model(&self.values);
-        let farthest = farthest(data.excitation.sees_load_of(&model));
+        let farthest = farthest(self.sees_load(data));
         let starts = self
             .starts
             .iter()

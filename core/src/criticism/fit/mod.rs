@@ -15,7 +15,7 @@ use super::data::Data;
 use super::structure::Structure;
 use super::window_sums::reduced;
 use crate::effect::Scales;
-use crate::model::{FollowedLoad, Start};
+use crate::model::{FollowedLoad, LoadBegin, Start};
 
 /// Iterations after which a fit ends in any case.
 const MAX_ITERATIONS: usize = 30;
@@ -160,6 +160,7 @@ impl Fit {
             information: DMatrix::identity(p, p),
         };
         fit.take_felt_loads(data);
+        fit.try_feeling(data);
         fit
     }
 
@@ -228,7 +229,8 @@ impl Fit {
     /// Looks where an effect says that a lower valley may be, if the load behind a gap is hidden; true if one is.
     fn try_other_valleys(&mut self, data: &Data, scales: &Scales) -> bool {
         let model = self.structure.model(&self.values);
-        let hidden = self.structure.carries_load && !data.excitation.sees_load_of(&model);
+        let hidden = self.structure.load_begin == LoadBegin::Carried
+            && !data.excitation.sees_load_of(&model);
         if !hidden || self.valleys_seen >= MOST_VALLEYS {
             return false;
         }
@@ -315,7 +317,7 @@ impl Fit {
         };
         trial.take_better(data, &self.starts);
         let model = self.structure.model(values);
-        if data.excitation.sees_load_of(&model) {
+        if self.sees_load(data) {
             trial.polish_until(present, data, scales);
         } else if model.friction.breakaway() > 0.0 {
             trial.polish_once(data, scales);
@@ -356,13 +358,13 @@ fn simulate(
     let model = structure.model(values);
     motion.loads = data
         .excitation
-        .follow(&model, starts, known, structure.carries_load);
+        .follow(&model, starts, known, structure.load_begin);
     let (position, velocity) = (&mut motion.position, &mut motion.velocity);
     let moves = data
         .excitation
         .replay(&model, starts, &motion.loads, position, velocity);
     data.count_moves(moves);
-    let doubts_load = data.excitation.doubts_load_of(&model);
+    let doubts_load = data.excitation.doubts_load_of(&model, structure.load_begin);
     let prior = |s: &Start| {
         if doubts_load {
             s.load[0].powi(2) + s.load[1].powi(2)

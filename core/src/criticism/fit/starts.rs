@@ -5,7 +5,7 @@ use crate::criticism::cost::{ODD_MEAN_SQUARE, window_costs};
 use crate::criticism::data::Data;
 use crate::criticism::window_sums::{changed, inverse, kept_within};
 use crate::effect::Scales;
-use crate::model::Start;
+use crate::model::{LoadBegin, Start};
 
 /// Times that the states of windows are improved: with a seen load as long as that lowers the cost below this share.
 const FEWEST_POLISHINGS: usize = 2;
@@ -14,6 +14,9 @@ const POLISHED_ENOUGH: f64 = 0.999;
 
 /// Share of the cost that is left at most where a load is carried from window to window.
 const CARRIED: f64 = 0.98;
+
+/// The same where a load is known by the force that the body felt: that is told with noise of its own.
+const FELT: f64 = 0.1;
 
 /// Shares of the step of a window's state that are tried where a contact bends the motion.
 const POLISHED: [f64; 3] = [1.0, 0.3, 0.1];
@@ -71,9 +74,7 @@ impl Fit {
     pub(in crate::criticism) fn polish_once(&mut self, data: &Data, scales: &Scales) -> bool {
         let columns = self.columns(data, &[], scales);
         let (_, _, windows) = self.normal_equations(data, &columns, 0, f64::INFINITY);
-        let sees_load = data
-            .excitation
-            .sees_load_of(&self.structure.model(&self.values));
+        let sees_load = self.sees_load(data);
         let farthest = farthest(sees_load);
         let shares: &[f64] = if sees_load { &POLISHED } else { &[1.0] };
         for share in shares {
@@ -89,16 +90,43 @@ impl Fit {
         sees_load
     }
 
+    /// Whether its load is known by what the body felt of it, contact by contact or as a force.
+    pub(super) fn sees_load(&self, data: &Data) -> bool {
+        let model = self.structure.model(&self.values);
+        let felt = self.structure.load_begin == LoadBegin::Felt && model.load.is_some();
+        felt || data.excitation.sees_load_of(&model)
+    }
+
+    /// Takes a load behind a gap to be where the force that the body felt has moved it, if that fits far better than where
+    /// it would be if the body had moved as measured.
+    pub(super) fn try_feeling(&mut self, data: &Data) {
+        let model = self.structure.model(&self.values);
+        let gap = model.load.is_some_and(|load| load.coupling.half_gap > 0.0);
+        let followed = self.structure.load_begin == LoadBegin::Followed;
+        if !gap || !followed || data.excitation.sees_load_of(&model) {
+            return;
+        }
+        let mut trial = self.clone();
+        trial.structure.load_begin = LoadBegin::Felt;
+        trial.follow_starts(data);
+        if trial.cost < FELT * self.cost {
+            *self = trial;
+        }
+    }
+
     /// Has a load behind a gap go on from window to window, if that fits better than where it would be if the body had
     /// moved as measured: a stiff contact makes much of little noise. True if so.
     pub(super) fn try_carrying(&mut self, data: &Data, scales: &Scales) -> bool {
         let model = self.structure.model(&self.values);
         let gap = model.load.is_some_and(|load| load.coupling.half_gap > 0.0);
-        if !gap || self.structure.carries_load || data.excitation.sees_load_of(&model) {
+        if !gap
+            || self.structure.load_begin != LoadBegin::Followed
+            || data.excitation.sees_load_of(&model)
+        {
             return false;
         }
         let mut trial = self.clone();
-        trial.structure.carries_load = true;
+        trial.structure.load_begin = LoadBegin::Carried;
         trial.follow_starts(data);
         for _ in 0..FEWEST_POLISHINGS {
             trial.polish_once(data, scales);
@@ -124,7 +152,7 @@ impl Fit {
         let after = window_costs(data, &motion);
         // A slow sensor carries over from window to window, and a load may; apart from that each has its own motion.
         let slow = self.structure.model(&self.values).sensor_lag.is_some();
-        let apart = !slow && !self.structure.carries_load;
+        let apart = !slow && self.structure.load_begin != LoadBegin::Carried;
         let spans = data.spans();
         let better = (0..trial.len()).filter(|k| after[*k] < before[*k]);
         for k in better {
@@ -137,7 +165,7 @@ impl Fit {
             self.cost = self.objective(data, &self.motion, &self.values, ODD_MEAN_SQUARE);
         } else {
             self.follow_starts(data);
-            if self.structure.carries_load && self.cost > kept.1 {
+            if self.structure.load_begin == LoadBegin::Carried && self.cost > kept.1 {
                 self.starts = kept.0;
                 self.follow_starts(data);
             }
