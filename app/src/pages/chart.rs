@@ -1,39 +1,23 @@
 //! What the plots of several pages share.
 
-use std::ops::{Deref, DerefMut, RangeInclusive};
+use std::ops::{Deref, DerefMut};
 
 use egui::{IdSalt, WidgetInfo};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory,
-    PlotPoint, PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
+    AxisHints, Line, Plot, PlotGeometry, PlotItem, PlotMemory, PlotPoint, PlotPoints, PlotResponse,
+    PlotUi, Points, uniform_grid_spacer,
 };
 
+pub use super::chart_axes::round_step;
+use super::chart_axes::{LABELS, grid, label, power_label, powers, shown_from, unit_of};
 pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_menu;
+use super::chart_reading::reading;
+pub use super::chart_reading::significant;
 use super::chart_zoom::Zoomed;
 use crate::export::Table;
-use crate::language::{tr, tr_number};
+use crate::language::tr;
 use crate::theme;
-
-/// Points between labels of x and of y: what they shall have, and what those of a low plot must have, which would
-/// have one label or none else.
-const LABELS: [[f32; 2]; 2] = [[40.0, 40.0], [24.0, 16.0]];
-
-/// Labels that an axis has at least where there is room: one alone shows no scale.
-const FEWEST_LABELS: f64 = 2.0;
-
-/// Significant digits of what is read at the pointer; a time needs more, since it grows.
-const READ_X: i32 = 6;
-const READ_Y: i32 = 5;
-
-/// The labels of an axis that ends below this have a smaller unit, or an exponent, so that they need no more room.
-const LEAST_PLAIN: f64 = 1e-3;
-
-/// Units that take a prefix, and the prefixes by their powers of ten.
-const PREFIXED: [&str; 10] = [
-    "rad", "rad/s", "rad/s²", "m", "m/s", "m/s²", "s", "N", "N m", "V",
-];
-const PREFIXES: [(i32, &str); 3] = [(-6, "µ"), (-9, "n"), (-12, "p")];
 
 pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
@@ -338,228 +322,9 @@ pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) 
     Chart::new(name, [x, y], height, 0.0).still()
 }
 
-/// Labels that far apart are drawn, and in full.
-fn shown_from(points: f32) -> egui::Rangef {
-    egui::Rangef::new(points - 0.1, points)
-}
-
-/// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
-fn label(mark: GridMark, range: &RangeInclusive<f64>, unit: &str) -> String {
-    let step = mark.step_size.abs();
-    let first = step.log10().floor();
-    let lead = step / 10_f64.powf(first);
-    // 2.5 has a second digit; 1, 2 and 5 have none.
-    let more = if (lead - lead.round()).abs() > 0.1 {
-        1.0
-    } else {
-        0.0
-    };
-    let decimals = (more - first).clamp(0.0, 12.0) as usize;
-    let value = mark.value;
-    if value.abs() < 1e-9 * step {
-        return "0".to_owned();
-    }
-    // Of the range: all labels of an axis have the same.
-    let largest = range.start().abs().max(range.end().abs());
-    if largest < LEAST_PLAIN {
-        let exponent = 3 * (largest.max(step).log10() / 3.0).floor() as i32;
-        let decimals = (more - first + f64::from(exponent)).max(0.0) as usize;
-        let value = value / 10_f64.powi(exponent);
-        let prefix = PREFIXES.iter().find(|(power, _)| *power == exponent);
-        return match prefix.filter(|_| PREFIXED.contains(&unit)) {
-            Some((_, prefix)) => {
-                let number = tr_number(format!("{value:.decimals$}"));
-                format!("{number} {prefix}{unit}")
-            }
-            None => tr_number(format!("{value:.decimals$}e{exponent}")),
-        };
-    }
-    tr_number(format!("{value:.decimals$}"))
-}
-
-/// The unit in the name of an axis, if it has one.
-fn unit_of(axis: &str) -> &str {
-    let inner = axis.strip_suffix(']').and_then(|a| a.rsplit_once('['));
-    inner.map_or("", |(_, unit)| unit)
-}
-
-/// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
-/// a finer and a coarser set.
-fn grid(input: &GridInput, [apart, least_apart]: [f32; 2]) -> [f64; 3] {
-    let (low, high) = input.bounds;
-    // The smallest step that egui_plot wants is 8 points wide; a label needs more.
-    let point = input.base_step_size / 8.0;
-    let wanted = ((high - low) / 7.0).max(f64::from(apart) * point);
-    let step = round_step(wanted.max(f64::MIN_POSITIVE));
-    let labels = |step: f64| (high / step).ceil() - (low / step).ceil();
-    let closer = [0.5, 0.4, 0.2].map(|share| round_step(0.99 * share * step));
-    let step = [step]
-        .into_iter()
-        .chain(closer)
-        .find(|s| labels(*s) >= FEWEST_LABELS && *s >= f64::from(least_apart) * point)
-        .unwrap_or(step);
-    // A finer line that is far enough from the next would have a label too.
-    let half = 0.5 * step / point;
-    if half >= f64::from(least_apart) && half < f64::from(apart) {
-        return [step, 10.0 * step, 100.0 * step];
-    }
-    [0.5 * step, step, 10.0 * step]
-}
-
-/// The next 1, 2 or 5 times a power of ten from here on.
-pub fn round_step(wanted: f64) -> f64 {
-    let decade = 10_f64.powf(wanted.log10().floor());
-    [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|s| s * decade >= wanted)
-        .map_or(wanted, |s| s * decade)
-}
-
-/// A line at every power of ten, and fine ones between at 2 to 9 times it.
-fn powers(input: &GridInput) -> Vec<GridMark> {
-    let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
-    let mark = |decade: i32, times: i32| GridMark {
-        value: f64::from(decade) + f64::from(times).log10(),
-        step_size: if times == 1 { 1.0 } else { 0.1 },
-    };
-    (low..high.min(low.saturating_add(MOST_DECADES)))
-        .flat_map(|decade| (1..10).map(move |times| mark(decade, times)))
-        // A mark beyond the ends would be drawn beside the plot.
-        .filter(|mark| (input.bounds.0..=input.bounds.1).contains(&mark.value))
-        .collect()
-}
-
-/// Decades that have grid lines, at most: what a plot spans before it has anything to show may be wild.
-const MOST_DECADES: i32 = 40;
-
-/// The power of ten at a line of [`powers`]; nothing at the fine ones.
-fn power_label(exponent: f64) -> String {
-    if exponent.fract() != 0.0 {
-        return String::new();
-    }
-    let decimals = (-exponent).clamp(0.0, 12.0) as usize;
-    tr_number(format!("{:.decimals$}", 10_f64.powf(exponent)))
-}
-
-/// What stands at the pointer: the curve, and the values by the names and units of their axes.
-fn reading(
-    names: [String; 2],
-    place: impl Fn(&PlotPoint) -> [f64; 2],
-) -> impl Fn(&HoverPosition<'_>) -> Option<String> {
-    move |at| {
-        let (curve, point) = match at {
-            HoverPosition::NearDataPoint {
-                plot_name,
-                position,
-                ..
-            } => (*plot_name, position),
-            HoverPosition::Elsewhere { position } => ("", position),
-        };
-        let [x, y] = place(point);
-        let [x, y] = [(&names[0], x, READ_X), (&names[1], y, READ_Y)]
-            .map(|(name, value, digits)| (name, read_out(value, digits)));
-        let across = line_of(x.0, &x.1);
-        Some(match curve {
-            "" => format!("{across}\n{}", line_of(y.0, &y.1)),
-            // An axis of several quantities: the curve says which one it is.
-            curve if y.0.contains(", ") => format!("{across}\n{}", line_of(curve, &y.1)),
-            curve => format!("{curve}\n{across}\n{}", line_of(y.0, &y.1)),
-        })
-    }
-}
-
-/// A value by the name of its axis, which ends with the unit.
-fn line_of(name: &str, value: &str) -> String {
-    match name.strip_suffix(']').and_then(|n| n.rsplit_once(" [")) {
-        Some((name, unit)) => format!("{name}: {value} {unit}"),
-        None => format!("{name}: {value}"),
-    }
-}
-
-/// A number with so many significant digits, as it is read on the screen.
-fn read_out(value: f64, digits: i32) -> String {
-    tr_number(significant(value, digits))
-}
-
-/// A number with so many significant digits, and an exponent only where it needs one.
-pub(super) fn significant(value: f64, digits: i32) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if (1e-4..1e6).contains(&size) {
-        let decimals = (digits - 1 - size.log10().floor() as i32).max(0) as usize;
-        let text = format!("{value:.decimals$}");
-        if text.contains('.') {
-            let text = text.trim_end_matches('0').trim_end_matches('.');
-            text.to_owned()
-        } else {
-            text
-        }
-    } else {
-        format!("{value:.3e}")
-    }
-}
-
 /// The place that the playback has reached.
 pub fn dot(name: &'static str, at: [f64; 2]) -> Points<'static> {
     Points::new(tr(name), vec![at])
         .color(theme::MODEL)
         .radius(6.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lines of an axis that is so many points high.
-    fn lines(bounds: (f64, f64), points: f64) -> [f64; 3] {
-        let base_step_size = 8.0 * (bounds.1 - bounds.0) / points;
-        grid(
-            &GridInput {
-                bounds,
-                base_step_size,
-            },
-            LABELS[1],
-        )
-    }
-
-    #[test]
-    fn a_low_plot_has_two_labels() {
-        assert_eq!(lines((-1.1, 1.1), 220.0), [0.25, 0.5, 5.0]);
-        assert_eq!(lines((-0.9, 0.9), 60.0), [0.25, 0.5, 5.0], "not 0 alone");
-        assert_eq!(lines((-1.1, 1.1), 24.0)[1], 5.0, "no room for two");
-    }
-
-    fn labels(range: RangeInclusive<f64>, marks: &[(f64, f64)]) -> Vec<String> {
-        let mark = |&(value, step_size)| GridMark { value, step_size };
-        let marks = marks.iter().map(mark);
-        marks.map(|mark| label(mark, &range, "")).collect()
-    }
-
-    #[test]
-    fn the_labels_of_an_axis_are_written_alike() {
-        let fine = [(0.0005, 0.0005), (0.00075, 0.00025), (0.0, 0.0005)];
-        assert_eq!(labels(0.0..=0.0009, &fine), ["500e-6", "750e-6", "0"]);
-        assert_eq!(labels(0.0..=0.002, &fine), ["0.0005", "0.00075", "0"]);
-        assert_eq!(labels(-4e-6..=4e-6, &[(-2e-6, 2e-6)]), ["-2e-6"]);
-        assert_eq!(
-            labels(5.374..=5.375, &[(5.3742, 2e-4), (5.37425, 5e-5)]),
-            ["5.3742", "5.37425"]
-        );
-        assert_eq!(labels(0.0..=3000.0, &[(2500.0, 500.0)]), ["2500"]);
-    }
-
-    #[test]
-    fn a_small_value_has_a_smaller_unit_where_there_is_one() {
-        let small = |unit: &str| {
-            let mark = GridMark {
-                value: 0.0005,
-                step_size: 0.0005,
-            };
-            label(mark, &(0.0..=0.0009), unit)
-        };
-        assert_eq!(small(unit_of("x1 - model [rad]")), "500 µrad");
-        assert_eq!(small(unit_of("inertia [kg m²]")), "500e-6");
-        assert_eq!(small(unit_of("output")), "500e-6");
-    }
 }

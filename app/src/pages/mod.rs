@@ -3,8 +3,10 @@
 
 mod backlash;
 mod chart;
+mod chart_axes;
 mod chart_caption;
 pub mod chart_menu;
+mod chart_reading;
 pub mod chart_zoom;
 mod compare;
 mod controls;

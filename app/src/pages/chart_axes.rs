@@ -1,0 +1,183 @@
+//! The labels of the axes of plots, and the lines of their grids.
+
+use std::ops::RangeInclusive;
+
+use egui_plot::{GridInput, GridMark};
+
+use crate::language::tr_number;
+
+/// Points between labels of x and of y: what they shall have, and what those of a low plot must have, which would
+/// have one label or none else.
+pub(super) const LABELS: [[f32; 2]; 2] = [[40.0, 40.0], [24.0, 16.0]];
+
+/// Labels that an axis has at least where there is room: one alone shows no scale.
+const FEWEST_LABELS: f64 = 2.0;
+
+/// The labels of an axis that ends below this have a smaller unit, or an exponent, so that they need no more room.
+const LEAST_PLAIN: f64 = 1e-3;
+
+/// Units that take a prefix, and the prefixes by their powers of ten.
+const PREFIXED: [&str; 10] = [
+    "rad", "rad/s", "rad/s²", "m", "m/s", "m/s²", "s", "N", "N m", "V",
+];
+const PREFIXES: [(i32, &str); 3] = [(-6, "µ"), (-9, "n"), (-12, "p")];
+
+/// Labels that far apart are drawn, and in full.
+pub(super) fn shown_from(points: f32) -> egui::Rangef {
+    egui::Rangef::new(points - 0.1, points)
+}
+
+/// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
+pub(super) fn label(mark: GridMark, range: &RangeInclusive<f64>, unit: &str) -> String {
+    let step = mark.step_size.abs();
+    let first = step.log10().floor();
+    let lead = step / 10_f64.powf(first);
+    // 2.5 has a second digit; 1, 2 and 5 have none.
+    let more = if (lead - lead.round()).abs() > 0.1 {
+        1.0
+    } else {
+        0.0
+    };
+    let decimals = (more - first).clamp(0.0, 12.0) as usize;
+    let value = mark.value;
+    if value.abs() < 1e-9 * step {
+        return "0".to_owned();
+    }
+    // Of the range: all labels of an axis have the same.
+    let largest = range.start().abs().max(range.end().abs());
+    if largest < LEAST_PLAIN {
+        let exponent = 3 * (largest.max(step).log10() / 3.0).floor() as i32;
+        let decimals = (more - first + f64::from(exponent)).max(0.0) as usize;
+        let value = value / 10_f64.powi(exponent);
+        let prefix = PREFIXES.iter().find(|(power, _)| *power == exponent);
+        return match prefix.filter(|_| PREFIXED.contains(&unit)) {
+            Some((_, prefix)) => {
+                let number = tr_number(format!("{value:.decimals$}"));
+                format!("{number} {prefix}{unit}")
+            }
+            None => tr_number(format!("{value:.decimals$}e{exponent}")),
+        };
+    }
+    tr_number(format!("{value:.decimals$}"))
+}
+
+/// The unit in the name of an axis, if it has one.
+pub(super) fn unit_of(axis: &str) -> &str {
+    let inner = axis.strip_suffix(']').and_then(|a| a.rsplit_once('['));
+    inner.map_or("", |(_, unit)| unit)
+}
+
+/// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
+/// a finer and a coarser set.
+pub(super) fn grid(input: &GridInput, [apart, least_apart]: [f32; 2]) -> [f64; 3] {
+    let (low, high) = input.bounds;
+    // The smallest step that egui_plot wants is 8 points wide; a label needs more.
+    let point = input.base_step_size / 8.0;
+    let wanted = ((high - low) / 7.0).max(f64::from(apart) * point);
+    let step = round_step(wanted.max(f64::MIN_POSITIVE));
+    let labels = |step: f64| (high / step).ceil() - (low / step).ceil();
+    let closer = [0.5, 0.4, 0.2].map(|share| round_step(0.99 * share * step));
+    let step = [step]
+        .into_iter()
+        .chain(closer)
+        .find(|s| labels(*s) >= FEWEST_LABELS && *s >= f64::from(least_apart) * point)
+        .unwrap_or(step);
+    // A finer line that is far enough from the next would have a label too.
+    let half = 0.5 * step / point;
+    if half >= f64::from(least_apart) && half < f64::from(apart) {
+        return [step, 10.0 * step, 100.0 * step];
+    }
+    [0.5 * step, step, 10.0 * step]
+}
+
+/// The next 1, 2 or 5 times a power of ten from here on.
+pub fn round_step(wanted: f64) -> f64 {
+    let decade = 10_f64.powf(wanted.log10().floor());
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|s| s * decade >= wanted)
+        .map_or(wanted, |s| s * decade)
+}
+
+/// A line at every power of ten, and fine ones between at 2 to 9 times it.
+pub(super) fn powers(input: &GridInput) -> Vec<GridMark> {
+    let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
+    let mark = |decade: i32, times: i32| GridMark {
+        value: f64::from(decade) + f64::from(times).log10(),
+        step_size: if times == 1 { 1.0 } else { 0.1 },
+    };
+    (low..high.min(low.saturating_add(MOST_DECADES)))
+        .flat_map(|decade| (1..10).map(move |times| mark(decade, times)))
+        // A mark beyond the ends would be drawn beside the plot.
+        .filter(|mark| (input.bounds.0..=input.bounds.1).contains(&mark.value))
+        .collect()
+}
+
+/// Decades that have grid lines, at most: what a plot spans before it has anything to show may be wild.
+const MOST_DECADES: i32 = 40;
+
+/// The power of ten at a line of [`powers`]; nothing at the fine ones.
+pub(super) fn power_label(exponent: f64) -> String {
+    if exponent.fract() != 0.0 {
+        return String::new();
+    }
+    let decimals = (-exponent).clamp(0.0, 12.0) as usize;
+    tr_number(format!("{:.decimals$}", 10_f64.powf(exponent)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of an axis that is so many points high.
+    fn lines(bounds: (f64, f64), points: f64) -> [f64; 3] {
+        let base_step_size = 8.0 * (bounds.1 - bounds.0) / points;
+        grid(
+            &GridInput {
+                bounds,
+                base_step_size,
+            },
+            LABELS[1],
+        )
+    }
+
+    #[test]
+    fn a_low_plot_has_two_labels() {
+        assert_eq!(lines((-1.1, 1.1), 220.0), [0.25, 0.5, 5.0]);
+        assert_eq!(lines((-0.9, 0.9), 60.0), [0.25, 0.5, 5.0], "not 0 alone");
+        assert_eq!(lines((-1.1, 1.1), 24.0)[1], 5.0, "no room for two");
+    }
+
+    fn labels(range: RangeInclusive<f64>, marks: &[(f64, f64)]) -> Vec<String> {
+        let mark = |&(value, step_size)| GridMark { value, step_size };
+        let marks = marks.iter().map(mark);
+        marks.map(|mark| label(mark, &range, "")).collect()
+    }
+
+    #[test]
+    fn the_labels_of_an_axis_are_written_alike() {
+        let fine = [(0.0005, 0.0005), (0.00075, 0.00025), (0.0, 0.0005)];
+        assert_eq!(labels(0.0..=0.0009, &fine), ["500e-6", "750e-6", "0"]);
+        assert_eq!(labels(0.0..=0.002, &fine), ["0.0005", "0.00075", "0"]);
+        assert_eq!(labels(-4e-6..=4e-6, &[(-2e-6, 2e-6)]), ["-2e-6"]);
+        assert_eq!(
+            labels(5.374..=5.375, &[(5.3742, 2e-4), (5.37425, 5e-5)]),
+            ["5.3742", "5.37425"]
+        );
+        assert_eq!(labels(0.0..=3000.0, &[(2500.0, 500.0)]), ["2500"]);
+    }
+
+    #[test]
+    fn a_small_value_has_a_smaller_unit_where_there_is_one() {
+        let small = |unit: &str| {
+            let mark = GridMark {
+                value: 0.0005,
+                step_size: 0.0005,
+            };
+            label(mark, &(0.0..=0.0009), unit)
+        };
+        assert_eq!(small(unit_of("x1 - model [rad]")), "500 µrad");
+        assert_eq!(small(unit_of("inertia [kg m²]")), "500e-6");
+        assert_eq!(small(unit_of("output")), "500e-6");
+    }
+}
