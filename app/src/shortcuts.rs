@@ -3,7 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::language::tr;
-use crate::pages::Command;
+use crate::pages::{Command, chart_cursor};
 
 /// A key and what it asks for.
 struct Shortcut {
@@ -91,14 +91,14 @@ pub fn pressed(ctx: &egui::Context, pages: &[&'static str], commands: &mut Vec<C
     if ctx.text_edit_focused() {
         return;
     }
-    // A menu or a list lies over everything else; egui closes it.
-    let popup = egui::Popup::is_any_open(ctx);
+    // A menu or a list lies over everything else; egui closes it. A plot takes its cursor away.
+    let kept = egui::Popup::is_any_open(ctx) || chart_cursor::live(ctx).is_some();
     // Longer combinations first: Ctrl+Z would take Ctrl+Shift+Z too.
     let mut longest_first: Vec<&Shortcut> = SHORTCUTS.iter().collect();
     longest_first.sort_by_key(|s| !s.keys.iter().any(|k| k.modifiers.shift));
     ctx.input_mut(|input| {
         for shortcut in longest_first {
-            if popup && shortcut.command == Command::Close {
+            if kept && shortcut.command == Command::Close {
                 continue;
             }
             // Where a keyboard needs Shift for the question mark, its modifier must not count.
@@ -130,6 +130,8 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
         .show(ctx, |ui| {
             egui::Grid::new("shortcuts")
                 .num_columns(2)
+                // Nothing is pressed here, and all of it has room on a small screen.
+                .min_row_height(0.0)
                 .striped(true)
                 .show(ui, |ui| {
                     for (key, title) in PAGES.iter().zip(titles) {
@@ -162,6 +164,10 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
             ui.label(tr(
                 "Then it can be dragged; a double click shows all of it again.",
             ));
+            ui.label(tr(
+                "The arrow keys read the curves of a plot, with Shift in larger steps: Up and Down go to the next curve.",
+            ));
+            ui.label(tr("There + and - zoom, Ctrl with an arrow moves the plot, Home shows all of it, Enter opens its menu, Escape ends the reading."));
             ui.label(tr("A file is opened by dropping it on the window."));
         });
     open

@@ -73,7 +73,7 @@ fn read_ends(fields: &[&str]) -> Option<[f64; 2]> {
     Some([from.parse().ok()?, to.parse().ok()?]).filter(can_be)
 }
 
-fn can_be(ends: &[f64; 2]) -> bool {
+pub(crate) fn can_be(ends: &[f64; 2]) -> bool {
     let [from, to] = *ends;
     let size = from.abs().max(to.abs());
     // What is no number is not smaller than any.

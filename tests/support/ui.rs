@@ -5,7 +5,8 @@
 use std::time::Duration;
 
 use egui::epaint::{ClippedShape, Shape};
-use egui_kittest::kittest::Queryable as _;
+use egui::{Event, Modifiers, PointerButton, Pos2, Rect, Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, SnapshotOptions};
 use hysteron::HysteronApp;
 
@@ -154,4 +155,36 @@ pub fn picture(harness: &mut App, name: &str) {
         .threshold(1.0)
         .max_failed_pixels(2000);
     harness.snapshot_options(name, &options);
+}
+
+/// Names and places of the controls of some roles.
+pub fn controls(harness: &App, roles: &[Role]) -> Vec<(String, Rect)> {
+    let nodes = harness.root().children_recursive();
+    nodes
+        .filter(|n| {
+            let node = n.accesskit_node();
+            roles.contains(&node.role()) && !node.is_hidden()
+        })
+        .map(|n| (n.accesskit_node().label().unwrap_or_default(), n.rect()))
+        .collect()
+}
+
+pub fn button(at: Pos2, which: PointerButton, pressed: bool) -> Event {
+    Event::PointerButton {
+        pos: at,
+        button: which,
+        pressed,
+        modifiers: Modifiers::NONE,
+    }
+}
+
+/// Two clicks, each within a frame: the test's clock goes a quarter of a second from frame to frame.
+pub fn double_click(harness: &mut App, at: Pos2) {
+    harness.hover_at(at);
+    harness.step();
+    for _ in 0..2 {
+        let click = [true, false].map(|p| button(at, PointerButton::Primary, p));
+        harness.input_mut().events.extend(click);
+        harness.step();
+    }
 }

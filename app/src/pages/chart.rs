@@ -1,23 +1,29 @@
 //! What the plots of several pages share.
 
 use std::ops::{Deref, DerefMut};
+use std::rc::Rc;
 
-use egui::{IdSalt, WidgetInfo};
+use egui::{Id, IdSalt, WidgetInfo};
 use egui_plot::{
-    AxisHints, Line, Plot, PlotGeometry, PlotItem, PlotMemory, PlotPoint, PlotPoints, PlotResponse,
-    PlotUi, Points, uniform_grid_spacer,
+    AxisHints, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory, PlotPoint,
+    PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
 };
 
 pub use super::chart_axes::round_step;
 use super::chart_axes::{LABELS, grid, label, power_label, powers, shown_from, unit_of};
 pub use super::chart_caption::{Key, Shape, caption_ui};
+use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
+use super::chart_keys::Worked;
 use super::chart_menu;
-use super::chart_reading::reading;
 pub use super::chart_reading::significant;
+use super::chart_reading::{Reader, reading};
 use super::chart_zoom::Zoomed;
 use crate::export::Table;
 use crate::language::tr;
 use crate::theme;
+
+/// How near a point must be to be pointed at, points on the screen.
+const REACH: f32 = 8.0;
 
 pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
@@ -85,6 +91,11 @@ pub struct Chart<'a> {
     decades: bool,
     /// It can be dragged only while it is zoomed: else a finger on it moves the page.
     drag_zoomed: bool,
+    /// What is read in it, and plots that show each other where they are read: their x is the same.
+    read: Reader<'a>,
+    linked: Option<Id>,
+    /// Enter is for the page, not for the menu.
+    pressed: bool,
 }
 
 impl<'a> Chart<'a> {
@@ -106,10 +117,10 @@ impl<'a> Chart<'a> {
                 .formatter(move |mark, range| label(mark, range, &unit))
         };
         let [x, y] = [0, 1].map(|i| tr(&axes[i]));
+        let read = reading([x.clone(), y.clone()], |p| [p.x, p.y]);
         let plot = Plot::new(salt)
             .height(height)
             .allow_scroll(false)
-            .label_formatter(reading([x.clone(), y.clone()], |p| [p.x, p.y]))
             .custom_x_axes(vec![axis(AxisHints::new_x().label(x), 0)])
             .custom_y_axes(vec![axis(
                 AxisHints::new_y().label(y).min_thickness(width),
@@ -124,6 +135,9 @@ impl<'a> Chart<'a> {
             axes,
             decades: false,
             drag_zoomed: false,
+            read,
+            linked: None,
+            pressed: false,
         }
     }
 
@@ -136,10 +150,10 @@ impl<'a> Chart<'a> {
             .label(names[0].clone())
             .label_spacing(shown_from(LABELS[0][1]))
             .formatter(|mark, _| power_label(mark.value));
+        self.read = reading(names, |p| [10_f64.powf(p.x), p.y]);
         self.with(|plot| {
             plot.custom_x_axes(vec![x])
                 .x_grid_spacer(|input| powers(&input))
-                .label_formatter(reading(names, |p| [10_f64.powf(p.x), p.y]))
         })
     }
 
@@ -161,6 +175,24 @@ impl<'a> Chart<'a> {
     #[must_use]
     pub fn zoomed_as(mut self, group: &str) -> Self {
         self.zoom = (group.to_owned(), [true, false]);
+        self
+    }
+
+    /// Shows where others of this group are read, and they where it is.
+    #[must_use]
+    pub fn linked(mut self, group: Id) -> Self {
+        self.linked = Some(group);
+        self
+    }
+
+    /// Is a choice of places, of which these words are said; a press takes one.
+    #[must_use]
+    pub fn choice(mut self, read: impl Fn([f64; 2]) -> Option<String> + 'a) -> Self {
+        self.pressed = true;
+        self.read = Rc::new(move |at| match at {
+            HoverPosition::NearDataPoint { position, .. }
+            | HoverPosition::Elsewhere { position } => read([position.x, position.y]),
+        });
         self
     }
 
@@ -186,53 +218,105 @@ impl<'a> Chart<'a> {
         let Self {
             mut plot,
             salt,
-            zoom,
+            zoom: (name, zoomed),
             axes,
             decades,
             drag_zoomed,
+            read,
+            linked,
+            pressed,
         } = self;
+        let ctx = ui.ctx().clone();
         let id = ui.scope_id().with(salt);
         plot = plot.id(id);
-        if egui::Popup::is_any_open(ui.ctx()) {
-            // What is read at the pointer would cover the menu.
-            plot = plot.label_formatter(|_| None);
+        let menu = egui::Popup::is_any_open(&ctx);
+        let keys = chart_cursor::live(&ctx).is_some();
+        if menu || keys {
+            // What is read at the pointer would cover the menu, or what the keys read.
+            plot = plot.label_formatter(|_| None).show_crosshair(!keys);
+        } else {
+            let read = read.clone();
+            plot = plot.label_formatter(move |at| read(at));
         }
         if drag_zoomed {
-            let memory = PlotMemory::load(ui.ctx(), id);
+            let memory = PlotMemory::load(&ctx, id);
             let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
             plot = plot.allow_drag(zoomed);
         }
-        let zoom = Zoomed::new(id, &zoom.0, zoom.1);
-        let change = zoom.change(ui.ctx());
+        let zoom = Zoomed::new(id, &name, zoomed);
+        let change = zoom.change(&ctx);
         if change.is_some() {
             // What is drawn may depend on what was in view before.
-            ui.ctx().request_repaint();
+            ctx.request_repaint();
         }
         let start = ui.cursor().min;
-        let table = chart_menu::wants_numbers(ui.ctx(), id).then(|| Table::new("plot"));
+        let table = chart_menu::wants_numbers(&ctx, id).then(|| Table::new("plot"));
         let titles = axes.clone();
+        let worked = Worked {
+            plot: id,
+            group: linked,
+            axes: zoomed,
+        };
         let shown = plot.show(ui, move |plot| {
             if let Some(change) = change {
                 change.make(plot);
             }
+            let curves = plot.response().has_focus().then(Vec::new);
             let mut pen = Pen {
                 plot,
+                id,
                 axes: titles,
                 decades,
                 table,
+                curves,
             };
-            (draw(&mut pen), pen.table)
+            let inner = draw(&mut pen);
+            let curves = pen.curves.unwrap_or_default();
+            let asked = worked.work(pen.plot, &curves);
+            (inner, pen.table, asked)
         });
-        zoom.note(ui.ctx());
-        let name = tr(format!("Plot: {} over {}", axes[1], axes[0]));
-        let info = || WidgetInfo::labeled(egui::Role::Image, true, &name);
-        shown.response.widget_info(info);
-        let (inner, table) = shown.inner;
-        chart_menu::ui(ui, id, &axes, start, shown.response.rect, table);
+        zoom.note(&ctx);
+        let (inner, table, asked) = shown.inner;
+        let (response, transform) = (shown.response, shown.transform);
+        let live = chart_cursor::live(&ctx);
+        let cursor = live.as_ref().filter(|r| r.plot == id).map(|r| &r.cursor);
+        if let Some(group) = linked {
+            let pointer = response.hover_pos().filter(|_| live.is_none());
+            let x = cursor.map(|c| c.at[0]);
+            let x = x.or(pointer.map(|p| transform.value_from_position(p).x));
+            chart_cursor::point(&ctx, group, id, x);
+            if let Some((other, x)) = chart_cursor::pointed(&ctx, group)
+                && other != id
+            {
+                line_ui(ui, &transform, x);
+            }
+        }
+        let text = cursor.and_then(|c| c.text(&read));
+        let info = || WidgetInfo {
+            current_text_value: text.as_ref().map(|t| t.replace('\n', "; ")),
+            ..WidgetInfo::labeled(
+                egui::Role::Image,
+                true,
+                tr(format!("Plot: {} over {}", axes[1], axes[0])),
+            )
+        };
+        response.widget_info(info);
+        if let Some(cursor) = cursor.filter(|_| !menu && !chart_menu::wished(&ctx, id)) {
+            theme::tell(&response);
+            cursor_ui(ui, &response, &transform, cursor, text.as_deref());
+        }
+        chart_menu::ui(
+            ui,
+            id,
+            &axes,
+            start,
+            response.rect,
+            (table, asked && !pressed),
+        );
         PlotResponse {
             inner,
-            response: shown.response,
-            transform: shown.transform,
+            response,
+            transform,
             hovered_plot_item: shown.hovered_plot_item,
         }
     }
@@ -241,9 +325,12 @@ impl<'a> Chart<'a> {
 /// Draws in a plot, and notes the numbers of its curves where they are asked for.
 pub struct Pen<'p, 'd> {
     plot: &'p mut PlotUi<'d>,
+    id: Id,
     axes: [String; 2],
     decades: bool,
     table: Option<Table>,
+    /// What the keys can read, if they are here.
+    curves: Option<Vec<Curve>>,
 }
 
 impl<'d> Pen<'_, 'd> {
@@ -253,23 +340,50 @@ impl<'d> Pen<'_, 'd> {
     }
 
     pub fn line(&mut self, line: Line<'d>) {
-        self.note(&line);
+        self.note(&line, true);
         self.plot.line(line);
     }
 
     pub fn points(&mut self, points: Points<'d>) {
-        self.note(&points);
+        self.note(&points, false);
         self.plot.points(points);
     }
 
-    /// Two columns for each curve: x and y.
-    fn note(&mut self, item: &dyn PlotItem) {
-        let (Some(table), PlotGeometry::Points(points)) = (&mut self.table, item.geometry()) else {
+    /// The place that is read, with the keys or the pointer.
+    pub fn pointed(&self) -> Option<[f64; 2]> {
+        if let Some(reading) = chart_cursor::live(self.ctx()) {
+            return (reading.plot == self.id).then_some(reading.cursor.at);
+        }
+        let place = self.pointer_coordinate()?;
+        self.response().hovered().then_some([place.x, place.y])
+    }
+
+    /// The first of some points that is where the plot is pointed at.
+    pub fn pointed_among(&self, points: &[[f64; 2]]) -> Option<usize> {
+        let place = self.screen_from_plot(self.pointed()?.into());
+        let near = |p: &[f64; 2]| self.screen_from_plot((*p).into()).distance(place) <= REACH;
+        points.iter().position(near)
+    }
+
+    /// Notes a curve where it is asked for; two columns of a table: x and y.
+    fn note(&mut self, item: &dyn PlotItem, joined: bool) {
+        let PlotGeometry::Points(points) = item.geometry() else {
             return;
         };
-        if points.is_empty() {
-            return;
+        if let Some(curves) = &mut self.curves
+            && item.allow_hover()
+        {
+            let name = item.name().to_owned();
+            let points = points.iter().map(|p| [p.x, p.y]).collect();
+            curves.push(Curve {
+                name,
+                points,
+                joined,
+            });
         }
+        let Some(table) = self.table.as_mut().filter(|_| !points.is_empty()) else {
+            return;
+        };
         let name = item.name().replace('\u{a0}', " ");
         let titles = distinct(table, &name, &self.axes);
         let place = |p: &PlotPoint| {

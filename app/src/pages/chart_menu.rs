@@ -69,14 +69,21 @@ pub fn wants_numbers(ctx: &Context, plot: Id) -> bool {
     with(ctx, |plots| plots.wish == Some((plot, Form::Csv)))
 }
 
-/// Draws the menu of a plot in its lower right corner, and gives what was wished for.
+/// Whether anything of a plot is wished for.
+pub fn wished(ctx: &Context, plot: Id) -> bool {
+    with(ctx, |plots| {
+        plots.wish.is_some_and(|(wished, _)| wished == plot)
+    })
+}
+
+/// Draws the menu of a plot in its lower right corner, opens it if it is asked for, and gives what was wished for.
 pub fn ui(
     ui: &mut egui::Ui,
     plot: Id,
     axes: &[String; 2],
     start: Pos2,
     inner: Rect,
-    table: Option<Table>,
+    (table, asked): (Option<Table>, bool),
 ) {
     let ctx = ui.ctx().clone();
     with(&ctx, |plots| {
@@ -112,5 +119,10 @@ pub fn ui(
             }
         });
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    if asked {
+        // The next Tab goes to the first of its lines.
+        response.request_focus();
+        egui::Popup::open_id(&ctx, egui::Popup::default_response_id(&response));
+    }
     response.on_hover_text(tr("Save this plot"));
 }

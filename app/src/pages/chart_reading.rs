@@ -1,5 +1,7 @@
 //! What is read in a plot: the curve, and the values by the names and units of their axes.
 
+use std::rc::Rc;
+
 use egui_plot::{HoverPosition, PlotPoint};
 
 use crate::language::tr_number;
@@ -8,12 +10,15 @@ use crate::language::tr_number;
 const READ_X: i32 = 6;
 const READ_Y: i32 = 5;
 
-/// What stands at the pointer: the curve, and the values by the names and units of their axes.
+/// Says what stands at a place in a plot.
+pub type Reader<'a> = Rc<dyn Fn(&HoverPosition<'_>) -> Option<String> + 'a>;
+
+/// What stands at a place: the curve, and the values by the names and units of their axes.
 pub(super) fn reading(
     names: [String; 2],
-    place: impl Fn(&PlotPoint) -> [f64; 2],
-) -> impl Fn(&HoverPosition<'_>) -> Option<String> {
-    move |at| {
+    place: impl Fn(&PlotPoint) -> [f64; 2] + 'static,
+) -> Reader<'static> {
+    Rc::new(move |at| {
         let (curve, point) = match at {
             HoverPosition::NearDataPoint {
                 plot_name,
@@ -32,7 +37,7 @@ pub(super) fn reading(
             curve if y.0.contains(", ") => format!("{across}\n{}", line_of(curve, &y.1)),
             curve => format!("{curve}\n{across}\n{}", line_of(y.0, &y.1)),
         })
-    }
+    })
 }
 
 /// A value by the name of its axis, which ends with the unit.

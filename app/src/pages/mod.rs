@@ -5,6 +5,8 @@ mod backlash;
 mod chart;
 mod chart_axes;
 mod chart_caption;
+pub mod chart_cursor;
+mod chart_keys;
 pub mod chart_menu;
 mod chart_reading;
 pub mod chart_zoom;

@@ -1,11 +1,14 @@
 //! Positions over time, phase portrait and backlash map.
 
-use egui::{Align2, Color32, Ui};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, Points, Polygon, Text, VLine};
+use egui::{Align2, Color32, Id, Ui};
+use egui_plot::{
+    Line, LineStyle, MarkerShape, PlotPoint, PlotResponse, Points, Polygon, Text, VLine,
+};
 
-use super::scene::Scene;
+use super::scene::{Now, Scene};
 use crate::language::tr;
 use crate::pages::chart::{Shape, caption_ui, curve, dot, extremes, still};
+use crate::pages::chart_cursor::{mark_ui, pointed};
 use crate::theme;
 
 /// Periods of the relay that the phase portrait shows before the present one.
@@ -33,7 +36,8 @@ pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     }
     caption_ui(ui, "Positions", &curves);
     let [low, high] = scene.range;
-    still("positions", "time [s]", "position [mrad]", height).show(ui, |plot| {
+    let chart = still("positions", "time [s]", "position [mrad]", height).linked(moment());
+    chart.show(ui, |plot| {
         for [from, to] in scene.engagements() {
             let corners = vec![[from, low], [to, low], [to, high], [from, high]];
             plot.polygon(
@@ -70,11 +74,36 @@ pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     });
 }
 
-/// Velocity over position of the motor, of the last periods.
+/// The plots that show the moment that the positions are pointed at.
+fn moment() -> Id {
+    Id::unique("moment of the drive")
+}
+
+/// Plots whose x is the motor's position.
+fn motor() -> Id {
+    Id::unique("motor position")
+}
+
+/// Marks where a plot has the moment that is pointed at.
+fn moment_ui<R>(
+    ui: &Ui,
+    scene: &Scene,
+    shown: &PlotResponse<R>,
+    place: impl Fn(Now) -> Option<[f64; 2]>,
+) {
+    let pointed = pointed(ui.ctx(), moment());
+    let now = pointed.and_then(|(_, time)| scene.now(time));
+    if let Some(at) = now.and_then(place) {
+        mark_ui(ui, &shown.transform, at);
+    }
+}
+
+/// Velocity over position of the motor, of the last periods before the moment that is pointed at, or else before now.
 pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let span = PERIODS * scene.period();
+    let pointed = pointed(ui.ctx(), moment()).map(|(_, time)| time.min(scene.duration()));
     // Before a few periods have passed, those to come are shown.
-    let to = clock.max(span);
+    let to = pointed.unwrap_or(clock).max(span);
     let points = scene.phase(to - span, to);
     let orbit = scene.orbit(to);
     let mut curves = vec![("last periods", theme::MEASURED, Shape::Line)];
@@ -83,13 +112,13 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     }
     caption_ui(ui, "Phase portrait", &curves);
     let color = ui.visuals().text_color();
-    still(
+    let shown = still(
         "phase of the motor",
         "motor position x1 [mrad]",
         "velocity v1 [rad/s]",
         height,
     )
-    .with(|plot| plot.link_cursor(egui::Id::unique("motor position"), [true, false]))
+    .linked(motor())
     .show(ui, |plot| {
         plot.line(
             Line::new(tr("last periods"), curve(&points))
@@ -116,10 +145,11 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                 );
             }
         }
-        if let Some(now) = scene.now(clock) {
+        if let Some(now) = scene.now(clock).filter(|_| pointed.is_none()) {
             plot.points(dot("now", [now.x1, now.v1]));
         }
     });
+    moment_ui(ui, scene, &shown, |now| Some([now.x1, now.v1]));
 }
 
 /// Distance of a number from its point, as a share of the orbit's size.
@@ -170,9 +200,8 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     caption_ui(ui, "Backlash map", &curves);
     let [low, high] = scene.range;
     let load = scene.load_range;
-    let chart = still("map", "motor x1 [mrad]", "load x2 [mrad]", height)
-        .with(|plot| plot.link_cursor(egui::Id::unique("motor position"), [true, false]));
-    chart.show(ui, |plot| {
+    let chart = still("map", "motor x1 [mrad]", "load x2 [mrad]", height).linked(motor());
+    let shown = chart.show(ui, |plot| {
         plot.points(
             Points::new(tr("x2 over x1"), curve(&scene.map))
                 .color(LOAD)
@@ -200,4 +229,5 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
             plot.points(dot("now", [now.x1, x2]));
         }
     });
+    moment_ui(ui, scene, &shown, |now| Some([now.x1, now.x2?]));
 }

@@ -117,8 +117,7 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
         let id = format!("fingerprint {} {index}", print.effect);
         let axes = ["time [s]".to_owned(), label];
         let linked = egui::Id::unique("fingerprint");
-        let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH)
-            .with(|plot| plot.link_cursor(linked, [true, false]));
+        let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH).linked(linked);
         chart.show(ui, |plot| {
             plot.line(
                 Line::new(tr("what is left"), left)

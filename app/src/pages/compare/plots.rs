@@ -90,14 +90,15 @@ fn plot<'a>(
     let group = egui::Id::unique(("compare", &measurement.name));
     let (start, end) = view_of(measurement, finding);
     let axes = ["time [s]".to_owned(), y_label];
-    let chart = Chart::new(id, axes, height, AXIS_WIDTH).zoomed_as("time");
+    let chart = Chart::new(id, axes, height, AXIS_WIDTH)
+        .zoomed_as("time")
+        .linked(group);
     chart.with(|plot| {
         plot.default_x_bounds(start, end)
             .allow_drag([true, false])
             .allow_zoom([true, false])
             .allow_boxed_zoom(false)
             .link_axis(group, [true, false])
-            .link_cursor(group, [true, false])
     })
 }
 

@@ -68,6 +68,7 @@ impl Picture {
         height: f32,
     ) -> Option<[f64; 2]> {
         let (x, y) = (input.x, input.y);
+        let place = |at: [f64; 2]| Some([x.index(at[0], map.size())?, y.index(at[1], map.size())?]);
         let axes = [x, y].map(|a| axis_title(a.parameter.label(), a.parameter.unit()));
         let shown = Chart::new("map", axes, height, 0.0)
             .fixed()
@@ -76,7 +77,11 @@ impl Picture {
                     .show_crosshair(true)
                     .allow_double_click_reset(false)
                     .set_margin_fraction(egui::Vec2::ZERO)
-                    .label_formatter(|_| None)
+            })
+            .choice(move |at| {
+                let outcome = map.at(place(at)?)?;
+                let names = [x, y].map(|a| (a.parameter.label(), a.parameter.unit()));
+                Some(reading(names, at, outcome))
             })
             .show(ui, |plot| {
                 plot.set_plot_bounds_x(x.from..=x.to);
@@ -96,21 +101,10 @@ impl Picture {
                         );
                     }
                 }
-                plot.pointer_coordinate().map(|p| [p.x, p.y])
+                plot.pointed()
             });
-        let pointed = shown.inner?;
-        let place = [
-            x.index(pointed[0], map.size())?,
-            y.index(pointed[1], map.size())?,
-        ];
-        let clicked = shown.response.clicked();
-        if let Some(outcome) = map.at(place) {
-            let names = [x, y].map(|a| (a.parameter.label(), a.parameter.unit()));
-            shown
-                .response
-                .on_hover_ui_at_pointer(|ui| reading_ui(ui, names, pointed, outcome));
-        }
-        clicked.then_some(pointed)
+        let pointed = shown.inner.filter(|at| place(*at).is_some())?;
+        shown.response.clicked().then_some(pointed)
     }
 
     fn paint(&mut self, ctx: &egui::Context, map: &Map, quantity: Quantity) {
@@ -167,31 +161,26 @@ fn scale(values: &[f64], quantity: Quantity) -> [f64; 2] {
     [low, high.max(low + least)]
 }
 
-/// All values of a loop, beside the pointer.
-fn reading_ui(ui: &mut egui::Ui, names: [(&str, &str); 2], values: [f64; 2], outcome: &Outcome) {
-    for ((label, unit), value) in names.iter().zip(values) {
-        ui.label(tr(format!("{label} {}", with_unit(value, unit))));
-    }
-    ui.separator();
+/// All values of a loop, a line each.
+fn reading(names: [(&str, &str); 2], values: [f64; 2], outcome: &Outcome) -> String {
+    let line = |name: &str, value: f64, unit| tr(format!("{name} {}", with_unit(value, unit)));
+    let mut lines: Vec<String> = names
+        .iter()
+        .zip(values)
+        .map(|((label, unit), value)| line(label, value, unit))
+        .collect();
     if outcome.exact.is_none() {
-        ui.label(tr("no limit cycle"));
-        return;
+        lines.push(tr("no limit cycle"));
+        return lines.join("\n");
     }
     for quantity in Quantity::ALL {
         match (quantity, quantity.value(outcome)) {
-            (Quantity::Stability, Some(v)) => {
-                ui.strong(tr(stability(v)));
-            }
-            (_, Some(v)) => {
-                ui.label(tr(format!(
-                    "{} {}",
-                    quantity.label(),
-                    with_unit(v, quantity.unit())
-                )));
-            }
+            (Quantity::Stability, Some(v)) => lines.push(tr(stability(v))),
+            (_, Some(v)) => lines.push(line(quantity.label(), v, quantity.unit())),
             (_, None) => {}
         }
     }
+    lines.join("\n")
 }
 
 /// Colour bar with its numbers, and what the hatching means.

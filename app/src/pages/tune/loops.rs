@@ -124,8 +124,8 @@ fn response_ui(
         .with(|plot| {
             plot.default_x_bounds(0.0, end)
                 .default_y_bounds(bottom, top)
-                .link_cursor(egui::Id::unique("responses"), [true, false])
         })
+        .linked(egui::Id::unique("responses"))
         .show(ui, |plot| {
             let response = part(before);
             let times = response.time.iter().zip(&response.output);
