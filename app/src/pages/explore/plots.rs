@@ -6,6 +6,7 @@ use hysteron_core::relay::Relay;
 
 use crate::language::tr;
 use crate::pages::chart::{Shape, caption_ui, curve, dot, still};
+use crate::pages::chart_cursor::{mark_ui, point, pointed};
 use crate::theme;
 
 /// Index of the sample at a time.
@@ -37,7 +38,7 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) 
         ],
     );
     let now = data.phase.get(index_at(data, clock)).copied();
-    still("phase", "output y", "its rate dy/dt [1/s]", height).show(ui, |plot| {
+    let shown = still("phase", "output y", "its rate dy/dt [1/s]", height).show(ui, |plot| {
         plot.line(
             Line::new(tr("from the start"), curve(&data.phase))
                 .color(start)
@@ -53,7 +54,21 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) 
         if let Some(now) = now {
             plot.points(dot("now", now));
         }
+        // A cycle passes a place again and again: the first time counts.
+        let passed = plot.pointed_among(&data.phase);
+        passed.and_then(|i| data.time.get(i).copied())
     });
+    point(ui.ctx(), moment(), shown.response.id, shown.inner);
+    if let Some((_, time)) = pointed(ui.ctx(), moment())
+        && let Some(at) = data.phase.get(index_at(data, time))
+    {
+        mark_ui(ui, &shown.transform, *at);
+    }
+}
+
+/// The plots that show the moment that one of them is pointed at.
+fn moment() -> egui::Id {
+    egui::Id::unique("moment of the loop")
 }
 
 pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64, height: f32) {
@@ -68,7 +83,8 @@ pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64,
     );
     let i = index_at(data, clock);
     let now = data.time.get(i).zip(data.output.get(i));
-    still("time", "time [s]", "output y, input u", height).show(ui, |plot| {
+    let chart = still("time", "time [s]", "output y, input u", height).linked(moment());
+    chart.show(ui, |plot| {
         plot.line(
             Line::new(tr("input u"), curve(&data.input))
                 .color(theme::INPUT)
