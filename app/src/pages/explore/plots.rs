@@ -68,7 +68,7 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) 
 
 /// The plots that show the moment that one of them is pointed at.
 fn moment() -> egui::Id {
-    egui::Id::unique("moment of the loop")
+    egui::Id::unique("moment_of_loop")
 }
 
 pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64, height: f32) {
