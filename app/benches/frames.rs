@@ -6,6 +6,7 @@
 //!
 //! ```text
 //! cargo bench -p hysteron --bench frames
+//! cargo bench -p hysteron --bench frames -- --short   some sliders and numbers of every page, in fewer frames
 //! ```
 
 use std::time::{Duration, Instant};
@@ -20,11 +21,29 @@ use hysteron::HysteronApp;
 /// The window: so tall that most controls are in view, points.
 const WINDOW: Vec2 = Vec2::new(1280.0, 1400.0);
 
-/// Frames of a drag from one end to the other.
-const DRAG: usize = 40;
+/// How much is measured.
+#[derive(Clone, Copy)]
+struct Extent {
+    /// Frames of a drag from one end to the other.
+    frames: usize,
+    /// Times that a drag is made before it counts as slow.
+    tries: usize,
+    /// Most sliders and numbers of a page; of more, some from top to bottom.
+    controls: usize,
+}
 
-/// Times that a drag is made before it counts as slow, and what is slow.
-const TRIES: usize = 4;
+const FULL: Extent = Extent {
+    frames: 40,
+    tries: 4,
+    controls: usize::MAX,
+};
+const SHORT: Extent = Extent {
+    frames: 8,
+    tries: 3,
+    controls: 8,
+};
+
+/// What is slow.
 const SLOW: Duration = Duration::from_millis(16);
 
 /// Frames, and the time between them, that what was opened is given to be computed.
@@ -103,15 +122,17 @@ const WHEEL: f32 = 30.0;
 struct Bench {
     ctx: Context,
     app: HysteronApp,
+    extent: Extent,
     time: f64,
     frames: Vec<Duration>,
 }
 
 impl Bench {
-    fn new(link: &str, buttons: &[&str]) -> Self {
+    fn new(link: &str, buttons: &[&str], extent: Extent) -> Self {
         let mut bench = Self {
             ctx: Context::default(),
             app: HysteronApp::default(),
+            extent,
             time: 0.0,
             frames: Vec::new(),
         };
@@ -218,10 +239,11 @@ impl Bench {
     fn paced(&mut self, event: impl Fn(f32) -> Event) -> Vec<Duration> {
         self.frames.clear();
         let begin = Instant::now();
-        for i in 1..=DRAG {
+        let frames = self.extent.frames;
+        for i in 1..=frames {
             // The window waits for the next picture.
             std::thread::sleep((FRAME * i as u32).saturating_sub(begin.elapsed()));
-            self.frame(vec![event(i as f32 / DRAG as f32)]);
+            self.frame(vec![event(i as f32 / frames as f32)]);
         }
         std::mem::take(&mut self.frames)
     }
@@ -270,9 +292,9 @@ fn button(pos: Pos2, pressed: bool) -> Event {
 }
 
 /// The frames of the first movement without a slow one, else of the last.
-fn least(mut movement: impl FnMut() -> Vec<Duration>) -> Vec<Duration> {
+fn least(extent: Extent, mut movement: impl FnMut() -> Vec<Duration>) -> Vec<Duration> {
     let mut frames = Vec::new();
-    for _ in 0..TRIES {
+    for _ in 0..extent.tries {
         frames = movement();
         if frames.iter().all(|f| *f <= SLOW) {
             break;
@@ -292,13 +314,13 @@ fn milliseconds(time: Duration) -> f64 {
     1e3 * time.as_secs_f64()
 }
 
-/// What is said of a place: a line, and a line for each movement with slow frames.
-fn report(name: &str, movements: &[(String, Vec<Duration>)]) {
+/// What is said of a place: a line, and a line for each movement with slow frames; how many are slow.
+fn report(name: &str, movements: &[(String, Vec<Duration>)]) -> usize {
     let mut all: Vec<Duration> = movements.iter().flat_map(|m| m.1.clone()).collect();
     all.sort_unstable();
     let Some(last) = all.last() else {
         println!("{name:<24}{:>9}", 0);
-        return;
+        return 0;
     };
     let at = |share: f64| milliseconds(all[(share * (all.len() - 1) as f64) as usize]);
     let late = |frames: &[Duration]| frames.iter().filter(|f| **f > SLOW).count();
@@ -321,24 +343,25 @@ fn report(name: &str, movements: &[(String, Vec<Duration>)]) {
             milliseconds(worst)
         );
     }
+    late(&all)
 }
 
 /// The pointer on every line of a page, the wheel and a drag on both sides of it; they leave it as it was.
 fn looked_at((_, link, buttons): Place) -> Vec<(String, Vec<Duration>)> {
-    let mut bench = Bench::new(link, buttons);
+    let mut bench = Bench::new(link, buttons, FULL);
     let mut movements: Vec<_> = (0..LINES)
-        .map(|line| (format!("line {line}"), least(|| bench.hover(line))))
+        .map(|line| (format!("line {line}"), least(FULL, || bench.hover(line))))
         .collect();
     for (side, at) in [("left", 0.3), ("right", 0.85)] {
-        movements.push((format!("wheel, {side}"), least(|| bench.turn(at))));
-        movements.push((format!("drag, {side}"), least(|| bench.sway(at))));
+        movements.push((format!("wheel, {side}"), least(FULL, || bench.turn(at))));
+        movements.push((format!("drag, {side}"), least(FULL, || bench.sway(at))));
     }
     movements
 }
 
 /// A measurement is opened, and its diagnosis comes in.
 fn opened() -> Vec<(String, Vec<Duration>)> {
-    let mut bench = Bench::new("v1;compare", &[]);
+    let mut bench = Bench::new("v1;compare", &[], FULL);
     bench.frames.clear();
     bench.press("builtin:drive-02");
     while bench.app.hook_state()["busy"] == true {
@@ -349,25 +372,39 @@ fn opened() -> Vec<(String, Vec<Duration>)> {
 
 fn main() {
     // A word chooses the places whose names have it.
-    let chosen = std::env::args().skip(1).find(|a| !a.starts_with('-'));
-    let wanted = |place: &Place| chosen.as_ref().is_none_or(|word| place.0.contains(word));
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let short = arguments.iter().any(|a| a == "--short");
+    let chosen = arguments.iter().find(|a| !a.starts_with('-'));
+    let wanted = |place: &Place| chosen.is_none_or(|word| place.0.contains(word));
+    let extent = if short { SHORT } else { FULL };
     println!(
         "{:<24}{:>9}{:>9}{:>10}{:>10}{:>10}{:>9}{:>9}",
         "page", "drags", "frames", "median", "95 %", "worst", "> 16 ms", "worst/16"
     );
+    let mut slow = 0;
     for (name, link, buttons) in PLACES.into_iter().filter(wanted) {
         // Each drag is on a page of its own: it would leave another behind.
-        let controls = Bench::new(link, buttons).controls();
+        let mut controls = Bench::new(link, buttons, extent).controls();
+        let step = controls.len().div_ceil(extent.controls).max(1);
+        controls = controls.into_iter().step_by(step).collect();
         let drag = |(label, place): (String, Rect)| {
-            let frames = least(|| Bench::new(link, buttons).drag(place));
+            let frames = least(extent, || Bench::new(link, buttons, extent).drag(place));
             (label, frames)
         };
-        report(name, &controls.into_iter().map(drag).collect::<Vec<_>>());
+        slow += report(name, &controls.into_iter().map(drag).collect::<Vec<_>>());
     }
-    for place in LOOKS.into_iter().filter(wanted) {
-        report(place.0, &looked_at(place));
+    if !short {
+        for place in LOOKS.into_iter().filter(wanted) {
+            slow += report(place.0, &looked_at(place));
+        }
+        if chosen.is_none_or(|word| OPENING.contains(word)) {
+            slow += report(OPENING, &opened());
+        }
     }
-    if chosen.as_ref().is_none_or(|word| OPENING.contains(word)) {
-        report(OPENING, &opened());
+    match slow {
+        0 => println!("16 ms are kept: no frame takes longer."),
+        slow => println!(
+            "16 ms are not kept: {slow} frames take longer, each time that they are drawn."
+        ),
     }
 }

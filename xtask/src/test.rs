@@ -11,7 +11,7 @@ type Stage = (&'static str, fn() -> Result<(), String>);
 /// Where proptest reads its seed.
 const SEED: &str = "PROPTEST_RNG_SEED";
 
-const STAGES: [Stage; 8] = [
+const STAGES: [Stage; 9] = [
     ("set-up", setup::setup),
     ("formatting", || run("cargo", &["fmt", "--all", "--check"])),
     ("lints", || {
@@ -36,6 +36,20 @@ const STAGES: [Stage; 8] = [
         // for new ones.
         let seed = std::env::var_os(SEED).is_none().then_some((SEED, "1"));
         cargo(&["test", "--workspace", "--no-fail-fast"], seed)
+    }),
+    // It says what frames take, and fails for none: what else runs here is not known. In the tests' build, which is
+    // there already, they take longer than in a release.
+    ("frames while sliders are dragged", || {
+        let bench = [
+            "bench",
+            "--profile",
+            "dev",
+            "--package",
+            "hysteron",
+            "--bench",
+            "frames",
+        ];
+        cargo(&[&bench[..], &["--", "--short"]].concat(), None)
     }),
     ("web build", web::build),
     ("archives", archives::test),
