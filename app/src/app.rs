@@ -11,6 +11,8 @@ pub use give::GivenFile;
 use crate::address;
 use crate::bar::{self, Bar};
 use crate::document::{Document, not_enclosed};
+#[cfg(target_arch = "wasm32")]
+use crate::edges;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
@@ -171,6 +173,10 @@ impl HysteronApp {
             .accesskit_node_builder(window, |window| window.set_label("Hysteron"));
         self.fit_to_fingers(ui.ctx());
         language::speak(self.language);
+        #[cfg(target_arch = "wasm32")]
+        if edges::before(ui) {
+            edges::leave(false);
+        }
         self.desk.targets.clear();
         chart_menu::clear(ui.ctx());
         self.take_dropped_files(ui.ctx());
@@ -214,6 +220,10 @@ impl HysteronApp {
         }
         theme::focus_ring(ui.ctx());
         self.overlays_ui(ui.ctx(), foot);
+        #[cfg(target_arch = "wasm32")]
+        if edges::behind(ui) {
+            edges::leave(true);
+        }
         #[cfg(target_arch = "wasm32")]
         crate::hook::publish(&self.hook_state());
     }

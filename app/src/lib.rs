@@ -10,6 +10,8 @@ mod content;
 #[cfg(not(target_arch = "wasm32"))]
 mod cores;
 mod document;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod edges;
 mod enclosed;
 pub mod export;
 mod files;
