@@ -4,7 +4,8 @@
 mod ui;
 
 use egui_kittest::kittest::Queryable as _;
-use ui::{App, NARROW, WIDE, answer, app, click, finish, picture, state};
+use hysteron::language::Language;
+use ui::{App, NARROW, WIDE, answer, app, click, finish, picture, show, state};
 
 fn page(size: [f32; 2]) -> App {
     let mut harness = app("tune", size);
@@ -80,4 +81,17 @@ fn a_narrow_window_shows_the_same_experiment() {
     assert!(answer(&harness).starts_with("It oscillates"));
     click(&mut harness, "6 Before and after");
     picture(&mut harness, "tune_narrow");
+}
+
+#[test]
+fn the_table_of_rules_has_room_in_a_smaller_window() {
+    for language in [Language::English, Language::German] {
+        let mut harness = app("tune", [1024.0, 800.0]);
+        harness.state_mut().speak(language);
+        show(&mut harness, "v1;tune;tune.step=rules");
+        harness.run_steps(3);
+        let last = ["load error [s]", "Lastfehler [s]"].map(|name| harness.query_by_label(name));
+        let last = last.into_iter().flatten().next().expect("the last column");
+        assert!(last.rect().right() <= 1024.0, "{:?}", last.rect());
+    }
 }

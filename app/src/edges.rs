@@ -75,7 +75,7 @@ mod tests {
             let buttons = [ui.button("first"), ui.button("last")];
             seen = (
                 [before, behind(ui)],
-                buttons.iter().position(|b| b.has_focus()),
+                buttons.iter().position(egui::Response::has_focus),
             );
         });
         output.textures_delta.clear();

@@ -124,15 +124,43 @@ pub fn beside(
     }
 }
 
+/// Width of the heads of a table that is set tight, points.
+const HEAD: f32 = 102.0;
+
+/// What stands in a table; at this width it goes on in the next line.
+pub fn cell(ui: &mut egui::Ui, width: Option<f32>, content: impl egui::Widget) -> egui::Response {
+    let Some(width) = width else {
+        return ui.add(content);
+    };
+    ui.scope(|ui| {
+        ui.set_max_width(width);
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
+        ui.add(content)
+    })
+    .inner
+}
+
 /// A table with a heading; wider than the window, it can be scrolled.
 pub fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut egui::Ui)) {
+    set_table(ui, id, heads, false, rows);
+}
+
+/// The same; set tight, it saves room.
+pub fn set_table(
+    ui: &mut egui::Ui,
+    id: &str,
+    heads: &[&str],
+    tight: bool,
+    rows: impl FnOnce(&mut egui::Ui),
+) {
     egui::ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
         egui::Grid::new(id)
             .striped(true)
-            .spacing([14.0, 4.0])
+            .spacing([if tight { 6.0 } else { 14.0 }, 4.0])
             .show(ui, |ui| {
                 for head in heads {
-                    ui.strong(tr(*head));
+                    let head = egui::Label::new(egui::RichText::new(tr(*head)).strong());
+                    cell(ui, tight.then_some(HEAD), head);
                 }
                 ui.end_row();
                 rows(ui);

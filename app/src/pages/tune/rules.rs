@@ -2,9 +2,13 @@
 
 use hysteron_core::tuning::{LoopReport, rule};
 
-use super::draw::{controller, maybe, number, table};
+use super::draw::{cell, controller, maybe, number, set_table};
 use super::{Seen, Stage};
 use crate::language::{tr, tr_number};
+
+/// Room below which the table is set tight, and the width of the names of rules then, points.
+const ROOMY: f32 = 880.0;
+const NAME: f32 = 145.0;
 
 pub const STAGE: Stage = Stage {
     id: "rules",
@@ -35,13 +39,15 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
         "overshoot [%]",
         "load error [s]",
     ];
-    table(ui, "rules", &heads, |ui| {
+    let tight = ui.available_width() < ROOMY;
+    let width = tight.then_some(NAME);
+    set_table(ui, "rules", &heads, tight, |ui| {
         for report in &seen.report.rules {
             let Ok(rule) = rule(&report.rule) else {
                 continue;
             };
-            let name = ui
-                .selectable_label(*chosen == rule.id, tr(rule.name))
+            let name = egui::Button::selectable(*chosen == rule.id, tr(rule.name));
+            let name = cell(ui, width, name)
                 .on_hover_text(tr(format!("{}\n{}", rule.sentence, rule.source)));
             if name.clicked() {
                 rule.id.clone_into(chosen);
