@@ -9,6 +9,7 @@ mod refused;
 mod same;
 mod speed;
 mod watch;
+mod way_out;
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -72,6 +73,7 @@ pub fn test() -> Result<(), String> {
     export::journey(&session, &folder.join("exports"), &page)?;
     mystery::journey(&session, &page)?;
     dropped::journey(&session, &page)?;
+    way_out::journey(&session, &page)?;
     phone::journey(&session, &folder, port)?;
     refused::journey(&folder.join("refused"), &page)?;
     speed::report(&session)?;
