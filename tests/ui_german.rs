@@ -120,7 +120,7 @@ const NOT_DRAWN: [&str; 28] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 26] = [
+const NO_TEXTS: [&str; 27] = [
     "Crew",
     "hysteron files",
     "hysteron address",
@@ -131,6 +131,7 @@ const NO_TEXTS: [&str; 26] = [
     "hysteron language",
     "hysteron lessons",
     "hysteron look",
+    "hysteron side",
     "copy link",
     "lesson below",
     "phase of the motor",

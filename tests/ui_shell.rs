@@ -3,6 +3,8 @@
 #[path = "support/ui.rs"]
 mod ui;
 
+use std::collections::HashMap;
+
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::HysteronApp;
@@ -249,6 +251,59 @@ fn each_look_draws_every_page() {
             assert_eq!(state(&harness)["page"], page);
         }
     }
+}
+
+/// What is kept between two starts.
+#[derive(Default)]
+struct Kept(HashMap<String, String>);
+
+impl eframe::Storage for Kept {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+
+    fn flush(&mut self) {}
+}
+
+#[test]
+fn a_panel_that_was_made_wider_is_so_at_the_next_start() {
+    let left = |harness: &App| {
+        let rect = harness.get_by_label("What could be missing").rect();
+        rect.left()
+    };
+    let mut harness = app("compare", WIDE);
+    show(&mut harness, "v1;compare;compare.file=drive-02");
+    let before = left(&harness);
+    // The edge is a few points beside what stands in the panel.
+    let edge = egui::pos2(before - 8.0, 400.0);
+    harness.hover_at(edge);
+    harness.step();
+    harness.drag_at(edge);
+    harness.step();
+    let to = edge - egui::vec2(120.0, 0.0);
+    harness.hover_at(to);
+    harness.step();
+    harness.drop_at(to);
+    harness.run_steps(3);
+    let dragged = left(&harness);
+    assert!((before - dragged - 120.0).abs() < 9.0, "{before} {dragged}");
+
+    let mut kept = Kept::default();
+    eframe::App::save(harness.state_mut(), &mut kept);
+    let mut later = app("start", WIDE);
+    let mut context = eframe::CreationContext::_new_kittest(later.ctx.clone());
+    context.storage = Some(&kept);
+    *later.state_mut() = HysteronApp::restored(&context);
+    finish(&mut later);
+    assert!((left(&later) - dragged).abs() < 1.0, "{}", left(&later));
 }
 
 #[test]

@@ -525,6 +525,7 @@ const KEPT_LANGUAGE: &str = "hysteron language";
 const KEPT_MOTION: &str = "hysteron motion";
 const KEPT_RECENT: &str = "hysteron files";
 const KEPT_SOLVED: &str = "hysteron lessons";
+const KEPT_SIDE: &str = "hysteron side";
 #[cfg(target_arch = "wasm32")]
 const KEPT_ADDRESS: &str = "hysteron address";
 
@@ -543,6 +544,8 @@ impl HysteronApp {
         if let Some(solved) = kept(KEPT_SOLVED) {
             app.desk.study.solved = solved.split_whitespace().map(str::to_owned).collect();
         }
+        let side = kept(KEPT_SIDE).and_then(|width| width.parse().ok());
+        app.desk.side.chosen = side.filter(|width: &f32| width.is_finite());
         if let Some(text) = kept(KEPT) {
             app.restore(&context.egui_ctx, &text);
         }
@@ -601,6 +604,9 @@ impl eframe::App for HysteronApp {
         storage.set_string(KEPT_SOLVED, solved.join(" "));
         for (key, value) in self.preferred() {
             storage.set_string(key, value.to_owned());
+        }
+        if let Some(width) = self.desk.side.chosen {
+            storage.set_string(KEPT_SIDE, width.to_string());
         }
         if let Ok(recent) = serde_json::to_string(&self.desk.recent) {
             storage.set_string(KEPT_RECENT, recent);

@@ -15,6 +15,35 @@ pub fn side(ui: &egui::Ui, liked: f32) -> f32 {
     liked.min((SIDE_SHARE * ui.available_width()).max(LEAST_SIDE))
 }
 
+/// Most of a window that a panel has that someone has made wider.
+const MOST_SIDE: f32 = 0.6;
+
+/// The panel whose edge can be dragged.
+#[derive(Default)]
+pub struct Side {
+    /// Its width where someone has dragged it, points.
+    pub chosen: Option<f32>,
+    /// Its width in the last frame, points.
+    last: Option<f32>,
+}
+
+impl Side {
+    /// Its width at first: as it was chosen, or else as it likes.
+    pub fn width(&self, ui: &egui::Ui, liked: f32) -> f32 {
+        let most = MOST_SIDE * ui.available_width();
+        self.chosen.map_or(side(ui, liked), |width| width.min(most))
+    }
+
+    /// Says how wide it is now. A window that is made smaller changes it too, but without the pointer.
+    pub fn note(&mut self, ui: &egui::Ui, width: f32) {
+        let last = self.last.replace(width);
+        let changed = last.is_some_and(|last| last != width);
+        if changed && ui.input(|i| i.pointer.any_down()) {
+            self.chosen = Some(width);
+        }
+    }
+}
+
 /// Whether two plots have room side by side.
 pub fn room_for_two(ui: &egui::Ui) -> bool {
     ui.available_width() >= PAIR

@@ -26,6 +26,7 @@ use hysteron_core::explore::ExploreInput;
 use crate::export::Table;
 use crate::hook::Targets;
 use crate::language::Language;
+use crate::layout::Side;
 use crate::lessons::Study;
 use crate::recent::{Recent, Recents};
 use crate::save::Document;
@@ -117,6 +118,8 @@ pub struct Desk {
     pub recent: Recents,
     /// What of the plots is in view.
     pub zooms: AllZooms,
+    /// How wide someone has made the panel beside the plots.
+    pub side: Side,
     /// Where the buttons are.
     pub targets: Targets,
     /// What is to be done after this frame.

@@ -282,13 +282,15 @@ impl Compare {
                     });
                 });
             } else {
+                let whole = ui.available_width();
                 egui::Panel::right("effects")
-                    .default_size(layout::side(ui, 400.0))
+                    .default_size(desk.side.width(ui, 400.0))
                     .min_size(320.0)
                     .show(ui, |ui| {
                         theme::scroll("compare_side")
                             .show(ui, |ui| side::ui(self, ui, targets, &mut commands));
                     });
+                desk.side.note(ui, whole - ui.available_width());
                 egui::CentralPanel::default().show(ui, |ui| {
                     self.answer_ui(ui);
                     self.message_ui(ui, &mut commands);
