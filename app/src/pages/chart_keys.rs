@@ -48,40 +48,7 @@ impl Worked {
         let mut view = View::of(plot, self.axes);
         let reading = chart_cursor::live(&ctx).filter(|r| r.plot == self.plot);
         let mut cursor = reading.map(|r| r.cursor);
-        let mut menu = false;
-        for (key, modifiers) in pressed(&ctx) {
-            let times = if modifiers.shift { FAR } else { 1.0 };
-            let [x, y] = match key {
-                Key::ArrowLeft => [-1.0, 0.0],
-                Key::ArrowRight => [1.0, 0.0],
-                Key::ArrowDown => [0.0, -1.0],
-                Key::ArrowUp => [0.0, 1.0],
-                _ => [0.0; 2],
-            };
-            match key {
-                Key::ArrowLeft | Key::ArrowRight | Key::ArrowDown | Key::ArrowUp => {
-                    if modifiers.command {
-                        view.pan([x, y]);
-                    } else if let Some(present) = &mut cursor {
-                        if y == 0.0 || !next(present, curves, y, &view) {
-                            let far = STEP * times;
-                            view.go(present, [x * far, y * far], curves);
-                        }
-                    } else {
-                        cursor = Some(Cursor::free(view.begin(self.begin(&ctx))));
-                    }
-                }
-                Key::Plus | Key::Equals if !modifiers.command => view.zoom(NEARER, cursor.as_ref()),
-                Key::Minus if !modifiers.command => view.zoom(1.0 / NEARER, cursor.as_ref()),
-                Key::Home | Key::Num0 if !modifiers.command => {
-                    let auto = plot.auto_bounds();
-                    plot.set_auto_bounds([auto.x || self.axes[0], auto.y || self.axes[1]]);
-                }
-                Key::Escape => cursor = None,
-                Key::Enter => menu = true,
-                _ => {}
-            }
-        }
+        let menu = self.press(plot, &mut view, &mut cursor, curves);
         view.show(plot);
         let filter = EventFilter {
             horizontal_arrows: true,
@@ -109,6 +76,51 @@ impl Worked {
         menu
     }
 
+    /// Does what the keys of this frame say; whether one asks for the menu.
+    fn press(
+        &self,
+        plot: &mut PlotUi<'_>,
+        view: &mut View,
+        cursor: &mut Option<Cursor>,
+        curves: &[Curve],
+    ) -> bool {
+        let mut menu = false;
+        for (key, modifiers) in pressed(plot.ctx()) {
+            let times = if modifiers.shift { FAR } else { 1.0 };
+            let [x, y] = match key {
+                Key::ArrowLeft => [-1.0, 0.0],
+                Key::ArrowRight => [1.0, 0.0],
+                Key::ArrowDown => [0.0, -1.0],
+                Key::ArrowUp => [0.0, 1.0],
+                _ => [0.0; 2],
+            };
+            match key {
+                Key::ArrowLeft | Key::ArrowRight | Key::ArrowDown | Key::ArrowUp => {
+                    if modifiers.command {
+                        view.pan([x, y]);
+                    } else if let Some(present) = cursor {
+                        if y == 0.0 || !next(present, curves, y, view) {
+                            let far = STEP * times;
+                            view.go(present, [x * far, y * far], curves);
+                        }
+                    } else {
+                        *cursor = Some(Cursor::free(view.begin(self.begin(plot.ctx()))));
+                    }
+                }
+                Key::Plus | Key::Equals if !modifiers.command => view.zoom(NEARER, cursor.as_ref()),
+                Key::Minus if !modifiers.command => view.zoom(1.0 / NEARER, cursor.as_ref()),
+                Key::Home | Key::Num0 if !modifiers.command => {
+                    let auto = plot.auto_bounds();
+                    plot.set_auto_bounds([auto.x || self.axes[0], auto.y || self.axes[1]]);
+                }
+                Key::Escape => *cursor = None,
+                Key::Enter => menu = true,
+                _ => {}
+            }
+        }
+        menu
+    }
+
     /// The x where a cursor begins: where the last one was, in this plot or in one whose x is the same.
     fn begin(&self, ctx: &Context) -> Option<f64> {
         let same =
@@ -125,7 +137,7 @@ fn pressed(ctx: &Context) -> Vec<(Key, Modifiers)> {
             pressed: true,
             modifiers,
             ..
-        } => Some((*key, *modifiers)),
+        } if !modifiers.alt => Some((*key, *modifiers)),
         _ => None,
     };
     ctx.input(|input| input.events.iter().filter_map(down).collect())
