@@ -21,8 +21,9 @@ const FREE_DEVIATIONS: f64 = 0.385;
 /// Share of the usual speed below which the body is still, and tells no noise.
 const STILL: f64 = 0.01;
 
-/// Standard deviations of the felt force from which it is a push.
+/// Standard deviations of the felt force from which it is a push, and the weakest push as a share of the hardest.
 const PUSH: f64 = 6.0;
+const WEAKEST: f64 = 0.01;
 
 /// Uncertainty of the load's velocity that grows in so many samples, as a share of the body's usual speed, and the least.
 const GROWN: f64 = 0.01;
@@ -105,7 +106,9 @@ impl Felt<'_> {
         let sizes = forces.iter().enumerate();
         let moving = sizes.filter(|(k, _)| self.body(*k).1.abs() > STILL * speed);
         let mut sizes: Vec<f64> = moving.map(|(_, f)| f.abs()).collect();
-        let push = PUSH * quantile(&mut sizes, FREE) / FREE_DEVIATIONS;
+        let noise = quantile(&mut sizes, FREE) / FREE_DEVIATIONS;
+        let hardest = sizes.iter().copied().fold(0.0, f64::max);
+        let push = (PUSH * noise).max(WEAKEST * hardest);
         let slowing = Slowing {
             viscous: load.viscous / load.inertia,
             dry: load.dry_friction / load.inertia,
@@ -170,5 +173,62 @@ fn followed(state: &LoadState) -> Followed {
             ..Motion::default()
         },
         mode: Mode::of(state.v),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Coupling, Engine, State};
+
+    const STEP: f64 = 2e-4;
+
+    #[test]
+    fn a_load_that_is_met_again_and_again_is_where_the_force_has_moved_it() {
+        let mut model = Model::body(8e-4, 2e-3);
+        let load = Load {
+            inertia: 9e-4,
+            viscous: 2e-3,
+            dry_friction: 0.005,
+            coupling: Coupling {
+                half_gap: 0.03,
+                stiffness: 800.0,
+                damping: 0.15,
+            },
+        };
+        model.load = Some(load);
+        let engine = Engine::new(&model);
+        let mut state = State::at_rest(0.0);
+        let (mut position, mut velocity, mut input) = (Vec::new(), Vec::new(), Vec::new());
+        let mut truth = Vec::new();
+        for k in 0..6000 {
+            position.push(state.position());
+            velocity.push(state.velocity());
+            truth.push((state.position() - state.twist(), state.load_velocity()));
+            let time = f64::from(k) * STEP;
+            let pushed = 0.12 * libm::sin(31.0 * time) + 0.1 * libm::sin(83.0 * time);
+            input.push(pushed);
+            engine.advance(&mut state, pushed, STEP);
+        }
+        let felt = Felt {
+            position: &position,
+            velocity: Some(&velocity),
+            input: &input[..input.len() - 1],
+            step: STEP,
+        };
+        let samples: Vec<usize> = (0..6000).step_by(50).collect();
+        let states = felt.states(&model, &load, &samples);
+        let speed = truth.iter().map(|(_, v)| v.abs()).fold(0.0, f64::max);
+        let near = samples.iter().zip(&states).filter(|(k, (found, _))| {
+            let (x, v) = truth[**k];
+            let gap = load.coupling.half_gap;
+            (found.motion.x - x).abs() < 0.03 * gap && (found.motion.v - v).abs() < 0.03 * speed
+        });
+        let near = near.count();
+        assert!(
+            20 * near > 19 * samples.len(),
+            "{near} of {}",
+            samples.len()
+        );
     }
 }
