@@ -294,7 +294,7 @@ impl Excitation {
     /// Runs `model` through the record and writes position and velocity at every simulated sample.
     ///
     /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
-    /// given there. Of the hidden states the lagged input goes on from the window before; a load ([`Excitation::follow`])
+    /// given there. Of the hidden states the lagged input goes on from the window before; a load (`follow`)
     /// and the deflection of a friction contact are where they must be if the body moved as measured. Returns the pieces
     /// of motion that this took, one an interval at least unless nothing moves.
     pub fn replay(
