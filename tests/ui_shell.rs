@@ -3,8 +3,6 @@
 #[path = "support/ui.rs"]
 mod ui;
 
-use std::collections::HashMap;
-
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::HysteronApp;
@@ -253,26 +251,6 @@ fn each_look_draws_every_page() {
     }
 }
 
-/// What is kept between two starts.
-#[derive(Default)]
-struct Kept(HashMap<String, String>);
-
-impl eframe::Storage for Kept {
-    fn get_string(&self, key: &str) -> Option<String> {
-        self.0.get(key).cloned()
-    }
-
-    fn set_string(&mut self, key: &str, value: String) {
-        self.0.insert(key.to_owned(), value);
-    }
-
-    fn remove_string(&mut self, key: &str) {
-        self.0.remove(key);
-    }
-
-    fn flush(&mut self) {}
-}
-
 #[test]
 fn a_panel_that_was_made_wider_is_so_at_the_next_start() {
     let left = |harness: &App| {
@@ -296,7 +274,7 @@ fn a_panel_that_was_made_wider_is_so_at_the_next_start() {
     let dragged = left(&harness);
     assert!((before - dragged - 120.0).abs() < 9.0, "{before} {dragged}");
 
-    let mut kept = Kept::default();
+    let mut kept = Memory::default();
     eframe::App::save(harness.state_mut(), &mut kept);
     let mut later = app("start", WIDE);
     let mut context = eframe::CreationContext::_new_kittest(later.ctx.clone());
