@@ -34,6 +34,12 @@ const LEAST: f64 = 0.003;
 const DEPTH: f64 = 0.3;
 const ENDS: f64 = 1e-3;
 
+/// Velocity at sample `k` from the positions before and after it, `step` seconds apart.
+pub(crate) fn slope(position: &[f64], k: usize, step: f64) -> f64 {
+    let (before, after) = (k.saturating_sub(1), (k + 1).min(position.len() - 1));
+    (position[after] - position[before]) / ((after - before) as f64 * step)
+}
+
 /// A measured motion of the body, and the input that reached it.
 pub(super) struct Felt<'a> {
     /// Position at every sample, free of noise as far as known.
@@ -58,10 +64,7 @@ impl Felt<'_> {
         if let Some(velocity) = self.velocity {
             return velocity[k];
         }
-        let last = self.position.len() - 1;
-        let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-        let time = (after - before) as f64 * self.step;
-        (self.position[after] - self.position[before]) / time
+        slope(self.position, k, self.step)
     }
 
     /// Force from the body on the load of `model` over every interval.

@@ -28,6 +28,7 @@ mod swing;
 pub use closed_loop::{Run, run_controlled};
 pub(crate) use contact::dahl;
 pub use engine::{Engine, State};
+pub(crate) use felt_load::slope;
 pub(crate) use flight::Slowing;
 pub(crate) use flow::free_body;
 pub use load::{Coupling, FollowedNoise, Load, load_torque};

@@ -97,13 +97,18 @@ impl Fit {
         felt || data.excitation.sees_load_of(&model)
     }
 
-    /// Takes a load behind a gap to be where the force that the body felt has moved it, if that fits far better than where
-    /// it would be if the body had moved as measured.
-    pub(super) fn try_feeling(&mut self, data: &Data) {
+    /// Whether it has a load behind a gap that nothing tells of yet but the motion of the body.
+    fn follows_hidden_load(&self, data: &Data) -> bool {
         let model = self.structure.model(&self.values);
         let gap = model.load.is_some_and(|load| load.coupling.half_gap > 0.0);
         let followed = self.structure.load_begin == LoadBegin::Followed;
-        if !gap || !followed || data.excitation.sees_load_of(&model) {
+        gap && followed && !data.excitation.sees_load_of(&model)
+    }
+
+    /// Takes a load behind a gap to be where the force that the body felt has moved it, if that fits far better than where
+    /// it would be if the body had moved as measured.
+    pub(super) fn try_feeling(&mut self, data: &Data) {
+        if !self.follows_hidden_load(data) {
             return;
         }
         let mut trial = self.clone();
@@ -117,12 +122,7 @@ impl Fit {
     /// Has a load behind a gap go on from window to window, if that fits better than where it would be if the body had
     /// moved as measured: a stiff contact makes much of little noise. True if so.
     pub(super) fn try_carrying(&mut self, data: &Data, scales: &Scales) -> bool {
-        let model = self.structure.model(&self.values);
-        let gap = model.load.is_some_and(|load| load.coupling.half_gap > 0.0);
-        if !gap
-            || self.structure.load_begin != LoadBegin::Followed
-            || data.excitation.sees_load_of(&model)
-        {
+        if !self.follows_hidden_load(data) {
             return false;
         }
         let mut trial = self.clone();

@@ -8,6 +8,7 @@
 use std::f64::consts::SQRT_2;
 
 use super::{Probe, STILL, free_body, solved};
+use crate::model::slope;
 use crate::order::quantile;
 use crate::simplex::minimise;
 use nalgebra::{DMatrix, DVector};
@@ -150,10 +151,10 @@ impl Probe {
         let measured = self.outputs.iter().any(|(is_velocity, _)| *is_velocity);
         let velocity = |k: usize| {
             if measured {
-                return self.velocity[k];
+                self.velocity[k]
+            } else {
+                slope(position, k, step)
             }
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-            (position[after] - position[before]) / ((after - before) as f64 * step)
         };
         let interval = |k: usize| Interval {
             position: f64::midpoint(position[k], position[k + 1]),
@@ -247,51 +248,72 @@ struct Line {
     left: f64,
 }
 
+/// Place of the load at the pushes, and its velocity after each interval, under a force.
+#[derive(Default)]
+struct Answer {
+    places: Vec<f64>,
+    velocities: Vec<f64>,
+}
+
 impl Seen<'_> {
     /// The line for a load that is slowed down at this rate, 1/s.
     fn line(&self, rate: f64) -> Option<Line> {
+        let velocities: Vec<f64> = self.intervals.iter().map(|i| i.velocity).collect();
+        let signs: Vec<f64> = velocities.iter().map(|v| sign(*v)).collect();
+        let ones = vec![1.0; self.forces.len()];
+        let known = [self.forces, &velocities, &signs, &ones].map(|f| self.answer(rate, f));
         let mut directions = vec![0.0; self.forces.len()];
         let mut found = None;
         for _ in 0..DIRECTIONS {
-            let (line, velocity) = self.solved(rate, &directions)?;
+            let (line, velocity) = self.solved(rate, &known, &directions)?;
             directions = velocity.iter().map(|v| sign(*v)).collect();
             found = Some(line);
         }
         found
     }
 
-    /// The line if the load moved in these directions, and the velocity of the load.
-    fn solved(&self, rate: f64, directions: &[f64]) -> Option<(Line, Vec<f64>)> {
-        let n = self.forces.len();
-        let velocities: Vec<f64> = self.intervals.iter().map(|i| i.velocity).collect();
-        let signs: Vec<f64> = velocities.iter().map(|v| sign(*v)).collect();
-        let ones = vec![1.0; n];
-        let forces = [self.forces, &velocities, &signs, &ones, directions];
-        let mut rows = vec![[0.0; COLUMNS]; self.pushes.len()];
-        let mut speeds: Vec<Vec<f64>> = Vec::new();
-        for (column, force) in forces.iter().enumerate() {
-            let (decay, phi1, phi2) = free_body(rate, self.step);
-            let (mut x, mut v) = (0.0, 0.0);
-            let mut pushes = self.pushes.iter().zip(&mut rows).peekable();
-            let mut speed = Vec::with_capacity(n);
-            for (k, f) in force.iter().enumerate() {
-                let after = x + phi1 * v + phi2 * f;
-                if let Some((_, row)) = pushes.next_if(|(p, _)| **p == k) {
-                    row[column] = f64::midpoint(x, after);
-                }
-                x = after;
-                v = decay * v + phi1 * f;
-                speed.push(v);
+    /// What a force does to a load that is slowed down at this rate, per inertia.
+    fn answer(&self, rate: f64, force: &[f64]) -> Answer {
+        let (decay, phi1, phi2) = free_body(rate, self.step);
+        let (mut x, mut v) = (0.0, 0.0);
+        let mut pushes = self.pushes.iter().peekable();
+        let mut answer = Answer::default();
+        for (k, f) in force.iter().enumerate() {
+            let after = x + phi1 * v + phi2 * f;
+            if pushes.next_if(|p| **p == k).is_some() {
+                answer.places.push(f64::midpoint(x, after));
             }
-            speeds.push(speed);
+            x = after;
+            v = decay * v + phi1 * f;
+            answer.velocities.push(v);
         }
-        for (row, k) in rows.iter_mut().zip(self.pushes) {
+        answer
+    }
+
+    /// The line if the load moved in these directions, and the velocity of the load; what the forces on the body do to it
+    /// is `known`.
+    fn solved(
+        &self,
+        rate: f64,
+        known: &[Answer; 4],
+        directions: &[f64],
+    ) -> Option<(Line, Vec<f64>)> {
+        let n = self.forces.len();
+        let rubbing = self.answer(rate, directions);
+        let answers: Vec<&Answer> = known.iter().chain([&rubbing]).collect();
+        let row = |(place, k): (usize, &usize)| {
+            let mut row = [0.0; COLUMNS];
+            for (value, answer) in row.iter_mut().zip(&answers) {
+                *value = answer.places[place];
+            }
             let time = (*k as f64 + 0.5) * self.step;
             row[5] = sign(self.forces[*k]);
             row[6] = self.forces[*k];
             row[7] = 1.0;
             row[8] = -libm::expm1(-rate * time) / rate;
-        }
+            row
+        };
+        let rows: Vec<[f64; COLUMNS]> = self.pushes.iter().enumerate().map(row).collect();
         let rubs = directions.iter().any(|d| *d != 0.0);
         let used: Vec<usize> = (0..COLUMNS).filter(|c| rubs || *c != 4).collect();
         let p = used.len();
@@ -319,11 +341,8 @@ impl Seen<'_> {
         let mean = squares.sum::<f64>() / sizes.len() as f64;
         let velocity = (0..n).map(|k| {
             let time = (k + 1) as f64 * self.step;
-            let pushed: f64 = speeds
-                .iter()
-                .zip(&coefficients)
-                .map(|(s, c)| s[k] * c)
-                .sum();
+            let parts = answers.iter().zip(&coefficients);
+            let pushed: f64 = parts.map(|(a, c)| a.velocities[k] * c).sum();
             pushed + coefficients[8] * libm::exp(-rate * time)
         });
         let velocity = velocity.collect();
