@@ -375,13 +375,18 @@ impl Probe {
         stride: usize,
     ) -> Option<Regression> {
         let (solution, left) = self.solve(forces, stride)?;
+        let without = if stride == 1 {
+            self.base_left
+        } else {
+            self.solve(&[], stride)?.1
+        };
         let b = self.inverse_inertia + solution[0];
         let own = solution.iter().skip(BASE).take(forces.len());
         let coefficients: Vec<f64> = own.map(|c| c / b).collect();
         (b * self.inverse_inertia > 0.0 && coefficients.iter().all(|c| c.is_finite())).then(|| {
             Regression {
                 coefficients,
-                left: left / self.base_left,
+                left: left / without,
             }
         })
     }

@@ -10,15 +10,17 @@ use super::{BASE, Probe, dot, solved, spans_stride};
 use crate::effect::spec::SEEN_TURN;
 use crate::order::median;
 
-/// Samples at most that enter the regression.
+/// Samples at most that enter the regressions of a scan, and the number of peaks of it that are looked at by a regression
+/// on all windows: where the body is held in many of them, a few may say anything.
 const REPEATING: usize = 3_000;
+const PEAKS: usize = 12;
 
 /// Spatial frequencies that are scanned at most, as close as the measured travel tells them apart, each by a regression.
 const FINE_SPATIAL: usize = 700;
 
 /// The highest one, in times that distance, where the pull on the body is transformed, as of a motor that makes many
-/// turns; cells at least for one wave of it; and, of those that stand out of a row of neighbours, how many are looked at by
-/// a regression.
+/// turns; cells at least for one wave of it; and, of those that stand out of a row of neighbours, how many are looked at
+/// likewise.
 const FAR_SPATIAL: usize = 65_536;
 const CELLS: usize = 4;
 const NEIGHBOURS: usize = 64;
@@ -42,37 +44,48 @@ impl Probe {
         let rows: Vec<Row> = rows(0.0, spacing, FINE_SPATIAL)
             .filter(|r| r.last() >= least && r.first() <= fastest)
             .collect();
-        let scanned = self.crew.gather(rows.len(), |i| self.scan_row(&rows[i]));
+        let stride = spans_stride(&self.spans, REPEATING);
+        let scanned = self
+            .crew
+            .gather(rows.len(), |i| self.scan_row(&rows[i], stride));
         let scanned = scanned.into_iter().flatten();
-        let scan: Vec<(f64, f64, f64, f64)> = scanned.filter(|s| within(s.0)).collect();
-        let mut peaks: Vec<(f64, f64, f64, f64)> = (0..scan.len())
+        let scan: Vec<Wave> = scanned.filter(|wave| within(wave.n)).collect();
+        let mut valleys: Vec<&Wave> = (0..scan.len())
             .filter(|i| {
-                let left = |j: Option<usize>| j.and_then(|j| scan.get(j)).map_or(f64::MAX, |s| s.3);
-                let here = scan[*i].3;
+                let left =
+                    |j: Option<usize>| j.and_then(|j| scan.get(j)).map_or(f64::MAX, |s| s.left);
+                let here = scan[*i].left;
                 here <= left(i.checked_sub(1)) && here <= left(Some(i + 1))
             })
-            .map(|i| scan[i])
+            .map(|i| &scan[i])
             .collect();
-        peaks.extend(self.far_peaks(spacing, fastest));
-        peaks.sort_by(|a, b| a.3.total_cmp(&b.3));
+        valleys.sort_by(|a, b| a.left.total_cmp(&b.left));
+        let mut promising: Vec<f64> = valleys.iter().take(PEAKS).map(|wave| wave.n).collect();
+        promising.extend(self.far_peaks(spacing, fastest));
+        let looked = self
+            .crew
+            .gather(promising.len(), |i| self.spatial(promising[i]));
+        let mut peaks: Vec<Wave> = looked.into_iter().flatten().collect();
+        peaks.sort_by(|a, b| a.left.total_cmp(&b.left));
         peaks.truncate(count);
         // The peak lies between the scanned frequencies.
-        let finer = peaks.into_iter().map(|peak| {
-            let near = (-4..=4).map(|k| peak.0 + 0.2 * f64::from(k) * spacing);
+        let finer = self.crew.gather(peaks.len(), |i| {
+            let near = (-4..=4).map(|k| peaks[i].n + 0.2 * f64::from(k) * spacing);
             near.filter_map(|n| self.spatial(n))
-                .min_by(|a, b| a.3.total_cmp(&b.3))
-                .unwrap_or(peak)
+                .min_by(|a, b| a.left.total_cmp(&b.left))
         });
         finer
-            .filter(|peak| Self::may_be(peak.3) && peak.3 < share)
-            .map(|peak| (peak.0, peak.1, peak.2))
+            .into_iter()
+            .flatten()
+            .filter(|wave| Self::may_be(wave.left) && wave.left < share)
+            .map(|wave| (wave.n, wave.sine, wave.cosine))
             .collect()
     }
 
     /// The same beyond the frequencies that are scanned one by one. The product of what is unexplained with its answer to
     /// a wave of force is, over all waves, a Fourier transform along the way of the pull on each interval: where that stands
     /// out of its neighbours is worth a regression.
-    fn far_peaks(&self, spacing: f64, fastest: f64) -> Vec<(f64, f64, f64, f64)> {
+    fn far_peaks(&self, spacing: f64, fastest: f64) -> Vec<f64> {
         let highest = ((fastest / spacing) as usize).min(FAR_SPATIAL);
         if highest <= FINE_SPATIAL {
             return Vec::new();
@@ -88,9 +101,8 @@ impl Probe {
             .collect();
         standing.sort_by(|a, b| b.1.total_cmp(&a.1));
         standing.truncate(STANDING_OUT);
-        let look = |i: usize| self.spatial(standing[i].0 as f64 * spacing);
-        let found = self.crew.gather(standing.len(), look);
-        found.into_iter().flatten().collect()
+        let places = standing.into_iter().map(|(place, _)| place);
+        places.map(|place| place as f64 * spacing).collect()
     }
 
     /// The squared Fourier transform of the pull along the way, at 0 and the multiples of `spacing` below `count`.
@@ -158,19 +170,18 @@ impl Probe {
         pulls
     }
 
-    /// Frequency, coefficients of sine and cosine, share left.
-    fn spatial(&self, n: f64) -> Option<(f64, f64, f64, f64)> {
+    /// What a wave of this spatial frequency comes to on all windows.
+    fn spatial(&self, n: f64) -> Option<Wave> {
         let only = Row {
             before: n,
             spacing: 0.0,
             count: 1,
         };
-        self.scan_row(&only).pop()
+        self.scan_row(&only, 1).pop()
     }
 
-    /// The same for a row of frequencies. Sine and cosine are turned on from each to the next.
-    fn scan_row(&self, row: &Row) -> Vec<(f64, f64, f64, f64)> {
-        let stride = spans_stride(&self.spans, REPEATING);
+    /// The same for a row of frequencies on one window in `stride`. Sine and cosine are turned on from each to the next.
+    fn scan_row(&self, row: &Row, stride: usize) -> Vec<Wave> {
         let spans = self.spans.iter().step_by(stride);
         let places = spans.flat_map(|(from, to)| *from..to - 1);
         let mut waves = vec![(0.0, 0.0); self.position.len()];
@@ -192,10 +203,26 @@ impl Probe {
                 [Box::new(|k| waves[k].0), Box::new(|k| waves[k].1)];
             let n = row.before + k as f64 * row.spacing;
             let fit = self.regress_forces(&forces, stride);
-            found.extend(fit.map(|f| (n, f.coefficients[0], f.coefficients[1], f.left)));
+            found.extend(fit.map(|f| Wave {
+                n,
+                sine: f.coefficients[0],
+                cosine: f.coefficients[1],
+                left: f.left,
+            }));
         }
         found
     }
+}
+
+/// A force that repeats along the way.
+struct Wave {
+    /// Spatial frequency, rad per unit of position.
+    n: f64,
+    /// Coefficients of sine and cosine.
+    sine: f64,
+    cosine: f64,
+    /// Share of the squared error that it leaves.
+    left: f64,
 }
 
 /// Equally spaced spatial frequencies, rad per unit of position: those after `before`.
