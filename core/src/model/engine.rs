@@ -5,8 +5,9 @@ use std::cell::Cell;
 use super::contact::Contact;
 use super::flow::{Flow, Motion};
 use super::friction::{Mode, slide};
+use super::impacts::Impacts;
 use super::joint::{Forces, Joined, Joint};
-use super::load::Followed;
+use super::load::{Followed, STEP_RADIANS};
 use super::{Instant, Model};
 
 /// Halvings of an interval at most.
@@ -31,17 +32,17 @@ const SEEN_STEPS: f64 = 5.0;
 /// hidden and carried from window to window.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct State {
-    motion: Motion,
-    mode: Mode,
+    pub(super) motion: Motion,
+    pub(super) mode: Mode,
     /// Elastic deflection of the contact of dry friction.
     deflection: f64,
     /// x1 - x2.
-    twist: f64,
+    pub(super) twist: f64,
     /// Motion of the load; its position is told by the twist.
-    load: Motion,
-    load_mode: Mode,
+    pub(super) load: Motion,
+    pub(super) load_mode: Mode,
     /// Time since the first sample, s.
-    time: f64,
+    pub(super) time: f64,
 }
 
 impl State {
@@ -261,6 +262,10 @@ impl<'m> Engine<'m> {
             let held = self.held(&middle);
             return self.move_held(state, held, w, h);
         }
+        let h = if touching { self.meet(state, w, h) } else { h };
+        if h <= 0.0 {
+            return;
+        }
         let mut halvings = if touching {
             self.touching_halvings(h)
         } else {
@@ -337,6 +342,36 @@ impl<'m> Engine<'m> {
         state.time += h;
         self.count(1);
         true
+    }
+
+    /// Moves body and load, which may come together or part, for `h` seconds but for what is returned and left to small
+    /// steps.
+    fn meet(&self, state: &mut State, w: f64, h: f64) -> f64 {
+        let (Some(joint), Some(flow), Some(load)) = (&self.joint, &self.load, &self.model.load)
+        else {
+            return h;
+        };
+        let level = self.model.friction.level;
+        let soft = |contact: &Contact| contact.is_soft(h);
+        if load.coupling.half_gap == 0.0 || (level > 0.0 && self.contact.as_ref().is_some_and(soft))
+        {
+            return h;
+        }
+        let (constant, rise) = self.model.late_load();
+        let impacts = Impacts {
+            body: &self.body,
+            load_flow: flow,
+            joint,
+            load,
+            input: w,
+            force: constant + rise * (state.time + 0.5 * h),
+            level,
+            radian: self.touching_step / STEP_RADIANS,
+        };
+        let mut pieces = 0;
+        let left = impacts.advance(state, h, &mut pieces);
+        self.count(pieces);
+        left
     }
 
     /// One step of the exponential midpoint rule.

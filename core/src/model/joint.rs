@@ -17,6 +17,35 @@ use crate::exponential::exponential;
 /// `x, s, v, u, z`, and with them what is held: `w, q, p`.
 const MOVING: usize = 5;
 const ALL: usize = 8;
+const VELOCITY: usize = 2;
+const LOAD_VELOCITY: usize = 3;
+
+/// Terms of the power series: over half a radian the next one is below 1e-9.
+const TERMS: usize = 10;
+
+/// Motion of body and load as a power series in time.
+pub(super) struct Series {
+    /// Position of the body at the begin.
+    from: f64,
+    terms: [SVector<f64, ALL>; TERMS],
+}
+
+impl Series {
+    /// State after `t` seconds.
+    pub fn at(&self, t: f64) -> Joined {
+        let (last, rest) = (self.terms[TERMS - 1], &self.terms[..TERMS - 1]);
+        let to = rest.iter().rev().fold(last, |sum, term| sum * t + term);
+        Joined {
+            body: Motion {
+                x: self.from + to[0],
+                v: to[2],
+                z: to[4],
+            },
+            twist: to[1],
+            load: to[3],
+        }
+    }
+}
 
 /// Body and load.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +112,25 @@ impl Joint {
         if flow.iter().all(|v| v.is_finite()) {
             self.steps.push((h, flow));
         }
+    }
+
+    /// Motion from here under these forces, over times in which the joint does not swing far; body or load may be held by dry
+    /// friction.
+    pub fn series(&self, joined: &Joined, forces: &Forces, [body, load]: [bool; 2]) -> Series {
+        let Motion { x, v, z } = joined.body;
+        let (w, q, p) = (forces.input, forces.body, forces.load);
+        let mut terms =
+            [SVector::<f64, ALL>::from([0.0, joined.twist, v, joined.load, z, w, q, p]); TERMS];
+        for k in 1..TERMS {
+            terms[k] = self.rates * terms[k - 1] / k as f64;
+            if body {
+                terms[k][VELOCITY] = 0.0;
+            }
+            if load {
+                terms[k][LOAD_VELOCITY] = 0.0;
+            }
+        }
+        Series { from: x, terms }
     }
 
     /// State after `h` seconds under these forces; `None` for a duration that was not prepared.

@@ -72,7 +72,7 @@ const WIDELY: f64 = 10.0;
 
 /// Radians of the fastest oscillation in one step; its phase is then right to a few parts in ten
 /// thousand.
-const STEP_RADIANS: f64 = 0.2;
+pub(super) const STEP_RADIANS: f64 = 0.2;
 
 /// Standard deviation of the noise of what a load follows: measured position, or the integral of measured velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]

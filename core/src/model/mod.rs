@@ -15,6 +15,7 @@ mod felt_load;
 mod flight;
 mod flow;
 mod friction;
+mod impacts;
 mod joint;
 mod load;
 mod replay;
