@@ -304,7 +304,7 @@ impl Effect for Backlash {
                 symbol: "K",
                 label: "stiffness of the contact",
                 dimension: Dimension::Stiffness,
-                range: Range::Stiff,
+                range: Range::Hard,
             },
             ParameterSpec {
                 symbol: "D",

@@ -112,6 +112,8 @@ pub enum Range {
     UnitInterval,
     /// Up to `STIFFEST` times its [`Scales::of`], and so stiff that the body swings within the record.
     Stiff,
+    /// The same up to `HARDEST` times it: a contact may well be over between two samples.
+    Hard,
     /// At least `LIGHTEST` times its [`Scales::of`].
     Sizeable,
     /// `RIGID_CROSSINGS` to `SHORT_CROSSINGS` times [`Scales::crossed`], or as far as the position is blurred.
@@ -164,6 +166,9 @@ pub const RIGID_CROSSINGS: f64 = 0.01;
 /// A spring that swings by more than this in a sample, squared radians, is rigid to the measurement.
 pub const STIFFEST: f64 = 0.3;
 
+/// A contact that swings by more than this in a sample, squared radians, is an impact.
+pub const HARDEST: f64 = 300.0;
+
 /// A load lighter than this share of the motor is part of it.
 pub const LIGHTEST: f64 = 0.03;
 
@@ -181,6 +186,7 @@ impl ParameterSpec {
             self.range,
             Range::Positive
                 | Range::Stiff
+                | Range::Hard
                 | Range::Sizeable
                 | Range::Short
                 | Range::Long
@@ -197,9 +203,14 @@ impl ParameterSpec {
             Range::Positive => value.max(LEAST_SHARE * scale),
             Range::Fraction => value.clamp(-0.9, 0.9),
             Range::UnitInterval => value.clamp(0.0, 1.0),
-            Range::Stiff => {
+            Range::Stiff | Range::Hard => {
+                let most = if self.range == Range::Stiff {
+                    STIFFEST
+                } else {
+                    HARDEST
+                };
                 let slowest = scales.inertia.abs() / (scales.duration * scales.duration);
-                value.max(slowest).min((STIFFEST * scale).max(slowest))
+                value.max(slowest).min((most * scale).max(slowest))
             }
             Range::Sizeable => value.max(LIGHTEST * scale),
             Range::Short => {
