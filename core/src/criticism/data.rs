@@ -312,6 +312,22 @@ impl Data {
         part
     }
 
+    /// The first `share` of every window.
+    pub fn beginning(&self, share: f64) -> Self {
+        let mut part = self.clone();
+        let ends = self.spans().into_iter().map(|(from, to)| {
+            let samples = (share * (to - from) as f64).ceil();
+            (from + samples as usize).min(to)
+        });
+        let ends: Vec<usize> = ends.collect();
+        part.blocks.retain(|b| b.from < ends[b.window]);
+        for block in &mut part.blocks {
+            block.to = block.to.min(ends[block.window]);
+        }
+        part.excitation = self.excitation.within(part.spans());
+        part
+    }
+
     /// Pairs of windows in which the motor felt a load, spread over the record, about `samples` in all: where it
     /// is felt now and then only, the other windows tell nothing of it.
     fn felt_pairs(&self, samples: usize) -> Vec<usize> {

@@ -35,7 +35,7 @@ impl Fit {
     /// cost.
     pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) -> bool {
         let model = self.structure.model(&self.values);
-        let sees_load = data.excitation.sees_load_of(&model);
+        let sees_load = self.sees_load(data);
         if !sees_load && model.friction.breakaway() == 0.0 {
             return false;
         }

@@ -219,6 +219,7 @@ impl Fit {
         if !lowered {
             self.damping = RESTART_DAMPING;
             let found = self.mend_odd_windows(data, scales)
+                || self.try_growing(data, scales)
                 || self.try_carrying(data, scales)
                 || self.try_other_valleys(data, scales);
             self.stalls += usize::from(!found);

@@ -18,6 +18,12 @@ const CARRIED: f64 = 0.98;
 /// The same where a load is known by the force that the body felt: that is told with noise of its own.
 const FELT: f64 = 0.1;
 
+/// Shares of a window from which the state of a felt load is found one after the other, how often each, and the share of the
+/// cost that may be left for it to have been worth while.
+const GROWING: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+const GROWING_ROUNDS: usize = 3;
+const WON: f64 = 0.9;
+
 /// Shares of the step of a window's state that are tried where a contact bends the motion.
 const POLISHED: [f64; 3] = [1.0, 0.3, 0.1];
 
@@ -91,7 +97,7 @@ impl Fit {
     }
 
     /// Whether its load is known by what the body felt of it, contact by contact or as a force.
-    pub(super) fn sees_load(&self, data: &Data) -> bool {
+    pub(in crate::criticism) fn sees_load(&self, data: &Data) -> bool {
         let model = self.structure.model(&self.values);
         let felt = self.structure.load_begin == LoadBegin::Felt && model.load.is_some();
         felt || data.excitation.sees_load_of(&model)
@@ -117,6 +123,24 @@ impl Fit {
         if trial.cost < FELT * self.cost {
             *self = trial;
         }
+    }
+
+    /// Finds the state of each window with a felt load from its first part, then from more and more of it: each contact
+    /// multiplies what was wrong before it, so that the whole has many valleys. True if much was won.
+    pub(super) fn try_growing(&mut self, data: &Data, scales: &Scales) -> bool {
+        if self.structure.load_begin != LoadBegin::Felt {
+            return false;
+        }
+        let (mut trial, before) = (self.clone(), self.cost);
+        for share in GROWING {
+            let part = data.beginning(share);
+            trial.follow_starts(&part);
+            for _ in 0..GROWING_ROUNDS {
+                trial.polish_once(&part, scales);
+            }
+        }
+        self.take_better(data, &trial.starts);
+        self.cost < WON * before
     }
 
     /// Has a load behind a gap go on from window to window, if that fits better than where it would be if the body had
