@@ -251,7 +251,6 @@ fn a_load_that_rubs_is_found_behind_its_shaft() {
     }
 }
 
-/// Twelve hundred poles go by: a wave that is met nowhere on a coarse grid of frequencies.
 /// Nobody can simulate for long where such a load is: every contact multiplies what was wrong before it. The momentum that
 /// the motor loses tells it.
 #[test]
@@ -270,20 +269,19 @@ fn a_load_that_is_met_again_and_again_is_found_behind_its_gap() {
         load: Some(load),
         ..DriveRig::default()
     });
-    assert_eq!(classes(&d)[0], ["backlash"], "{}", d.verdict.text);
-    let last = d.steps.last().unwrap();
-    assert!(last.error < 0.1 * d.steps[0].error, "{}", last.error);
-    for (name, truth) in [
+    let truth = [
         ("beta", load.half_gap),
         ("J2", load.inertia),
         ("J1", DriveRig::default().inertia),
-    ] {
-        let found = last.parameters.iter().find(|p| p.name == name).unwrap();
-        let off = found.value / truth - 1.0;
-        assert!(off.abs() < 0.03, "{name}: {} of {truth}", found.value);
-    }
+        ("K", load.stiffness),
+        ("D", load.damping),
+    ];
+    check(&d, &["backlash"], &truth);
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+    assert!(d.steps.last().unwrap().error < 1.2);
 }
 
+/// Twelve hundred poles go by: a wave that is met nowhere on a coarse grid of frequencies.
 #[test]
 fn cogging_of_a_long_axis_is_found() {
     let rig = DriveRig {

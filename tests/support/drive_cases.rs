@@ -117,7 +117,18 @@ pub fn drive_cases(seed: u64) -> Vec<Case> {
     cases.extend(pairs(&mut random));
     cases.extend(strangers(&mut random));
     cases.extend(sparse(&mut random));
+    cases.push(met_again(&mut random));
     cases
+}
+
+/// A gap of which no drift tells: motor and load meet again and again.
+fn met_again(r: &mut Random) -> Case {
+    let beta = r.between(0.01, 0.04);
+    let rig = DriveRig {
+        load: Some(play(beta, 0.0)),
+        ..bare(r, MULTISINE)
+    };
+    Case::drive("backlash, multisine", vec![backlash(beta)], rig)
 }
 
 fn clean(r: &mut Random) -> Vec<Case> {

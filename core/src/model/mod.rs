@@ -2,10 +2,10 @@
 //!
 //! Input path, body, dry friction, further forces, a load and the sensor are the mechanisms; an
 //! effect sets the ones that it needs. The order is: static maps of the input, dead time, lag, body,
-//! sensor. Between events the motion of body and load is an exact flow, sticking and slipping are
-//! modes with guards, and so is that of both on an elastic joint or while they touch. Smooth forces, and the torque
-//! between body and load where they come together or apart, are held at their value at the middle of steps short
-//! against their change (exponential midpoint rule, second order).
+//! sensor. Between events the motion of body and load is an exact flow; sticking and slipping are
+//! modes with guards, and so is contact: where body and load come together or apart is located as an event. Smooth
+//! forces, and all that acts with them or with a soft bristle between body and load, are held at their value at the middle
+//! of steps short against their change (exponential midpoint rule, second order).
 
 mod bristle;
 mod closed_loop;
