@@ -283,8 +283,10 @@ mod tests {
 
     const STEP: f64 = 2e-4;
 
+    const STIFFNESS: f64 = 800.0;
+
     /// A motor and a load as heavy in a gap, with dry friction of both.
-    fn model(dry: [f64; 2]) -> Model {
+    fn model(dry: [f64; 2], stiffness: f64) -> Model {
         let mut model = Model::body(9e-4, 2e-3);
         model.friction.level = dry[0];
         model.load = Some(Load {
@@ -293,8 +295,8 @@ mod tests {
             dry_friction: dry[1],
             coupling: Coupling {
                 half_gap: 0.004,
-                stiffness: 800.0,
-                damping: 0.15,
+                stiffness,
+                damping: 0.15 * (stiffness / STIFFNESS).sqrt(),
             },
         });
         model
@@ -314,9 +316,8 @@ mod tests {
     }
 
     /// Largest deviation of position and velocity over some contacts.
-    fn farthest_off(dry: [f64; 2]) -> [f64; 2] {
-        let model = model(dry);
-        let mut engine = Engine::new(&model);
+    fn farthest_off(model: &Model) -> [f64; 2] {
+        let mut engine = Engine::new(model);
         engine.prepare(STEP);
         let mut state = State::at_rest(0.0);
         let mut exact = [0.0; 4];
@@ -325,7 +326,7 @@ mod tests {
             let time = STEP * f64::from(k);
             let input = 0.12 * libm::sin(150.0 * time) + 0.1 * libm::sin(397.0 * time);
             engine.advance(&mut state, input, STEP);
-            exact = integrated(&model, exact, input);
+            exact = integrated(model, exact, input);
             off[0] = off[0].max((state.position() - exact[0]).abs());
             off[1] = off[1].max((state.velocity() - exact[2]).abs());
         }
@@ -334,13 +335,39 @@ mod tests {
 
     #[test]
     fn body_and_load_meet_and_part_as_integrated_in_small_steps() {
-        let [x, v] = farthest_off([0.0, 0.0]);
+        let [x, v] = farthest_off(&model([0.0, 0.0], STIFFNESS));
         assert!(x < 1e-7 && v < 1e-4, "{x} {v}");
     }
 
     #[test]
     fn so_they_do_where_both_rub() {
-        let [x, v] = farthest_off([0.01, 0.005]);
+        let [x, v] = farthest_off(&model([0.01, 0.005], STIFFNESS));
         assert!(x < 1e-7 && v < 1e-4, "{x} {v}");
+    }
+
+    #[test]
+    fn a_contact_may_be_over_between_two_samples() {
+        // It swings by four radians in one.
+        let [x, v] = farthest_off(&model([0.0, 0.0], 200.0 * STIFFNESS));
+        assert!(x < 1e-6 && v < 1e-3, "{x} {v}");
+    }
+
+    #[test]
+    fn wild_states_and_contacts_end_without_a_panic() {
+        let wild = [f64::NAN, f64::INFINITY, -1e308, 1e200, 0.0];
+        for stiffness in [1e-300, STIFFNESS, 1e300] {
+            for dry in [[0.0, 0.0], [0.01, 0.005]] {
+                let model = model(dry, stiffness);
+                let mut engine = Engine::new(&model);
+                engine.prepare(STEP);
+                for v in wild {
+                    for twist in [0.0, 0.005, f64::NAN, 1e300] {
+                        let mut state = State::touching(twist, v, 1.0);
+                        engine.advance(&mut state, 0.1, STEP);
+                        engine.advance(&mut state, v, STEP);
+                    }
+                }
+            }
+        }
     }
 }
