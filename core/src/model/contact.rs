@@ -310,6 +310,19 @@ mod tests {
     use crate::model::engine::{Engine, State};
     use crate::model::{DryFriction, Model, runge_kutta};
 
+    /// The contact of a body that rubs, whose friction builds up over this displacement, and its free flow.
+    fn rubbing(presliding: f64) -> (Contact, Flow) {
+        let mut model = Model::body(9e-4, 2e-3);
+        model.friction = DryFriction {
+            level: 0.05,
+            presliding,
+            contact_damping: 0.2,
+            ..DryFriction::default()
+        };
+        let free = Flow::new(model.inertia, model.viscous, None);
+        (Contact::new(&model).unwrap(), free)
+    }
+
     /// Bristle, body and input in many small steps, as an independent reference.
     fn integrate(
         contact: &Contact,
@@ -328,15 +341,7 @@ mod tests {
 
     #[test]
     fn agrees_with_small_steps_of_runge_kutta() {
-        let mut model = Model::body(9e-4, 2e-3);
-        model.friction = DryFriction {
-            level: 0.05,
-            presliding: 2e-5,
-            contact_damping: 0.2,
-            ..DryFriction::default()
-        };
-        let contact = Contact::new(&model).unwrap();
-        let free = Flow::new(model.inertia, model.viscous, None);
+        let (contact, free) = rubbing(2e-5);
         let (h, level) = (2e-4, 0.05);
         let mut motion = Motion::default();
         let (mut z, mut exact) = (0.0, [0.0; 3]);
@@ -394,15 +399,7 @@ mod tests {
 
     #[test]
     fn a_fast_body_feels_the_impulse_of_a_bristle_that_settles_at_once() {
-        let mut model = Model::body(9e-4, 2e-3);
-        model.friction = DryFriction {
-            level: 0.05,
-            presliding: 2e-6,
-            contact_damping: 0.2,
-            ..DryFriction::default()
-        };
-        let contact = Contact::new(&model).unwrap();
-        let free = Flow::new(model.inertia, model.viscous, None);
+        let (contact, free) = rubbing(2e-6);
         let (h, level, u, v) = (2e-4, 0.05, 0.1, 2.0);
         let mut motion = Motion {
             v,
@@ -430,15 +427,7 @@ mod tests {
 
     #[test]
     fn a_wild_state_ends_without_a_panic() {
-        let mut model = Model::body(9e-4, 2e-3);
-        model.friction = DryFriction {
-            level: 0.05,
-            presliding: 2e-5,
-            contact_damping: 0.2,
-            ..DryFriction::default()
-        };
-        let contact = Contact::new(&model).unwrap();
-        let free = Flow::new(model.inertia, model.viscous, None);
+        let (contact, free) = rubbing(2e-5);
         let wild = [f64::NAN, f64::INFINITY, -1e308, 1e200, 0.0];
         for v in wild {
             for u in wild {

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::contact::Contact;
 use super::flow::{Flow, Motion};
-use super::friction::{Mode, slide};
+use super::friction::{Mode, Rubbing, slide};
 use super::impacts::Impacts;
 use super::joint::{Forces, Joined, Joint};
 use super::load::{Followed, STEP_RADIANS};
@@ -102,6 +102,25 @@ impl State {
         next.motion.v = velocity;
         next.mode = Mode::of(velocity);
         next
+    }
+
+    /// Body and load at the ends of a joint with this play to their side.
+    pub(super) fn joined(&self, play: f64) -> Joined {
+        Joined {
+            body: self.motion,
+            twist: self.twist - play,
+            load: self.load.v,
+        }
+    }
+
+    /// Takes up where they came to in `time` seconds; their modes stay.
+    pub(super) fn join(&mut self, next: &Joined, play: f64, time: f64) {
+        let twist = next.twist + play;
+        self.load.x += (next.body.x - self.motion.x) - (twist - self.twist);
+        self.motion = next.body;
+        self.twist = twist;
+        self.load.v = next.load;
+        self.time += time;
     }
 
     /// Lets time pass without motion: only the lagged input goes on.
@@ -280,25 +299,30 @@ impl<'m> Engine<'m> {
         }
     }
 
+    /// Whether dry friction gives way elastically, so that it shows in `h` seconds.
+    fn bends(&self, h: f64) -> bool {
+        let soft = |contact: &Contact| contact.is_soft(h);
+        self.model.friction.level > 0.0 && self.contact.as_ref().is_some_and(soft)
+    }
+
+    /// Load on the body besides friction, in the middle of the next `h` seconds.
+    fn late_load(&self, state: &State, h: f64) -> f64 {
+        let (constant, rise) = self.model.late_load();
+        constant + rise * (state.time + 0.5 * h)
+    }
+
     /// Moves body and load in one exact step; false where that is not possible: one of them turns or sticks, or they
     /// come together or apart.
     fn swing(&self, state: &mut State, w: f64, h: f64) -> bool {
         let (Some(joint), Some(load)) = (&self.joint, &self.model.load) else {
             return false;
         };
-        let level = self.model.friction.level;
-        let soft = |contact: &Contact| contact.is_soft(h);
-        if level > 0.0 && self.contact.as_ref().is_some_and(soft) {
+        if self.bends(h) {
             return false;
         }
-        // Which way they rub, if they do.
-        let rubbing = |mode: Mode, level: f64| if level > 0.0 { mode.sign() } else { 0.0 };
-        let (way, load_way) = (
-            rubbing(state.mode, level),
-            rubbing(state.load_mode, load.dry_friction),
-        );
-        let stuck = |way: f64, level: f64| level > 0.0 && way == 0.0;
-        if stuck(way, level) || stuck(load_way, load.dry_friction) {
+        let body = Rubbing::new(state.mode, self.model.friction.level);
+        let other = Rubbing::new(state.load_mode, load.dry_friction);
+        if body.sticks || other.sticks {
             return false;
         }
         let half_gap = load.coupling.half_gap;
@@ -311,35 +335,24 @@ impl<'m> Engine<'m> {
         if !joins(state.twist, state.motion.v - state.load.v) {
             return false;
         }
-        let (constant, rise) = self.model.late_load();
         let forces = Forces {
             input: w,
-            body: constant + rise * (state.time + 0.5 * h) - way * level,
-            load: -load_way * load.dry_friction,
+            body: self.late_load(state, h) - body.way * body.level,
+            load: -other.way * other.level,
         };
         let play = side * half_gap;
-        let joined = Joined {
-            body: state.motion,
-            twist: state.twist - play,
-            load: state.load.v,
-        };
-        let Some(next) = joint.after(&joined, &forces, h) else {
+        let Some(next) = joint.after(&state.joined(play), &forces, h) else {
             return false;
         };
-        let twist = next.twist + play;
         let turns = |way: f64, v: f64| way != 0.0 && way * v <= 0.0;
-        if turns(way, next.body.v)
-            || turns(load_way, next.load)
-            || !joins(twist, next.body.v - next.load)
+        if turns(body.way, next.body.v)
+            || turns(other.way, next.load)
+            || !joins(next.twist + play, next.body.v - next.load)
         {
             return false;
         }
-        state.load.x += (next.body.x - state.motion.x) - (twist - state.twist);
-        state.motion = next.body;
-        state.twist = twist;
-        state.load.v = next.load;
+        state.join(&next, play, h);
         (state.mode, state.load_mode) = (Mode::of(next.body.v), Mode::of(next.load));
-        state.time += h;
         self.count(1);
         true
     }
@@ -351,21 +364,17 @@ impl<'m> Engine<'m> {
         else {
             return h;
         };
-        let level = self.model.friction.level;
-        let soft = |contact: &Contact| contact.is_soft(h);
-        if load.coupling.half_gap == 0.0 || (level > 0.0 && self.contact.as_ref().is_some_and(soft))
-        {
+        if load.coupling.half_gap == 0.0 || self.bends(h) {
             return h;
         }
-        let (constant, rise) = self.model.late_load();
         let impacts = Impacts {
             body: &self.body,
             load_flow: flow,
             joint,
             load,
             input: w,
-            force: constant + rise * (state.time + 0.5 * h),
-            level,
+            force: self.late_load(state, h),
+            level: self.model.friction.level,
             radian: self.touching_step / STEP_RADIANS,
         };
         let mut pieces = 0;

@@ -47,6 +47,45 @@ impl Mode {
     }
 }
 
+/// Dry friction of one body over a piece of its motion.
+pub(super) struct Rubbing {
+    pub level: f64,
+    /// 1 where it slips forwards, -1 backwards, 0 where it sticks or does not rub.
+    pub way: f64,
+    pub sticks: bool,
+}
+
+impl Rubbing {
+    pub fn new(mode: Mode, level: f64) -> Self {
+        let way = if level > 0.0 { mode.sign() } else { 0.0 };
+        Self {
+            level,
+            way,
+            sticks: level > 0.0 && way == 0.0,
+        }
+    }
+
+    /// Above 0 until it turns or breaks loose.
+    pub fn margin(&self, velocity: f64, force: f64) -> f64 {
+        if self.sticks {
+            self.level - force.abs()
+        } else if self.way == 0.0 {
+            f64::INFINITY
+        } else {
+            self.way * velocity
+        }
+    }
+
+    /// Mode after it has turned or broken loose under this force.
+    pub fn after_event(&self, force: f64) -> Mode {
+        if self.sticks {
+            Mode::of(force)
+        } else {
+            Mode::from_rest(force, self.level)
+        }
+    }
+}
+
 /// Moves one body for `h` seconds under the input `w` and a held `force`, with friction `level`.
 pub(super) fn slide(
     flow: &Flow,

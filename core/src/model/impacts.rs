@@ -7,7 +7,7 @@
 use super::Load;
 use super::engine::State;
 use super::flow::{Flow, root};
-use super::friction::{Mode, slide};
+use super::friction::{Mode, Rubbing, slide};
 use super::joint::{Forces, Joined, Joint};
 
 /// Events in one interval after which the rest is left to small steps.
@@ -127,7 +127,7 @@ impl Impacts<'_> {
     fn unlimited(&self, state: &State, side: f64) -> f64 {
         let joint = &self.load.coupling;
         let rate = state.motion.v - state.load.v;
-        joint.stiffness * (state.twist - side * joint.half_gap) + joint.damping * rate
+        joint.unlimited(state.twist - side * joint.half_gap, rate)
     }
 
     /// State after free flight.
@@ -171,16 +171,9 @@ impl Impacts<'_> {
             body: self.force - body.way * body.level,
             load: -load.way * load.level,
         };
-        let joined = Joined {
-            body: state.motion,
-            twist: state.twist - play,
-            load: state.load.v,
-        };
-        let series = self
-            .joint
-            .series(&joined, &forces, [body.sticks, load.sticks]);
-        let torque =
-            |at: &Joined| joint.stiffness * at.twist + joint.damping * (at.body.v - at.load);
+        let stick = [body.sticks, load.sticks];
+        let series = self.joint.series(&state.joined(play), &forces, stick);
+        let torque = |at: &Joined| joint.unlimited(at.twist, at.body.v - at.load);
         // What acts on each besides its dry friction.
         let on_body = |at: &Joined| at.body.z + self.force - torque(at);
         let margins = |t: f64| {
@@ -221,58 +214,14 @@ impl Impacts<'_> {
             }
             _ => {}
         }
-        let twist = next.twist + play;
-        state.load.x += (next.body.x - state.motion.x) - (twist - state.twist);
-        state.motion = next.body;
-        state.twist = twist;
-        state.load.v = next.load;
+        state.join(&next, play, used);
         if self.level == 0.0 {
             state.mode = Mode::of(next.body.v);
         }
         if self.load.dry_friction == 0.0 {
             state.load_mode = Mode::of(next.load);
         }
-        state.time += used;
         (used, ended != Some(0))
-    }
-}
-
-/// Dry friction of one of them over a piece.
-struct Rubbing {
-    level: f64,
-    /// 1 where it slips forwards, -1 backwards, 0 where it sticks or does not rub.
-    way: f64,
-    sticks: bool,
-}
-
-impl Rubbing {
-    fn new(mode: Mode, level: f64) -> Self {
-        let way = if level > 0.0 { mode.sign() } else { 0.0 };
-        Self {
-            level,
-            way,
-            sticks: level > 0.0 && way == 0.0,
-        }
-    }
-
-    /// Above 0 until it turns or breaks loose.
-    fn margin(&self, velocity: f64, force: f64) -> f64 {
-        if self.sticks {
-            self.level - force.abs()
-        } else if self.way == 0.0 {
-            f64::INFINITY
-        } else {
-            self.way * velocity
-        }
-    }
-
-    /// Mode after it has turned or broken loose under this force.
-    fn after_event(&self, force: f64) -> Mode {
-        if self.sticks {
-            Mode::of(force)
-        } else {
-            Mode::from_rest(force, self.level)
-        }
     }
 }
 

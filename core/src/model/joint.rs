@@ -35,15 +35,7 @@ impl Series {
     pub fn at(&self, t: f64) -> Joined {
         let (last, rest) = (self.terms[TERMS - 1], &self.terms[..TERMS - 1]);
         let to = rest.iter().rev().fold(last, |sum, term| sum * t + term);
-        Joined {
-            body: Motion {
-                x: self.from + to[0],
-                v: to[2],
-                z: to[4],
-            },
-            twist: to[1],
-            load: to[3],
-        }
+        Joined::from_vector(self.from, to.as_slice())
     }
 }
 
@@ -56,6 +48,28 @@ pub(super) struct Joined {
     pub twist: f64,
     /// Velocity of the load.
     pub load: f64,
+}
+
+impl Joined {
+    /// With what is held. Counted from the present position, which may be far from 0.
+    fn vector(&self, forces: &Forces) -> SVector<f64, ALL> {
+        let Motion { v, z, .. } = self.body;
+        let (w, q, p) = (forces.input, forces.body, forces.load);
+        SVector::from([0.0, self.twist, v, self.load, z, w, q, p])
+    }
+
+    /// From a vector that counts from position `x`.
+    fn from_vector(x: f64, to: &[f64]) -> Self {
+        Self {
+            body: Motion {
+                x: x + to[0],
+                v: to[2],
+                z: to[4],
+            },
+            twist: to[1],
+            load: to[3],
+        }
+    }
 }
 
 /// What is held.
@@ -117,10 +131,7 @@ impl Joint {
     /// Motion from here under these forces, over times in which the joint does not swing far; body or load may be held by dry
     /// friction.
     pub fn series(&self, joined: &Joined, forces: &Forces, [body, load]: [bool; 2]) -> Series {
-        let Motion { x, v, z } = joined.body;
-        let (w, q, p) = (forces.input, forces.body, forces.load);
-        let mut terms =
-            [SVector::<f64, ALL>::from([0.0, joined.twist, v, joined.load, z, w, q, p]); TERMS];
+        let mut terms = [joined.vector(forces); TERMS];
         for k in 1..TERMS {
             terms[k] = self.rates * terms[k - 1] / k as f64;
             if body {
@@ -130,27 +141,17 @@ impl Joint {
                 terms[k][LOAD_VELOCITY] = 0.0;
             }
         }
-        Series { from: x, terms }
+        Series {
+            from: joined.body.x,
+            terms,
+        }
     }
 
     /// State after `h` seconds under these forces; `None` for a duration that was not prepared.
     pub fn after(&self, joined: &Joined, forces: &Forces, h: f64) -> Option<Joined> {
         let (_, flow) = self.steps.iter().find(|(step, _)| *step == h)?;
-        let Motion { x, v, z } = joined.body;
-        // Counted from the present position, which may be far from 0.
-        let (w, q, p) = (forces.input, forces.body, forces.load);
-        let from = SVector::<f64, ALL>::from([0.0, joined.twist, v, joined.load, z, w, q, p]);
-        let to = flow * from;
-        let body = Motion {
-            x: x + to[0],
-            v: to[2],
-            z: to[4],
-        };
-        Some(Joined {
-            body,
-            twist: to[1],
-            load: to[3],
-        })
+        let to = flow * joined.vector(forces);
+        Some(Joined::from_vector(joined.body.x, to.as_slice()))
     }
 }
 

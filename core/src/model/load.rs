@@ -23,7 +23,7 @@ impl Coupling {
     /// Torque or force on the load at `twist` x1 - x2 and its `rate`.
     pub fn force(&self, twist: f64, rate: f64) -> f64 {
         if self.half_gap == 0.0 {
-            return self.stiffness * twist + self.damping * rate;
+            return self.unlimited(twist, rate);
         }
         let pressed = twist.abs() - self.half_gap;
         if pressed <= 0.0 {
@@ -31,6 +31,11 @@ impl Coupling {
         }
         let side = twist.signum();
         side * (self.stiffness * pressed + self.damping * rate * side).max(0.0)
+    }
+
+    /// The same of a joint that pulls too, with a `twist` that counts from the end of its play.
+    pub(super) fn unlimited(&self, twist: f64, rate: f64) -> f64 {
+        self.stiffness * twist + self.damping * rate
     }
 
     /// Whether body and load are joined at `twist` and its `rate`: always without play, else where they push each
