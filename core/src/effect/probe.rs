@@ -374,12 +374,25 @@ impl Probe {
         forces: &[Box<dyn Fn(usize) -> f64 + '_>],
         stride: usize,
     ) -> Option<Regression> {
+        self.regress_beside(self.left_without(stride)?, forces, stride)
+    }
+
+    /// Squared remainder of the base forces alone, on one window in `stride`.
+    fn left_without(&self, stride: usize) -> Option<f64> {
+        if stride == 1 {
+            return Some(self.base_left);
+        }
+        self.solve(&[], stride).map(|(_, left)| left)
+    }
+
+    /// The same where the base forces alone leave so much.
+    fn regress_beside(
+        &self,
+        without: f64,
+        forces: &[Box<dyn Fn(usize) -> f64 + '_>],
+        stride: usize,
+    ) -> Option<Regression> {
         let (solution, left) = self.solve(forces, stride)?;
-        let without = if stride == 1 {
-            self.base_left
-        } else {
-            self.solve(&[], stride)?.1
-        };
         let b = self.inverse_inertia + solution[0];
         let own = solution.iter().skip(BASE).take(forces.len());
         let coefficients: Vec<f64> = own.map(|c| c / b).collect();

@@ -193,6 +193,9 @@ impl Probe {
             })
             .collect();
         let mut found = Vec::with_capacity(row.count);
+        let Some(without) = self.left_without(stride) else {
+            return found;
+        };
         for k in 1..=row.count {
             for (k, (sine, cosine)) in &turns {
                 let (s, c) = waves[*k];
@@ -202,7 +205,7 @@ impl Probe {
             let forces: [Box<dyn Fn(usize) -> f64>; 2] =
                 [Box::new(|k| waves[k].0), Box::new(|k| waves[k].1)];
             let n = row.before + k as f64 * row.spacing;
-            let fit = self.regress_forces(&forces, stride);
+            let fit = self.regress_beside(without, &forces, stride);
             found.extend(fit.map(|f| Wave {
                 n,
                 sine: f.coefficients[0],
