@@ -128,6 +128,12 @@ impl Contact {
         self.frequency * h < RIGID_RADIANS
     }
 
+    /// Whether it slips at friction `level` while the body moves on at `velocity`.
+    pub fn slips(&self, deflection: f64, velocity: f64, level: f64) -> bool {
+        velocity * deflection > 0.0
+            && (1.0 - deflection.abs() * self.stiffness / level).abs() <= SLIP_SHARE
+    }
+
     /// Deflection after a known displacement `moved` at friction `level`.
     pub fn followed(&self, deflection: f64, moved: f64, level: f64) -> f64 {
         dahl(self.within_reach(deflection), moved, level / self.stiffness)

@@ -299,10 +299,17 @@ impl<'m> Engine<'m> {
         }
     }
 
-    /// Whether dry friction gives way elastically, so that it shows in `h` seconds.
-    fn bends(&self, h: f64) -> bool {
-        let soft = |contact: &Contact| contact.is_soft(h);
-        self.model.friction.level > 0.0 && self.contact.as_ref().is_some_and(soft)
+    /// The elastic contact of dry friction, where it shows in `h` seconds.
+    fn bristle(&self, h: f64) -> Option<&Contact> {
+        let rubs = self.model.friction.level > 0.0;
+        self.contact.as_ref().filter(|c| rubs && c.is_soft(h))
+    }
+
+    /// Whether it is bending: until it slips, the friction is no constant force.
+    fn bends(&self, state: &State, h: f64) -> bool {
+        let level = self.model.friction.level;
+        let bending = |c: &Contact| !c.slips(state.deflection, state.motion.v, level);
+        self.bristle(h).is_some_and(bending)
     }
 
     /// Load on the body besides friction, in the middle of the next `h` seconds.
@@ -317,7 +324,7 @@ impl<'m> Engine<'m> {
         let (Some(joint), Some(load)) = (&self.joint, &self.model.load) else {
             return false;
         };
-        if self.bends(h) {
+        if self.bends(state, h) {
             return false;
         }
         let body = Rubbing::new(state.mode, self.model.friction.level);
@@ -364,7 +371,7 @@ impl<'m> Engine<'m> {
         else {
             return h;
         };
-        if load.coupling.half_gap == 0.0 || self.bends(h) {
+        if load.coupling.half_gap == 0.0 || self.bends(state, h) {
             return h;
         }
         let impacts = Impacts {
@@ -375,6 +382,7 @@ impl<'m> Engine<'m> {
             input: w,
             force: self.late_load(state, h),
             level: self.model.friction.level,
+            bends_at_turns: self.bristle(h).is_some(),
             radian: self.touching_step / STEP_RADIANS,
         };
         let mut pieces = 0;

@@ -23,6 +23,9 @@ const MAX_ITERATIONS: usize = 30;
 /// A relative fall of the cost below this ends a fit.
 const COST_TOLERANCE: f64 = 1e-6;
 
+/// The same where whole steps do not lower it: on rough ground short ones may go on to find a little for long.
+const CREEP: f64 = 1e-4;
+
 /// Damping of the first step.
 const FIRST_DAMPING: f64 = 1e-3;
 
@@ -41,6 +44,9 @@ const DAMPING_GROWTH: f64 = 6.0;
 /// A fit ends when it stalls for the second time; damping with which it goes on after the first.
 const MAX_STALLS: usize = 2;
 const RESTART_DAMPING: f64 = 1e-3;
+
+/// Share of the cost below which better states of odd windows are worth going on for.
+const MENDED: f64 = 0.999;
 
 /// A fit is stuck where its last step should have lowered the cost by more than this share of it, and did not.
 const STUCK: f64 = 1e-4;
@@ -205,7 +211,7 @@ impl Fit {
                 self.cost = self.objective(data, &motion, &values, ODD_MEAN_SQUARE);
                 (self.values, self.starts, self.motion) = (values, starts, motion);
                 self.damping = (self.damping * 0.2).max(1e-9);
-                lowered = fall > COST_TOLERANCE;
+                lowered = fall > if shortened { CREEP } else { COST_TOLERANCE };
                 break;
             }
             self.damping *= growth;
@@ -218,7 +224,9 @@ impl Fit {
         }
         if !lowered {
             self.damping = RESTART_DAMPING;
-            let found = self.mend_odd_windows(data, scales)
+            let before = self.cost;
+            self.mend_odd_windows(data, scales);
+            let found = self.cost < MENDED * before
                 || self.try_growing(data, scales)
                 || self.try_carrying(data, scales)
                 || self.try_other_valleys(data, scales);

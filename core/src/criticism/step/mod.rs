@@ -25,6 +25,9 @@ const MAX_VISITS: usize = 2;
 const BETTER_VALLEY: f64 = 0.92;
 const BETTER: f64 = 0.9999;
 
+/// Times the cost of a model from which on an effect is needed, if the model without it is not hoped to come lower.
+const NEEDED: f64 = 30.0;
+
 /// Error, in noise units, up to which little is left.
 const LITTLE_LEFT: f64 = 3.0;
 
@@ -224,11 +227,16 @@ impl StepJob {
             return Progress::Done(report);
         }
         let session = &self.session;
+        let present = self.model.as_ref().map_or(f64::INFINITY, |m| m.fit.cost);
+        let works = |search: &mut Search, enough: f64| {
+            let (data, scales) = (&session.data, &session.scales);
+            search.prepare(data, &session.scout, scales)
+                || search.iterate(data, scales) && search.optimism() < enough
+        };
         let over = match &mut self.stage {
-            Stage::Build { search, .. } | Stage::Revisit(search) | Stage::Remove { search, .. } => {
-                let (data, scales) = (&session.data, &session.scales);
-                !search.scan(data, &session.scout, scales) && !search.iterate(data, scales)
-            }
+            Stage::Build { search, .. } => !works(search, f64::INFINITY),
+            Stage::Revisit(search) => !works(search, present),
+            Stage::Remove { search, .. } => !works(search, NEEDED * present),
             Stage::Record(race) | Stage::Try(race) | Stage::Swap { race, .. } => {
                 session.data.tried_enough() || !race.advance(session)
             }
