@@ -21,7 +21,7 @@ const MOST: f64 = 0.25;
 /// Velocities that are tried on either side, as shares of the typical speed.
 const STEPS: [f64; 7] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
-/// Deviations of a load's place and of its velocity that are tried beside none and to either side, each with each, in
+/// Deviations of a load's place and of its velocity that are tried beside none and to either side, an odd number, in
 /// standard deviations: far more of the velocity, since a load that is believed to rest may have been pushed unseen.
 const PLACES: [f64; 7] = [0.25, 0.5, 1.0, 2.0, 4.0, 7.0, 10.0];
 const VELOCITIES: [f64; 7] = [1.5, 5.0, 15.0, 40.0, 100.0, 250.0, 600.0];
@@ -29,6 +29,17 @@ const VELOCITIES: [f64; 7] = [1.5, 5.0, 15.0, 40.0, 100.0, 250.0, 600.0];
 /// How many of these the states are improved from, the best of each window, and how often.
 const IMPROVED: usize = 6;
 const IMPROVEMENTS: usize = 8;
+
+/// How many places of the coarse grid are refined.
+const REFINED: usize = 2;
+
+/// A deviation of a load that was tried in a window: its place in the grid.
+#[derive(Clone, Copy)]
+struct Tried {
+    cost: f64,
+    at: [usize; 2],
+    load: [f64; 2],
+}
 
 impl Fit {
     /// Looks for better states of odd windows, if the body sticks or has a load that was felt; true if that lowers the
@@ -44,29 +55,33 @@ impl Fit {
         if !odd.contains(&true) {
             return false;
         }
-        let part = data.only(|window| odd[window]);
-        let chosen = self.starts.iter().zip(&odd).filter(|(_, odd)| **odd);
-        let starts = chosen.map(|(start, _)| *start).collect();
+        self.in_windows(&odd, data, scales, |own, part| {
+            if sees_load {
+                own.try_loads(part, scales);
+            } else {
+                own.try_quicker(part, scales);
+            }
+            own.polish_starts(part, scales);
+        })
+    }
+
+    /// Has the states of the `chosen` windows improved by themselves, and takes what fits better; true if that lowers the
+    /// cost.
+    pub(super) fn in_windows(
+        &mut self,
+        chosen: &[bool],
+        data: &Data,
+        scales: &Scales,
+        improve: impl FnOnce(&mut Self, &Data),
+    ) -> bool {
+        let part = data.only(|window| chosen[window]);
+        let own = self.starts.iter().zip(chosen).filter(|(_, own)| **own);
+        let starts = own.map(|(start, _)| *start).collect();
         let structure = self.structure.clone();
         let mut own = Self::new(&part, structure, self.values.clone(), starts, scales);
-        if sees_load {
-            own.try_loads(&part, scales);
-        } else {
-            // A state that suited other values may have led far from the measured one.
-            let measured = part.guessed_starts();
-            own.try_from(measured.clone(), 1, &part, scales);
-            for step in STEPS {
-                for side in [1.0, -1.0] {
-                    let faster = side * step * scales.speed;
-                    for base in [own.starts.clone(), measured.clone()] {
-                        own.try_from(quicker(base, faster), 1, &part, scales);
-                    }
-                }
-            }
-        }
-        own.polish_starts(&part, scales);
+        improve(&mut own, &part);
         let mut better = self.starts.clone();
-        let places = (0..better.len()).filter(|k| odd[*k]);
+        let places = (0..better.len()).filter(|k| chosen[*k]);
         for (place, start) in places.zip(&own.starts) {
             better[place] = *start;
         }
@@ -75,31 +90,82 @@ impl Fit {
         self.cost < before
     }
 
+    /// Starts every window with the body a little quicker or slower than now or than measured, and keeps what fits best.
+    fn try_quicker(&mut self, data: &Data, scales: &Scales) {
+        // A state that suited other values may have led far from the measured one.
+        let measured = data.guessed_starts();
+        self.try_from(measured.clone(), 1, data, scales);
+        for step in STEPS {
+            for side in [1.0, -1.0] {
+                let faster = side * step * scales.speed;
+                for base in [self.starts.clone(), measured.clone()] {
+                    self.try_from(quicker(base, faster), 1, data, scales);
+                }
+            }
+        }
+    }
+
     /// Starts every window as measured with the load in several places, improves the states from the best of these, and
     /// keeps what fits best.
     fn try_loads(&mut self, data: &Data, scales: &Scales) {
         let measured = data.guessed_starts();
-        let loads = about_zero(&PLACES)
-            .flat_map(|place| about_zero(&VELOCITIES).map(move |velocity| [place, velocity]));
-        let mut tried: Vec<Vec<(f64, [f64; 2])>> = vec![Vec::new(); measured.len()];
-        for load in loads {
-            let starts = measured.iter().map(|start| Start { load, ..*start });
-            let trial = self.started(starts.collect(), data);
-            let costs = window_costs(data, &trial.motion);
-            for (tried, cost) in tried.iter_mut().zip(costs) {
-                tried.push((cost, load));
+        let (places, velocities) = (about_zero(&PLACES), about_zero(&VELOCITIES));
+        // Every second one of each, then those beside the best of these.
+        let coarse = |grid: &[f64]| (1..grid.len()).step_by(2).collect::<Vec<_>>();
+        let mut tried: Vec<Vec<Tried>> = vec![Vec::new(); measured.len()];
+        for place in coarse(&places) {
+            for velocity in coarse(&velocities) {
+                let at = vec![Some([place, velocity]); measured.len()];
+                self.try_places(&at, [&places, &velocities], &measured, data, &mut tried);
             }
         }
-        for tried in &mut tried {
-            tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let best: Vec<Vec<[usize; 2]>> = tried
+            .iter()
+            .map(|tried| tried.iter().take(REFINED).map(|t| t.at).collect())
+            .collect();
+        for rank in 0..REFINED {
+            for beside in 0..9 {
+                let [i, j] = [beside / 3, beside % 3];
+                let at = |best: &Vec<[usize; 2]>| {
+                    let [place, velocity] = best.get(rank)?;
+                    Some([place + i - 1, velocity + j - 1]).filter(|_| beside != 4)
+                };
+                let at: Vec<Option<[usize; 2]>> = best.iter().map(at).collect();
+                self.try_places(&at, [&places, &velocities], &measured, data, &mut tried);
+            }
         }
         for rank in 0..IMPROVED {
             let ranked = measured.iter().zip(&tried);
             let starts = ranked.map(|(start, tried)| Start {
-                load: tried.get(rank).map_or(start.load, |(_, load)| *load),
+                load: tried.get(rank).map_or(start.load, |tried| tried.load),
                 ..*start
             });
             self.try_from(starts.collect(), IMPROVEMENTS, data, scales);
+        }
+    }
+
+    /// Tries the load of each window at one place of the grid, if any, and puts it in order among those that were tried.
+    fn try_places(
+        &self,
+        at: &[Option<[usize; 2]>],
+        [places, velocities]: [&[f64]; 2],
+        measured: &[Start],
+        data: &Data,
+        tried: &mut [Vec<Tried>],
+    ) {
+        let load = |at: &Option<[usize; 2]>| at.map(|[i, j]| [places[i], velocities[j]]);
+        let starts = measured.iter().zip(at).map(|(start, at)| Start {
+            load: load(at).unwrap_or(start.load),
+            ..*start
+        });
+        let trial = self.started(starts.collect(), data);
+        let costs = window_costs(data, &trial.motion);
+        for ((tried, cost), at) in tried.iter_mut().zip(costs).zip(at) {
+            let Some((at, load)) = at.zip(load(at)) else {
+                continue;
+            };
+            let better = tried.partition_point(|t| t.cost <= cost);
+            tried.insert(better, Tried { cost, at, load });
         }
     }
 
@@ -121,10 +187,11 @@ impl Fit {
     }
 }
 
-/// 0 and these sizes to either side of it.
-fn about_zero(sizes: &[f64]) -> impl Iterator<Item = f64> {
-    let sides = sizes.iter().flat_map(|size| [*size, -size]);
-    std::iter::once(0.0).chain(sides)
+/// These sizes to either side of 0, and that, in order.
+fn about_zero(sizes: &[f64]) -> Vec<f64> {
+    let below = sizes.iter().rev().map(|size| -size);
+    let above = sizes.iter().copied();
+    below.chain(std::iter::once(0.0)).chain(above).collect()
 }
 
 /// The same states with the body faster by this.
