@@ -383,7 +383,11 @@ impl Search {
         }
         if !self.tried.is_empty() {
             let near = self.tried.partition_point(|(f, _)| f.cost <= self.reach);
-            let kept = if self.few { self.tried.len() } else { near.max(1) };
+            let kept = if self.few {
+                self.tried.len()
+            } else {
+                near.max(1)
+            };
             self.tried.truncate(kept);
             self.shortlist = self.tried.drain(..).rev().collect();
         }

@@ -139,11 +139,14 @@ impl Impacts<'_> {
             return f64::INFINITY;
         }
         let force = self.force - way * self.level;
-        let end = self.body.after_cached(state.motion, self.input, force, left);
+        let end = self
+            .body
+            .after_cached(state.motion, self.input, force, left);
         if way * end.v > 0.0 {
             return f64::INFINITY;
         }
-        self.body.stops(state.motion, self.input, force, left, end.v)
+        self.body
+            .stops(state.motion, self.input, force, left, end.v)
     }
 
     /// What the contact would do if it could pull.

@@ -49,14 +49,19 @@ pub(crate) enum LoadBegin {
 }
 
 impl FollowedLoad {
+    /// Whether it was felt by the body, and is known at these starts.
+    pub(crate) fn is_felt_at(&self, starts: &[Start]) -> bool {
+        !self.roots.is_empty() && self.is_at(starts)
+    }
+
+    fn is_at(&self, starts: &[Start]) -> bool {
+        let samples = starts.iter().map(|s| s.sample);
+        samples.eq(self.samples.iter().copied())
+    }
+
     /// Whether this is what the load of `model` does at these starts.
     fn suits(&self, model: &Model, starts: &[Start]) -> bool {
-        self.load.is_some()
-            && self.load == model.load
-            && starts
-                .iter()
-                .map(|s| s.sample)
-                .eq(self.samples.iter().copied())
+        self.load.is_some() && self.load == model.load && self.is_at(starts)
     }
 }
 

@@ -75,6 +75,8 @@ pub(super) struct Motion {
     pub priors: Vec<f64>,
     /// Where a load begins in the windows.
     pub loads: FollowedLoad,
+    /// With these values.
+    values: Vec<f64>,
 }
 
 impl Motion {
@@ -148,8 +150,7 @@ impl Fit {
         scales: &Scales,
     ) -> Self {
         structure.clamp(&mut values, scales);
-        let unknown = FollowedLoad::default();
-        let motion = simulate(data, &structure, &values, &starts, &unknown);
+        let motion = simulate(data, &structure, &values, &starts, &Motion::default());
         let cost = robust_cost(data, &motion, ODD_MEAN_SQUARE) + structure.prior_cost(&values);
         let p = values.len();
         let mut fit = Self {
@@ -284,7 +285,7 @@ impl Fit {
 
     /// Motion with these values and starts; a load that they leave alone is not followed again.
     fn simulate(&self, data: &Data, values: &[f64], starts: &[Start]) -> Motion {
-        simulate(data, &self.structure, values, starts, &self.motion.loads)
+        simulate(data, &self.structure, values, starts, &self.motion)
     }
 
     /// What a step must lower: the cost of the data and of what the user knows before.
@@ -374,13 +375,19 @@ fn simulate(
     structure: &Structure,
     values: &[f64],
     starts: &[Start],
-    known: &FollowedLoad,
+    known: &Motion,
 ) -> Motion {
     let mut motion = Motion::still(data.len());
     let model = structure.model(values);
-    motion.loads = data
-        .excitation
-        .follow(&model, starts, known, structure.load_begin);
+    let begin = structure.load_begin;
+    let same = begin == LoadBegin::Felt && known.values == values && known.loads.is_felt_at(starts);
+    motion.loads = if same {
+        known.loads.clone()
+    } else {
+        let known = &known.loads;
+        data.excitation.follow(&model, starts, known, begin)
+    };
+    motion.values = values.to_vec();
     let (position, velocity) = (&mut motion.position, &mut motion.velocity);
     let moves = data
         .excitation
