@@ -48,7 +48,7 @@ mod tests {
         let off = |fit: &Fit| (fit.values[3] / FRICTION - 1.0).abs();
         assert!(stuck.is_stuck() && off(&stuck) > 0.03, "{:?}", stuck.values);
         let mut search = Search::leaping(&stuck);
-        while search.prepare(data, &session.scout, scales) || search.iterate(data, scales) {}
+        while search.scan(data, &session.scout, scales) || search.iterate(data, scales) {}
         let again = search.finish(data, scales).unwrap();
         assert!(
             again.cost < 0.99 * stuck.cost,

@@ -79,16 +79,8 @@ struct Track {
 /// How far an effect has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
-    /// Its starting points get a first iteration on the scout.
-    Begin,
-    /// It has had that, and is to be compared with the others.
-    Begun,
-    /// The best of its starting points get another one.
+    /// Its starting points are tried on the scout.
     Scan,
-    /// They have had that, and are to be compared.
-    Scanned,
-    /// They are followed on the scout.
-    Follow,
     /// It is to get an iteration on the whole record.
     FirstHeat,
     /// It has had that, and is to be compared with the others.
@@ -124,24 +116,18 @@ impl Contender {
             scales,
             ..
         } = session;
-        if matches!(self.stage, Stage::Begin | Stage::Scan) {
+        if self.stage == Stage::Scan {
             let search = self.search.get_or_insert_with(|| {
                 let instead = track.instead.as_ref().map(|(fit, place)| (fit, *place));
                 let (fit, probed, ground) = (&track.fit, &track.probed, Some(track.ground));
                 Search::adding(data, fit, self.effect, probed, instead, ground)
             });
-            if !search.scan(scout, scales) {
-                self.stage = Stage::Scanned;
-            } else if self.stage == Stage::Begin && search.has_begun() {
-                self.stage = Stage::Begun;
+            if !search.scan(data, scout, scales) {
+                self.stage = Stage::FirstHeat;
             }
             return;
         }
         self.stage = match (self.stage, &mut self.search) {
-            (Stage::Follow, Some(search)) => {
-                search.follow(data, scout, scales);
-                Stage::FirstHeat
-            }
             (Stage::FirstHeat | Stage::SecondHeat, Some(search)) => {
                 if !search.iterate(data, scales) {
                     self.take_result(track, session);
@@ -287,7 +273,7 @@ impl Race {
                         Some((whole, place)) if contains(whole, place, effect) => PART_CLOSE,
                         _ => CLOSE,
                     },
-                    stage: Stage::Begin,
+                    stage: Stage::Scan,
                     result: None,
                     explains: false,
                 })
@@ -344,7 +330,8 @@ impl Race {
 
     /// What those that begin now must come to, from what others have come to on the scout.
     fn raise_the_bar(&mut self) {
-        let best = self.scouted();
+        let scouted = self.contenders.iter().filter_map(|c| c.search.as_ref());
+        let best = scouted.map(Search::scouted).fold(f64::INFINITY, f64::min);
         let Track {
             present, ground, ..
         } = &mut self.track;
@@ -396,11 +383,7 @@ impl Race {
     /// What all do before any goes on: their scans, then a heat, then another.
     fn together(&self) -> Option<Stage> {
         [
-            Stage::Begin,
-            Stage::Begun,
             Stage::Scan,
-            Stage::Scanned,
-            Stage::Follow,
             Stage::FirstHeat,
             Stage::Warm,
             Stage::SecondHeat,
@@ -410,23 +393,6 @@ impl Race {
             let mut there = self.contenders.iter().filter(|c| c.stage == *stage);
             there.any(|c| !self.waits(c))
         })
-    }
-
-    /// Those that wait in `stage` go on to the `next`; what comes nowhere near the best of them is not followed on the scout.
-    fn compare_on_scout(&mut self, stage: Stage, next: Stage) {
-        let bar = OUTSHONE * self.scouted();
-        for c in self.contenders.iter_mut().filter(|c| c.stage == stage) {
-            c.stage = next;
-            if let Some(search) = &mut c.search {
-                search.go_below(bar);
-            }
-        }
-    }
-
-    /// Least cost that any came to on the scout.
-    fn scouted(&self) -> f64 {
-        let searches = self.contenders.iter().filter_map(|c| c.search.as_ref());
-        searches.map(Search::scouted).fold(f64::INFINITY, f64::min)
     }
 
     /// Those that are warm get another heat if they are in sight of the best.
@@ -448,19 +414,7 @@ impl Race {
     /// Some work; false when the race is over.
     pub fn advance(&mut self, session: &Session) -> bool {
         let together = self.together();
-        match together {
-            Some(Stage::Begun) => {
-                self.compare_on_scout(Stage::Begun, Stage::Scan);
-                return true;
-            }
-            Some(Stage::Scanned) => {
-                self.compare_on_scout(Stage::Scanned, Stage::Follow);
-                return true;
-            }
-            _ => (),
-        }
-        let on_scout = matches!(together, Some(Stage::Begin | Stage::Scan | Stage::Follow));
-        if !on_scout && self.group < GROUPS.len() {
+        if together != Some(Stage::Scan) && self.group < GROUPS.len() {
             self.open_next_group();
             return true;
         }

@@ -67,10 +67,8 @@ pub(super) struct Search {
     pending: VecDeque<Point>,
     /// Points with what a first iteration on the scout brings them to: the best so far, since each holds a motion.
     tried: Vec<(Fit, Point)>,
-    /// The best of these, worst first.
-    shortlist: Vec<(Fit, Point)>,
-    /// Whether there are so few points that all of them are on the shortlist.
-    few: bool,
+    /// The best of these, worst first; without that iteration where they are few.
+    shortlist: Vec<(Option<Fit>, Point)>,
     /// What they came to on the scout, the best first once all are tried.
     scanned: Vec<(Fit, Vec<Start>)>,
     /// Share of the record that the scout is.
@@ -88,10 +86,6 @@ pub(super) struct Search {
     settled: bool,
     /// Whether a point that does not come to be followed is tried again with another body.
     retries: bool,
-    /// Another effect has come so much lower that this one is not followed on the scout.
-    is_outshone: bool,
-    /// The scanned points are in order.
-    is_ranked: bool,
     total: usize,
     optimism: f64,
 }
@@ -308,13 +302,19 @@ impl Search {
 
     /// A search from these points.
     pub(super) fn from_points(structure: Structure, points: Vec<Point>, present: f64) -> Self {
+        let few = points.len() <= SHORTLIST;
+        let (pending, shortlist) = if few {
+            let points = points.into_iter();
+            (Vec::new(), points.map(|point| (None, point)).collect())
+        } else {
+            (points, Vec::new())
+        };
         Self {
             structure,
-            total: points.len() + SHORTLIST,
-            few: points.len() <= SHORTLIST,
-            pending: points.into(),
+            total: pending.len() + SHORTLIST,
+            pending: pending.into(),
             tried: Vec::new(),
-            shortlist: Vec::new(),
+            shortlist,
             scanned: Vec::new(),
             share: 1.0,
             finalists: Vec::new(),
@@ -324,8 +324,6 @@ impl Search {
             reach: f64::INFINITY,
             settled: false,
             retries: false,
-            is_outshone: false,
-            is_ranked: false,
             optimism: f64::INFINITY,
         }
     }
@@ -333,72 +331,41 @@ impl Search {
     /// Share of the scan that is done, 0 to 1.
     pub fn scanned(&self) -> f64 {
         let left = match self.pending.len() {
-            0 => self.tried.len() + self.shortlist.len(),
+            0 => self.shortlist.len(),
             pending => pending + SHORTLIST,
         };
         1.0 - left as f64 / self.total as f64
     }
 
-    /// Whether every starting point has had its first iteration.
-    pub fn has_begun(&self) -> bool {
-        self.pending.is_empty()
-    }
-
-    /// Least cost so far on the scout.
-    pub fn scouted(&self) -> f64 {
-        let costs = self.scanned.iter().map(|(fit, _)| fit.cost);
-        let tried = self.tried.iter().map(|(fit, _)| fit.cost);
-        costs.chain(tried).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Goes no farther on the scout if no point has come to below this `bar`.
-    pub fn go_below(&mut self, bar: f64) {
-        if self.scouted() > bar {
-            self.reach = self.reach.min(bar);
-            self.is_outshone = true;
-        }
-    }
-
-    /// Does all that is done on the scout, piece by piece; false when nothing is left.
-    pub fn prepare(&mut self, data: &Data, scout: &Data, scales: &Scales) -> bool {
-        if self.scan(scout, scales) {
-            return true;
-        }
-        let ready = self.is_ranked;
-        if !ready {
-            self.follow(data, scout, scales);
-        }
-        !ready
-    }
-
     /// Tries the next starting point on `scout`; false when all are tried.
-    pub fn scan(&mut self, scout: &Data, scales: &Scales) -> bool {
+    pub fn scan(&mut self, data: &Data, scout: &Data, scales: &Scales) -> bool {
         if let Some(point) = self.pending.pop_front() {
             let mut fit = self.begun(&point, scout, scales);
             fit.iterate(scout, scales);
             self.tried.push((fit, point));
             self.tried.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
             self.tried.truncate(SHORTLIST);
+            if self.pending.is_empty() {
+                let near = self.tried.partition_point(|(f, _)| f.cost <= self.reach);
+                self.tried.truncate(near.max(1));
+                let tried = self.tried.drain(..).rev();
+                self.shortlist = tried.map(|(fit, point)| (Some(fit), point)).collect();
+            }
             return true;
         }
-        if !self.tried.is_empty() {
-            let near = self.tried.partition_point(|(f, _)| f.cost <= self.reach);
-            let kept = if self.few {
-                self.tried.len()
-            } else {
-                near.max(1)
-            };
-            self.tried.truncate(kept);
-            self.shortlist = self.tried.drain(..).rev().collect();
-        }
-        let Some((mut fit, point)) = self.shortlist.pop() else {
+        let Some((known, point)) = self.shortlist.pop() else {
             return false;
         };
+        let mut fit = known.unwrap_or_else(|| {
+            let mut fit = self.begun(&point, scout, scales);
+            fit.iterate(scout, scales);
+            fit
+        });
         fit.done |= fit.cost > self.reach;
         for _ in 1..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
-        if self.retries && !self.is_outshone && fit.cost > self.limit {
+        if self.retries && fit.cost > self.limit {
             // Perhaps a wrong body led the new effect astray.
             let mut other = self.begun(&point, scout, scales);
             other.fit_body(scout, scales);
@@ -410,6 +377,9 @@ impl Search {
             }
         }
         self.scanned.push((fit, point.1));
+        if self.shortlist.is_empty() {
+            self.rank(data, scout, scales);
+        }
         true
     }
 
@@ -428,11 +398,10 @@ impl Search {
     }
 
     /// Puts the scanned points in order; those that are not far behind the best go on while they are coming on.
-    pub fn follow(&mut self, data: &Data, scout: &Data, scales: &Scales) {
-        self.is_ranked = true;
-        self.share = scout.used() as f64 / data.used() as f64;
+    fn rank(&mut self, data: &Data, scout: &Data, scales: &Scales) {
         self.sort_scanned();
-        let Some((best, _)) = self.scanned.first_mut().filter(|_| !self.is_outshone) else {
+        self.share = scout.used() as f64 / data.used() as f64;
+        let Some((best, _)) = self.scanned.first_mut() else {
             return;
         };
         if !self.settled && best.cost > self.limit {
@@ -481,6 +450,12 @@ impl Search {
                 self.finalists.push(next);
             }
         }
+    }
+
+    /// Least cost that the scanned points came to on the scout.
+    pub fn scouted(&self) -> f64 {
+        let costs = self.scanned.iter().map(|(fit, _)| fit.cost);
+        costs.fold(f64::INFINITY, f64::min)
     }
 
     /// Whether no starting point led to where it is worth going on.

@@ -230,7 +230,7 @@ impl StepJob {
         let present = self.model.as_ref().map_or(f64::INFINITY, |m| m.fit.cost);
         let works = |search: &mut Search, enough: f64| {
             let (data, scales) = (&session.data, &session.scales);
-            search.prepare(data, &session.scout, scales)
+            search.scan(data, &session.scout, scales)
                 || search.iterate(data, scales) && search.optimism() < enough
         };
         let over = match &mut self.stage {
