@@ -42,12 +42,12 @@ struct Tried {
 }
 
 impl Fit {
-    /// Looks for better states of odd windows, if the body sticks or has a load that was felt; true if that lowers the
-    /// cost.
+    /// Looks for better states of odd windows, if the body sticks, has a load that was felt, or may stay on either side of
+    /// a hill of force; true if that lowers the cost.
     pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) -> bool {
         let model = self.structure.model(&self.values);
         let sees_load = self.sees_load(data);
-        if !sees_load && model.friction.breakaway() == 0.0 {
+        if !sees_load && model.friction.breakaway() == 0.0 && model.is_same_everywhere() {
             return false;
         }
         let costs = window_costs(data, &self.motion);
@@ -60,6 +60,7 @@ impl Fit {
                 own.try_loads(part, scales);
             } else {
                 own.try_quicker(part, scales);
+                own.grow_from(part.guessed_starts(), part, scales);
             }
             own.polish_starts(part, scales);
         })

@@ -65,6 +65,15 @@ impl Effect for Cogging {
             .collect()
     }
 
+    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+        let found = probe.balanced_wave().map(|(n, balance)| {
+            let (sine, cosine) = (balance.forces[0], balance.forces[1]);
+            let wave = vec![libm::hypot(sine, cosine), n, libm::atan2(cosine, sine)];
+            (balance.body, wave)
+        });
+        found.into_iter().collect()
+    }
+
     fn apply(&self, values: &[f64], model: &mut Model) {
         let (a, n, phi) = (values[0], values[1], values[2]);
         model

@@ -74,6 +74,15 @@ impl Effect for CoulombFriction {
         starts(probe.dissipated_level(), probe)
     }
 
+    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+        let Some(balance) = probe.balanced(|_, v| -v.signum()) else {
+            return Vec::new();
+        };
+        let level = balance.forces[0];
+        let rubbing = starts(level, probe).into_iter().filter(|_| level > 0.0);
+        rubbing.map(|values| (balance.body, values)).collect()
+    }
+
     fn apply(&self, values: &[f64], model: &mut Model) {
         model.friction.level += values[0];
         model.friction.presliding = values[1];

@@ -9,6 +9,7 @@
 
 mod bounces;
 mod bristle;
+mod momentum;
 mod moving;
 mod spatial;
 mod steps;

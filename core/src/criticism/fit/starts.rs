@@ -131,7 +131,20 @@ impl Fit {
         if self.structure.load_begin != LoadBegin::Felt {
             return false;
         }
-        let (mut trial, before) = (self.clone(), self.cost);
+        let before = self.cost;
+        self.grow_from(self.starts.clone(), data, scales);
+        self.cost < WON * before
+    }
+
+    /// The same from these states.
+    pub(in crate::criticism) fn grow_from(
+        &mut self,
+        starts: Vec<Start>,
+        data: &Data,
+        scales: &Scales,
+    ) {
+        let mut trial = self.clone();
+        trial.starts = starts;
         for share in GROWING {
             let part = data.beginning(share);
             trial.follow_starts(&part);
@@ -140,7 +153,6 @@ impl Fit {
             }
         }
         self.take_better(data, &trial.starts);
-        self.cost < WON * before
     }
 
     /// Has a load behind a gap go on from window to window, if that fits better than where it would be if the body had

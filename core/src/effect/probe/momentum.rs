@@ -1,0 +1,159 @@
+//! Body and missing force together, from the balance of momentum.
+//!
+//! Over a stretch of the record the input gives to the body what it gains in momentum, what viscous friction takes, and what
+//! the missing force takes. That is linear in inertia, friction and force, asks for no model before, and for no state of a
+//! window: where a missing force has bent the body of the present model far off, it is told here.
+
+use std::f64::consts::SQRT_2;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Probe, dot, solved};
+use crate::effect::spec::SEEN_TURN;
+
+/// Samples at most that are looked at.
+const LOOKED_AT: usize = 6_000;
+
+/// Samples of a stretch at most, the share of the change of velocity over it that may be noise, and stretches at least.
+const LONGEST: usize = 64;
+const NOISE: f64 = 0.1;
+const LEAST: usize = 40;
+
+/// A force speaks for another body if it leaves less than this share of what none does.
+const CLEARLY: f64 = 0.7;
+
+/// Waves along the way that are tried at most, how far apart in radians over the travel, and parts of that in which the best
+/// of them is looked for.
+const WAVES: usize = 500;
+const APART: f64 = 1.2;
+const PARTS: i32 = 5;
+
+/// Highest spatial frequency, in radians per sample at the typical speed.
+const FASTEST: f64 = 0.8;
+
+/// Inertia, viscous friction and missing forces, as the balance of momentum tells them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Balance {
+    /// Inertia and viscous friction of the body.
+    pub body: [f64; 2],
+    /// Missing force per unit of each signature.
+    pub forces: Vec<f64>,
+    /// Share of the impulse of the input that is left.
+    pub left: f64,
+}
+
+/// The record in stretches, one after the other.
+struct Stretches {
+    samples: usize,
+    /// First samples.
+    begins: Vec<usize>,
+    /// Impulse of the input, gain of velocity, way, and duration.
+    impulse: Vec<f64>,
+    known: [Vec<f64>; 3],
+}
+
+impl Stretches {
+    /// Sum of a rate over each stretch, from its values at the samples, times `step`.
+    fn sums(&self, step: f64, rate: impl Fn(usize) -> f64) -> Vec<f64> {
+        let over = |from: &usize| {
+            let inner: f64 = (from + 1..from + self.samples).map(&rate).sum();
+            let ends = 0.5 * (rate(*from) + rate(from + self.samples));
+            step * (inner + ends)
+        };
+        self.begins.iter().map(over).collect()
+    }
+
+    /// Body and forces of which these are the impulses per unit.
+    fn balance(&self, forces: &[Vec<f64>]) -> Option<Balance> {
+        let columns: Vec<&[f64]> = self.known.iter().chain(forces).map(Vec::as_slice).collect();
+        let p = columns.len();
+        let normal = DMatrix::from_fn(p, p, |a, b| dot(columns[a], columns[b]));
+        let right = DVector::from_fn(p, |a, _| dot(columns[a], &self.impulse));
+        let power = dot(&self.impulse, &self.impulse);
+        let (solution, explained) = solved(normal, right)?;
+        let (inertia, viscous) = (solution[0], solution[1].max(0.0));
+        (inertia > 0.0).then(|| Balance {
+            body: [inertia, viscous],
+            forces: solution.iter().skip(3).map(|f| -f).collect(),
+            left: (1.0 - explained / power).max(0.0),
+        })
+    }
+}
+
+impl Probe {
+    /// Stretches over which the change of velocity is more than noise, in the first samples.
+    fn in_stretches(&self) -> Option<Stretches> {
+        let n = self.velocity.len().min(self.acting.len()).min(LOOKED_AT);
+        let v = &self.velocity[..n];
+        // White noise of the velocity, as far as three samples in a row may be off a line.
+        let bends = v.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
+        let noise = (bends.sum::<f64>() / (6.0 * n as f64)).sqrt();
+        let change = |m: usize| {
+            let squares: f64 = (m..n).map(|k| (v[k] - v[k - m]).powi(2)).sum();
+            (squares / (n - m) as f64).sqrt()
+        };
+        let lengths = (1..).map(|k| 1_usize << k).take_while(|m| *m <= LONGEST);
+        let mut fit = lengths.filter(|m| n / m >= LEAST);
+        let samples = fit.find(|m| SQRT_2 * noise <= NOISE * change(*m))?;
+        let begins: Vec<usize> = (0..n - samples).step_by(samples).collect();
+        let step = self.scales.step;
+        let between = |values: &[f64]| -> Vec<f64> {
+            begins.iter().map(|k| values[k + samples] - values[*k]).collect()
+        };
+        let impulse = begins
+            .iter()
+            .map(|k| step * self.acting[*k..k + samples].iter().sum::<f64>());
+        let stretches = Stretches {
+            samples,
+            impulse: impulse.collect(),
+            known: [
+                between(v),
+                between(&self.position),
+                vec![samples as f64 * step; begins.len()],
+            ],
+            begins,
+        };
+        Some(stretches)
+    }
+
+    /// Body and a missing force of this signature, where that leaves clearly less than no force.
+    pub fn balanced(&self, force: impl Fn(f64, f64) -> f64) -> Option<Balance> {
+        let stretches = self.in_stretches()?;
+        let at = |k: usize| force(self.position[k], self.velocity[k]);
+        let alone = stretches.balance(&[])?;
+        let sums = stretches.sums(self.scales.step, at);
+        let found = stretches.balance(&[sums])?;
+        (found.left < CLEARLY * alone.left).then_some(found)
+    }
+
+    /// Body and the force that repeats along the way, with its spatial frequency (rad per unit of position); its parts are
+    /// those with the sine and the cosine.
+    pub fn balanced_wave(&self) -> Option<(f64, Balance)> {
+        let stretches = self.in_stretches()?;
+        let travel = self.scales.travel;
+        let spacing = APART / travel;
+        let fastest = FASTEST / (self.scales.speed * self.scales.step);
+        let waves = |n: f64| -> Option<(f64, Balance)> {
+            let step = self.scales.step;
+            let sine = stretches.sums(step, |k| libm::sin(n * self.position[k]));
+            let cosine = stretches.sums(step, |k| libm::cos(n * self.position[k]));
+            Some((n, stretches.balance(&[sine, cosine])?))
+        };
+        let least = |found: Vec<Option<(f64, Balance)>>| {
+            let found = found.into_iter().flatten();
+            found.min_by(|a, b| a.1.left.total_cmp(&b.1.left))
+        };
+        let first = (SEEN_TURN / APART).ceil() as usize;
+        let scanned = self.crew.gather(WAVES, |i| {
+            let n = (first + i) as f64 * spacing;
+            if n <= fastest { waves(n) } else { None }
+        });
+        let (n, _) = least(scanned)?;
+        let finer = self.crew.gather(2 * PARTS as usize + 1, |i| {
+            waves(n + (i as f64 / f64::from(PARTS) - 1.0) * spacing)
+        });
+        let found = least(finer)?;
+        let alone = stretches.balance(&[])?;
+        (found.1.left < CLEARLY * alone.left).then_some(found)
+    }
+}
