@@ -22,6 +22,9 @@ const INERTIAS: i32 = 120;
 const LEAST_INERTIA: f64 = 0.01;
 const MOST_INERTIA: f64 = 1.5;
 
+/// By how much that may be above what the balance of momentum tells.
+const MOST_ASTRAY: f64 = 2.0;
+
 /// Share of the intervals that tell the inertia: those that it explains best. The share of a standard deviation below
 /// which as many values of a normal distribution lie.
 const EXPLAINED: f64 = 0.35;
@@ -168,7 +171,9 @@ impl Probe {
     /// Inertia and viscous friction of the body where it is free, the force that they do not explain, and the noise of
     /// that; dry friction and a constant force are explained beside.
     fn free_body_of(&self, intervals: &[Interval]) -> Option<([f64; 2], Vec<f64>, f64)> {
-        let present = 1.0 / self.inverse_inertia.abs();
+        // A fit which the load has led astray may have any inertia.
+        let told = self.inertia_by_momentum().unwrap_or(f64::INFINITY);
+        let present = (1.0 / self.inverse_inertia.abs()).min(MOST_ASTRAY * told);
         let slow = STILL * self.scales.speed;
         let moving: Vec<&Interval> = intervals
             .iter()

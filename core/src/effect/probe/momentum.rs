@@ -116,6 +116,11 @@ impl Probe {
         Some(stretches)
     }
 
+    /// Inertia of the body if no force is missing.
+    pub(super) fn inertia_by_momentum(&self) -> Option<f64> {
+        Some(self.in_stretches()?.balance(&[])?.body[0])
+    }
+
     /// Body and a missing force of this signature, where that leaves clearly less than no force.
     pub fn balanced(&self, force: impl Fn(f64, f64) -> f64) -> Option<Balance> {
         let stretches = self.in_stretches()?;
