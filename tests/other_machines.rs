@@ -295,6 +295,20 @@ fn cogging_of_a_long_axis_is_found() {
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
+/// A loop too soft to carry the body over a tooth at every move: it lies in the troughs, and a model without them takes it
+/// for another body altogether.
+#[test]
+fn cogging_that_holds_the_body_is_found() {
+    let (amplitude, teeth) = (0.03, 12.0);
+    let rig = DriveRig {
+        cogging: (amplitude, teeth, 0.4),
+        ..machine(200.0, 12_000, servo(1.2, 1.25, 8.0))
+    };
+    let d = diagnose(&rig);
+    check(&d, &["cogging"], &[("a", amplitude), ("n", teeth)]);
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+}
+
 /// A body of `drive` far off what a controller wants of it: only on its way there does the amplifier reach its `limit`, N m.
 fn starting_far_off(drive: &DriveRig, limit: f64, samples: usize) -> Measurement {
     const SUBSTEPS: usize = 50;

@@ -20,7 +20,7 @@ mod joint;
 mod load;
 mod replay;
 #[cfg(test)]
-mod runge_kutta;
+pub(crate) mod runge_kutta;
 mod seen_load;
 mod short;
 mod smoothed;

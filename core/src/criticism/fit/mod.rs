@@ -76,7 +76,7 @@ pub(super) struct Motion {
     /// Where a load begins in the windows.
     pub loads: FollowedLoad,
     /// With these values.
-    values: Vec<f64>,
+    pub values: Vec<f64>,
 }
 
 impl Motion {

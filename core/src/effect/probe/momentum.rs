@@ -98,7 +98,10 @@ impl Probe {
         let begins: Vec<usize> = (0..n - samples).step_by(samples).collect();
         let step = self.scales.step;
         let between = |values: &[f64]| -> Vec<f64> {
-            begins.iter().map(|k| values[k + samples] - values[*k]).collect()
+            begins
+                .iter()
+                .map(|k| values[k + samples] - values[*k])
+                .collect()
         };
         let impulse = begins
             .iter()
@@ -160,5 +163,100 @@ impl Probe {
         let found = least(finer)?;
         let alone = stretches.balance(&[])?;
         (found.1.left < CLEARLY * alone.left).then_some(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{ProbeInput, ProbeOutput, Scales};
+    use crate::measurement::Kind;
+    use crate::model::runge_kutta::integrate;
+
+    const STEP: f64 = 5e-3;
+    const SAMPLES: usize = 6_000;
+    const BODY: [f64; 2] = [1.3, 3.3];
+
+    /// What a present model with quite another body is shown of a body under this force, pushed to and fro, whose velocity is
+    /// measured with noise of a tenth of it.
+    fn shown(force: impl Fn(f64, f64) -> f64) -> Probe {
+        let [inertia, viscous] = BODY;
+        let mut state = [0.0; 2];
+        let (mut position, mut velocity, mut input) = (Vec::new(), Vec::new(), Vec::new());
+        for k in 0..SAMPLES {
+            let time = STEP * k as f64;
+            let push = 0.9 * libm::sin(1.1 * time) + 0.5 * libm::sin(7.3 * time);
+            position.push(state[0]);
+            velocity.push(state[1] + 2e-3 * libm::sin(1e4 * libm::sin(1e3 * k as f64)));
+            input.push(push);
+            let rates = |[x, v]: [f64; 2], _| [v, (push - viscous * v + force(x, v)) / inertia];
+            state = integrate(rates, state, STEP, 20);
+        }
+        let travel = position.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        Probe::new(&ProbeInput {
+            kind: Kind::Drive,
+            scales: Scales {
+                step: STEP,
+                duration: STEP * SAMPLES as f64,
+                force: 0.7,
+                inertia: 40.0,
+                viscous: 50.0,
+                speed: 0.03,
+                travel: 2.0 * travel,
+                resolution: 0.0,
+                time_constant: 1.0,
+            },
+            position: &position,
+            followed: &position,
+            velocity: &velocity,
+            input: &input,
+            acting: &input,
+            outputs: &[ProbeOutput {
+                is_velocity: true,
+                error: velocity.clone(),
+                noise: 1e-3,
+            }],
+            spans: &[(0, SAMPLES)],
+            body: (40.0, 50.0),
+            gap: None,
+            crew: &crate::crew::Crew::default(),
+        })
+    }
+
+    fn check(name: &str, found: f64, truth: f64, share: f64) {
+        let off = (found / truth - 1.0).abs();
+        assert!(off < share, "{name} = {found}, truth {truth}");
+    }
+
+    #[test]
+    fn troughs_that_hold_the_body_are_told_with_it() {
+        let (amplitude, teeth) = (0.76, 349.0);
+        let probe = shown(|x, _| amplitude * libm::sin(teeth * x + 0.4));
+        let (n, balance) = probe.balanced_wave().expect("a wave");
+        check("J", balance.body[0], BODY[0], 0.05);
+        check("d", balance.body[1], BODY[1], 0.05);
+        check("n", n, teeth, 0.01);
+        let [sine, cosine] = balance.forces[..] else {
+            panic!("two parts");
+        };
+        check("a", libm::hypot(sine, cosine), amplitude, 0.05);
+        assert!((libm::atan2(cosine, sine) - 0.4).abs() < 0.1);
+    }
+
+    #[test]
+    fn so_is_dry_friction() {
+        let probe = shown(|_, v| -0.3 * libm::tanh(v / 1e-4));
+        let balance = probe.balanced(|_, v| -v.signum()).expect("a balance");
+        check("J", balance.body[0], BODY[0], 0.1);
+        check("c", balance.forces[0], 0.3, 0.1);
+    }
+
+    #[test]
+    fn a_body_alone_needs_no_force() {
+        let probe = shown(|_, _| 0.0);
+        assert_eq!(probe.balanced(|_, v| -v.signum()), None);
+        assert_eq!(probe.balanced_wave(), None);
+        let inertia = probe.inertia_by_momentum().expect("an inertia");
+        check("J", inertia, BODY[0], 0.05);
     }
 }
