@@ -10,7 +10,7 @@ mod starts;
 
 use nalgebra::DMatrix;
 
-use super::cost::{ODD_MEAN_SQUARE, oddness, robust_cost, robust_share, window_costs};
+use super::cost::{ODD_MEAN_SQUARE, oddness, robust_cost, robust_share};
 use super::data::Data;
 use super::structure::Structure;
 use super::window_sums::reduced;
@@ -47,9 +47,6 @@ const RESTART_DAMPING: f64 = 1e-3;
 
 /// Share of the cost below which better states of odd windows are worth going on for.
 const MENDED: f64 = 0.999;
-
-/// A window whose cost has become so many times what it was may have lost a contact.
-const LOST: f64 = 1.2;
 
 /// A fit is stuck where its last step should have lowered the cost by more than this share of it, and did not.
 const STUCK: f64 = 1e-4;
@@ -331,17 +328,7 @@ impl Fit {
         trial.take_better(data, &self.starts);
         let model = self.structure.model(values);
         if self.sees_load(data) {
-            let (before, after) = (&self.motion, &trial.motion);
-            let pairs = window_costs(data, before).into_iter();
-            let pairs = pairs.zip(window_costs(data, after));
-            let lost = |(before, after)| after > LOST * before;
-            let worse: Vec<bool> = pairs.map(lost).collect();
-            if !worse.contains(&true) {
-                return (trial.starts, trial.motion);
-            }
-            trial.in_windows(&worse, data, scales, |own, part| {
-                own.polish_starts(part, scales);
-            });
+            trial.polish_until(present, data, scales);
         } else if model.friction.breakaway() > 0.0 {
             trial.polish_once(data, scales);
         }
