@@ -43,52 +43,36 @@ struct Tried {
 
 impl Fit {
     /// Looks for better states of odd windows, if the body sticks, has a load that was felt, or may stay on either side of
-    /// a hill of force; true if that lowers the cost.
-    pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) -> bool {
+    /// a hill of force, and takes what fits better.
+    pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) {
         let model = self.structure.model(&self.values);
         let sees_load = self.sees_load(data);
         if !sees_load && model.friction.breakaway() == 0.0 && model.is_same_everywhere() {
-            return false;
+            return;
         }
         let costs = window_costs(data, &self.motion);
         let odd = odd(data, &costs);
         if !odd.contains(&true) {
-            return false;
+            return;
         }
-        self.in_windows(&odd, data, scales, |own, part| {
-            if sees_load {
-                own.try_loads(part, scales);
-            } else {
-                own.try_quicker(part, scales);
-                own.grow_from(part.guessed_starts(), part, scales);
-            }
-            own.polish_starts(part, scales);
-        })
-    }
-
-    /// Has the states of the `chosen` windows improved by themselves, and takes what fits better; true if that lowers the
-    /// cost.
-    pub(super) fn in_windows(
-        &mut self,
-        chosen: &[bool],
-        data: &Data,
-        scales: &Scales,
-        improve: impl FnOnce(&mut Self, &Data),
-    ) -> bool {
-        let part = data.only(|window| chosen[window]);
-        let own = self.starts.iter().zip(chosen).filter(|(_, own)| **own);
-        let starts = own.map(|(start, _)| *start).collect();
+        let part = data.only(|window| odd[window]);
+        let chosen = self.starts.iter().zip(&odd).filter(|(_, odd)| **odd);
+        let starts = chosen.map(|(start, _)| *start).collect();
         let structure = self.structure.clone();
         let mut own = Self::new(&part, structure, self.values.clone(), starts, scales);
-        improve(&mut own, &part);
+        if sees_load {
+            own.try_loads(&part, scales);
+        } else {
+            own.try_quicker(&part, scales);
+            own.grow_from(part.guessed_starts(), &part, scales);
+        }
+        own.polish_starts(&part, scales);
         let mut better = self.starts.clone();
-        let places = (0..better.len()).filter(|k| chosen[*k]);
+        let places = (0..better.len()).filter(|k| odd[*k]);
         for (place, start) in places.zip(&own.starts) {
             better[place] = *start;
         }
-        let before = self.cost;
         self.take_better(data, &better);
-        self.cost < before
     }
 
     /// Starts every window with the body a little quicker or slower than now or than measured, and keeps what fits best.

@@ -8,6 +8,7 @@ use std::f64::consts::SQRT_2;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::spatial::{APART, FASTEST_SPATIAL};
 use super::{Probe, dot, solved};
 use crate::effect::spec::SEEN_TURN;
 
@@ -22,14 +23,9 @@ const LEAST: usize = 40;
 /// A force speaks for another body if it leaves less than this share of what none does.
 const CLEARLY: f64 = 0.7;
 
-/// Waves along the way that are tried at most, how far apart in radians over the travel, and parts of that in which the best
-/// of them is looked for.
+/// Waves along the way that are tried at most, and parts of their distance in which the best of them is looked for.
 const WAVES: usize = 500;
-const APART: f64 = 1.2;
 const PARTS: i32 = 5;
-
-/// Highest spatial frequency, in radians per sample at the typical speed.
-const FASTEST: f64 = 0.8;
 
 /// Inertia, viscous friction and missing forces, as the balance of momentum tells them.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,7 +136,7 @@ impl Probe {
         let stretches = self.in_stretches()?;
         let travel = self.scales.travel;
         let spacing = APART / travel;
-        let fastest = FASTEST / (self.scales.speed * self.scales.step);
+        let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
         let waves = |n: f64| -> Option<(f64, Balance)> {
             let step = self.scales.step;
             let sine = stretches.sums(step, |k| libm::sin(n * self.position[k]));

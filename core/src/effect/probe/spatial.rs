@@ -30,7 +30,10 @@ const STANDING_OUT: usize = 12;
 const ROW: usize = 32;
 
 /// Highest spatial frequency, in radians per sample at the typical speed.
-const FASTEST_SPATIAL: f64 = 0.8;
+pub(super) const FASTEST_SPATIAL: f64 = 0.8;
+
+/// How far apart the scanned ones are, in radians over the travel.
+pub(super) const APART: f64 = 1.2;
 
 impl Probe {
     /// The `count` spatial frequencies (radians per unit of position) at which the unexplained force
@@ -38,7 +41,7 @@ impl Probe {
     pub fn spatial_frequencies(&self, count: usize, share: f64) -> Vec<(f64, f64, f64)> {
         let travel = self.scales.travel;
         let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
-        let spacing = 1.2 / travel;
+        let spacing = APART / travel;
         let least = SEEN_TURN / travel;
         let within = |n: f64| n >= least && n <= fastest;
         let rows: Vec<Row> = rows(0.0, spacing, FINE_SPATIAL)
