@@ -22,6 +22,9 @@ const SMOOTH_SHARE: f64 = 0.05;
 const LEVEL_SHARE: f64 = 0.12;
 const LEVELLED: f64 = 3.0;
 
+/// The same where it is level to round-off: `exp(-6.2^2)` is below that.
+const FLAT: f64 = 6.2;
+
 /// Halvings for it at most: where a trial lets the level change within a sample, more would only take long.
 const LEVEL_HALVINGS: u32 = 2;
 
@@ -281,6 +284,12 @@ impl<'m> Engine<'m> {
             let held = self.held(&middle);
             return self.move_held(state, held, w, h);
         }
+        if self.is_levelled(state, h) {
+            let mut middle = *state;
+            middle.time += 0.5 * h;
+            let held = self.held(&middle);
+            return self.move_held(state, held, w, h);
+        }
         let h = if touching { self.meet(state, w, h) } else { h };
         if h <= 0.0 {
             return;
@@ -418,8 +427,7 @@ impl<'m> Engine<'m> {
     /// Halvings that a friction level asks for which falls with the speed.
     fn level_halvings(&self, state: &State, h: f64) -> u32 {
         let friction = &self.model.friction;
-        let (v, z) = (state.motion.v.abs(), state.motion.z.abs());
-        let gained = h * (z + friction.breakaway()) / self.model.inertia.abs();
+        let (v, gained) = (state.motion.v.abs(), self.gained(state, h));
         if friction.static_excess == 0.0 || v > LEVELLED * friction.stribeck_speed + gained {
             return 0;
         }
@@ -427,6 +435,20 @@ impl<'m> Engine<'m> {
         (0..LEVEL_HALVINGS)
             .find(|k| gained / f64::from(1_u32 << k) <= most)
             .unwrap_or(LEVEL_HALVINGS)
+    }
+
+    /// Whether nothing but a friction level changes with the motion, and the body is and stays too fast for that.
+    fn is_levelled(&self, state: &State, h: f64) -> bool {
+        let model = self.model;
+        let smooth = model.load.is_none() && model.is_same_everywhere();
+        let slowest = state.motion.v.abs() - self.gained(state, h);
+        smooth && slowest > FLAT * model.friction.stribeck_speed
+    }
+
+    /// Change of velocity in `h` seconds at most.
+    fn gained(&self, state: &State, h: f64) -> f64 {
+        let force = state.motion.z.abs() + self.model.friction.breakaway();
+        h * force / self.model.inertia.abs()
     }
 
     /// Sum of the smooth forces in a state moved to `x` and `v`.
