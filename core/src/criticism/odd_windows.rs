@@ -55,20 +55,33 @@ impl Fit {
         if !odd.contains(&true) {
             return;
         }
-        let part = data.only(|window| odd[window]);
-        let chosen = self.starts.iter().zip(&odd).filter(|(_, odd)| **odd);
-        let starts = chosen.map(|(start, _)| *start).collect();
+        self.in_windows(&odd, data, scales, |own, part| {
+            if sees_load {
+                own.try_loads(part, scales);
+            } else {
+                own.try_quicker(part, scales);
+                own.grow_from(part.guessed_starts(), part, scales);
+            }
+            own.polish_starts(part, scales);
+        });
+    }
+
+    /// Has the states of the `chosen` windows improved by themselves, and takes what fits better.
+    pub(super) fn in_windows(
+        &mut self,
+        chosen: &[bool],
+        data: &Data,
+        scales: &Scales,
+        improve: impl FnOnce(&mut Self, &Data),
+    ) {
+        let part = data.only(|window| chosen[window]);
+        let own = self.starts.iter().zip(chosen).filter(|(_, own)| **own);
+        let starts = own.map(|(start, _)| *start).collect();
         let structure = self.structure.clone();
         let mut own = Self::new(&part, structure, self.values.clone(), starts, scales);
-        if sees_load {
-            own.try_loads(&part, scales);
-        } else {
-            own.try_quicker(&part, scales);
-            own.grow_from(part.guessed_starts(), &part, scales);
-        }
-        own.polish_starts(&part, scales);
+        improve(&mut own, &part);
         let mut better = self.starts.clone();
-        let places = (0..better.len()).filter(|k| odd[*k]);
+        let places = (0..better.len()).filter(|k| chosen[*k]);
         for (place, start) in places.zip(&own.starts) {
             better[place] = *start;
         }

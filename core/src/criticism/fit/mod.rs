@@ -327,7 +327,9 @@ impl Fit {
         };
         trial.take_better(data, &self.starts);
         let model = self.structure.model(values);
-        if self.sees_load(data) {
+        if self.structure.load_begin == LoadBegin::Felt {
+            trial.polish_lost(&self.motion, data, scales);
+        } else if data.excitation.sees_load_of(&model) {
             trial.polish_until(present, data, scales);
         } else if model.friction.breakaway() > 0.0 {
             trial.polish_once(data, scales);

@@ -1,6 +1,6 @@
 //! The states from which windows start, improved with the values kept.
 
-use super::{Fit, farthest};
+use super::{Fit, Motion, farthest};
 use crate::criticism::cost::{ODD_MEAN_SQUARE, window_costs};
 use crate::criticism::data::Data;
 use crate::criticism::window_sums::{changed, inverse, kept_within};
@@ -23,6 +23,9 @@ const FELT: f64 = 0.1;
 const GROWING: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 const GROWING_ROUNDS: usize = 3;
 const WON: f64 = 0.9;
+
+/// A window whose cost has become so many times what it was has lost a contact.
+const LOST: f64 = 1.2;
 
 /// Shares of the step of a window's state that are tried where a contact bends the motion.
 const POLISHED: [f64; 3] = [1.0, 0.3, 0.1];
@@ -73,6 +76,19 @@ impl Fit {
             if self.cost <= enough || (round + 1 >= FEWEST_POLISHINGS && !worthwhile) {
                 return;
             }
+        }
+    }
+
+    /// Improves the states of the windows that cost much more than with the motion `before`: each contact of a load that is
+    /// met again and again multiplies a change of the values, and some windows lose it.
+    pub(super) fn polish_lost(&mut self, before: &Motion, data: &Data, scales: &Scales) {
+        let before = window_costs(data, before).into_iter();
+        let costs = before.zip(window_costs(data, &self.motion));
+        let lost: Vec<bool> = costs.map(|(before, now)| now > LOST * before).collect();
+        if lost.contains(&true) {
+            self.in_windows(&lost, data, scales, |own, part| {
+                own.polish_starts(part, scales);
+            });
         }
     }
 
