@@ -122,11 +122,11 @@ impl Fit {
             .map(|tried| tried.iter().take(REFINED).map(|t| t.at).collect())
             .collect();
         for rank in 0..REFINED {
-            for beside in 0..9 {
+            for beside in (0..9).filter(|beside| *beside != 4) {
                 let [i, j] = [beside / 3, beside % 3];
                 let at = |best: &Vec<[usize; 2]>| {
                     let [place, velocity] = best.get(rank)?;
-                    Some([place + i - 1, velocity + j - 1]).filter(|_| beside != 4)
+                    Some([place + i - 1, velocity + j - 1])
                 };
                 let at: Vec<Option<[usize; 2]>> = best.iter().map(at).collect();
                 self.try_places(&at, [&places, &velocities], &measured, data, &mut tried);

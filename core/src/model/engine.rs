@@ -277,14 +277,8 @@ impl<'m> Engine<'m> {
             .model
             .load
             .is_some_and(|load| load.may_touch(state.twist, state.motion.v - state.load.v, h));
-        if !touching && self.joint.is_some() {
-            // Nothing between them changes on the way.
-            let mut middle = *state;
-            middle.time += 0.5 * h;
-            let held = self.held(&middle);
-            return self.move_held(state, held, w, h);
-        }
-        if self.is_levelled(state, h) {
+        if !touching && self.joint.is_some() || self.is_levelled(state, h) {
+            // No force changes with the motion on the way.
             let mut middle = *state;
             middle.time += 0.5 * h;
             let held = self.held(&middle);

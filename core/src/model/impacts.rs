@@ -50,16 +50,17 @@ impl Impacts<'_> {
                 return 0.0;
             }
             *pieces += 1;
-            let turn = self.turns_after(state, left);
             let (used, touching) = if touches {
                 self.press(state, left)
             } else {
-                self.fly(state, left.min(turn))
+                let turn = self.turns_after(state, left);
+                let (used, touching) = self.fly(state, left.min(turn));
+                if !touching && used >= turn {
+                    state.motion.v = 0.0;
+                }
+                (used, touching)
             };
             left -= used;
-            if !touches && !touching && used >= turn {
-                state.motion.v = 0.0;
-            }
             if self.bends_at_turns && state.motion.v == 0.0 {
                 return left.max(0.0);
             }

@@ -139,9 +139,13 @@ impl Probe {
         let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
         let waves = |n: f64| -> Option<(f64, Balance)> {
             let step = self.scales.step;
-            let sine = stretches.sums(step, |k| libm::sin(n * self.position[k]));
-            let cosine = stretches.sums(step, |k| libm::cos(n * self.position[k]));
-            Some((n, stretches.balance(&[sine, cosine])?))
+            let along = self.position.iter().take(LOOKED_AT);
+            let (sine, cosine): (Vec<f64>, Vec<f64>) = along.map(|x| libm::sincos(n * x)).unzip();
+            let forces = [
+                stretches.sums(step, |k| sine[k]),
+                stretches.sums(step, |k| cosine[k]),
+            ];
+            Some((n, stretches.balance(&forces)?))
         };
         let least = |found: Vec<Option<(f64, Balance)>>| {
             let found = found.into_iter().flatten();
