@@ -50,5 +50,6 @@ pub mod rig;
 pub mod scenario;
 mod simplex;
 pub mod simulate;
+mod sums;
 pub mod tuning;
 pub mod user_model;

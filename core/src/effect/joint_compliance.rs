@@ -42,9 +42,9 @@ struct Guess {
     dry: f64,
 }
 
-/// Share of the unexplained force that a load would leave beside an input that runs on by the `changes` of its samples, and
-/// the effect's values: below the resonance, the load shows in little more than such a shift of phase.
-fn trial(probe: &Probe, changes: &[f64], guess: Guess) -> Option<(f64, Guess, Vec<f64>)> {
+/// Share of the unexplained force that a load would leave where the probe explains what it does `beside`, and the effect's
+/// values.
+fn trial(probe: &Probe, beside: &Probe, guess: Guess) -> Option<(f64, Guess, Vec<f64>)> {
     let inertia = probe.scales.inertia.abs();
     let load = Load {
         inertia,
@@ -57,9 +57,9 @@ fn trial(probe: &Probe, changes: &[f64], guess: Guess) -> Option<(f64, Guess, Ve
         },
     };
     let torque = probe.load_torque(&load);
-    let beside = probe.regress(&[&torque, changes]);
     // An input that never changes has no shift.
-    let fit = beside.or_else(|| probe.regress(&[&torque]))?;
+    let fit = beside.regress(&[&torque]);
+    let fit = fit.or_else(|| probe.regress(&[&torque]))?;
     let scale = -fit.coefficients[0];
     (scale > 0.0).then(|| {
         let c = load.coupling;
@@ -82,9 +82,11 @@ fn best(mut trials: Vec<(f64, Guess, Vec<f64>)>) -> Vec<(f64, Guess, Vec<f64>)> 
 
 /// The best loads on this stretch of a record where one may leave less than this share of the unexplained force.
 fn loads(stretch: &Probe, share: f64) -> Vec<(f64, Guess, Vec<f64>)> {
-    let changes = &stretch.input_changes();
+    // Below its resonance a load shows in little more than a shift of phase, as of an input that runs on by the changes of
+    // its samples.
+    let beside = &stretch.beside(&stretch.input_changes());
     let tried = |guesses: Vec<Guess>| -> Vec<_> {
-        let trial = |i: usize| trial(stretch, changes, guesses[i]);
+        let trial = |i: usize| trial(stretch, beside, guesses[i]);
         let trials = stretch.crew.gather(guesses.len(), trial);
         trials.into_iter().flatten().collect()
     };

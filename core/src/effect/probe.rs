@@ -21,6 +21,7 @@ use crate::crew::Crew;
 use crate::measurement::Kind;
 use crate::model::{Instant, Load, free_body, load_torque};
 use crate::order::range;
+use crate::sums::dot;
 pub use steps::{Place, StepPart, Steps};
 
 /// Samples at most that are looked at.
@@ -74,32 +75,31 @@ pub struct Probe {
     states: Vec<[Vec<f64>; 2]>,
     /// Error of each window, free of what a starting state explains.
     target: Vec<Vec<f64>>,
-    /// Answers to the base forces, likewise.
-    base: Vec<[Vec<f64>; BASE]>,
+    /// Answers to the base forces, and to others that are explained beside them, likewise.
+    base: Vec<Vec<Vec<f64>>>,
     /// What these come to in the equations, likewise.
     known: Vec<Known>,
     base_left: f64,
     inverse_inertia: f64,
     gap: Option<SeenGap>,
-    /// Dry friction of any level is explained beside the base forces.
-    rubs: bool,
     /// Who tries forces.
     pub crew: Crew,
 }
 
 /// Products of the base answers of a window with each other and with its error, and of that with itself.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Known {
-    normal: [[f64; BASE]; BASE],
-    right: [f64; BASE],
+    normal: Vec<Vec<f64>>,
+    right: Vec<f64>,
     power: f64,
 }
 
 impl Known {
-    fn new(target: &[f64], base: &[Vec<f64>; BASE]) -> Self {
+    fn new(target: &[f64], base: &[Vec<f64>]) -> Self {
+        let products = |a: &Vec<f64>| base.iter().map(|b| dot(a, b)).collect();
         Self {
-            normal: base.each_ref().map(|a| base.each_ref().map(|b| dot(a, b))),
-            right: base.each_ref().map(|a| dot(a, target)),
+            normal: base.iter().map(products).collect(),
+            right: base.iter().map(|a| dot(a, target)).collect(),
             power: dot(target, target),
         }
     }
@@ -223,7 +223,6 @@ impl Probe {
             base_left: f64::NAN,
             inverse_inertia: 1.0 / inertia,
             gap: input.gap,
-            rubs: false,
             crew: input.crew.clone(),
         };
         probe.look(|_, (from, to)| {
@@ -251,12 +250,30 @@ impl Probe {
                 let mut target = errors(self, span);
                 self.without_states(&mut target, span.1 - span.0);
                 let forces = [&self.acting, &drag, &ones];
-                (target, forces.map(|f| self.answer(span, |k| f[k])))
+                let answers = forces.map(|f| self.answer(span, |k| f[k]));
+                (target, answers.to_vec())
             })
             .unzip();
         let windows = self.target.iter().zip(&self.base);
         self.known = windows.map(|(t, b)| Known::new(t, b)).collect();
         self.base_left = self.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
+    }
+
+    /// The same with this force, one value for every sample, of any size explained beside the base forces.
+    #[must_use]
+    pub fn beside(&self, force: &[f64]) -> Self {
+        let mut probe = self.clone();
+        probe.explain(|k| 0.5 * (force[k] + force[k + 1]));
+        probe
+    }
+
+    /// Explains a force of any size, as a function of the interval, beside the base forces.
+    fn explain(&mut self, force: impl Fn(usize) -> f64) {
+        for index in 0..self.spans.len() {
+            let answer = self.answer(self.spans[index], &force);
+            self.base[index].push(answer);
+            self.known[index] = Known::new(&self.target[index], &self.base[index]);
+        }
     }
 
     /// Orthonormal answers to a starting position and velocity over a window of `length` samples.
@@ -395,7 +412,7 @@ impl Probe {
     ) -> Option<Regression> {
         let (solution, left) = self.solve(forces, stride)?;
         let b = self.inverse_inertia + solution[0];
-        let own = solution.iter().skip(BASE).take(forces.len());
+        let own = solution.iter().skip(self.explained());
         let coefficients: Vec<f64> = own.map(|c| c / b).collect();
         (b * self.inverse_inertia > 0.0 && coefficients.iter().all(|c| c.is_finite())).then(|| {
             Regression {
@@ -405,32 +422,37 @@ impl Probe {
         })
     }
 
-    /// Least squares on the base forces and `forces`: coefficients and squared remainder.
+    /// Forces that are explained in any case.
+    fn explained(&self) -> usize {
+        self.base.first().map_or(BASE, Vec::len)
+    }
+
+    /// Least squares on what is explained in any case and `forces`: coefficients and squared remainder.
     fn solve(
         &self,
         forces: &[Box<dyn Fn(usize) -> f64 + '_>],
         stride: usize,
     ) -> Option<(DVector<f64>, f64)> {
-        let friction = |k: usize| self.velocity[k].signum();
-        let p = BASE + forces.len() + usize::from(self.rubs);
+        let explained = self.explained();
+        let p = explained + forces.len();
         let mut normal = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         let (mut power, mut count) = (0.0, 0);
         for index in (0..self.spans.len()).step_by(stride) {
-            let (target, base, known) = (&self.target[index], &self.base[index], self.known[index]);
+            let (target, base, known) =
+                (&self.target[index], &self.base[index], &self.known[index]);
             let span = self.spans[index];
-            let mut own: Vec<Vec<f64>> = forces.iter().map(|f| self.answer(span, f)).collect();
-            own.extend(self.rubs.then(|| self.answer(span, friction)));
+            let own: Vec<Vec<f64>> = forces.iter().map(|f| self.answer(span, f)).collect();
             let columns: Vec<&[f64]> = base.iter().chain(&own).map(Vec::as_slice).collect();
             for a in 0..p {
                 for b in 0..=a {
-                    normal[(a, b)] += if a < BASE {
+                    normal[(a, b)] += if a < explained {
                         known.normal[a][b]
                     } else {
                         dot(columns[a], columns[b])
                     };
                 }
-                right[a] += if a < BASE {
+                right[a] += if a < explained {
                     known.right[a]
                 } else {
                     dot(columns[a], target)
@@ -608,23 +630,6 @@ fn solved(mut normal: DMatrix<f64>, mut right: DVector<f64>) -> Option<(DVector<
 fn spans_stride(spans: &[(usize, usize)], samples: usize) -> usize {
     let total: usize = spans.iter().map(|(from, to)| to - from).sum();
     total.div_ceil(samples).clamp(1, spans.len().max(1))
-}
-
-/// Sums of a product of vectors that go on side by side.
-const LANES: usize = 8;
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Several sums side by side, since each addition waits for the one before.
-    let (a_parts, a_rest) = a.as_chunks::<LANES>();
-    let (b_parts, b_rest) = b.as_chunks::<LANES>();
-    let mut sums = [0.0; LANES];
-    for (a, b) in a_parts.iter().zip(b_parts) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
 }
 
 fn normalise(values: &mut [f64]) {

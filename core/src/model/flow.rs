@@ -219,6 +219,14 @@ impl Flow {
         self.apply(&Coefficients::new(self.lambda, self.mu, h), m, w, q)
     }
 
+    /// What has come of the input `w` at the body after `h` seconds.
+    pub fn input_after(&self, m: Motion, w: f64, h: f64) -> f64 {
+        if self.mu.is_none() {
+            return w;
+        }
+        self.after_cached(m, w, 0.0, h).z
+    }
+
     /// Time after which the velocity passes through zero, if it does before `until`, where it is `end`.
     pub fn stops(&self, m: Motion, w: f64, q: f64, until: f64, end: f64) -> f64 {
         if self.mu.is_some() {

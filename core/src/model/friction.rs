@@ -199,7 +199,7 @@ fn stuck_event(
     if now != Mode::Stick {
         return (rest(start.z, 0.0), Some(now));
     }
-    let z_end = flow.after(start, w, 0.0, left).z;
+    let z_end = flow.input_after(start, w, left);
     let later = Mode::from_rest(z_end + force, level);
     if later == Mode::Stick {
         return (rest(z_end, left), None);

@@ -216,7 +216,96 @@ impl<'m> Follower<'m> {
             self.now.mode = Mode::of(v);
         }
         while self.sample < sample {
-            self.step(position, h(self.sample));
+            self.hold(position, sample, &h, |_, _| ());
+            self.glide(position, sample, &h, |_, _| ());
+            if self.sample < sample {
+                self.step(position, h(self.sample));
+            }
+        }
+    }
+
+    /// Follows up to sample `to`, `h` seconds from each to the next; `torque` takes the mean torque or force on the load
+    /// for each of them.
+    fn follow(&mut self, position: &[f64], to: usize, h: f64, mut torque: impl FnMut(usize, f64)) {
+        while self.sample < to {
+            self.hold(position, to, |_| h, &mut torque);
+            self.glide(position, to, |_| h, &mut torque);
+            if self.sample < to {
+                let sample = self.sample;
+                torque(sample, self.step(position, h));
+            }
+        }
+    }
+
+    /// Follows up to sample `to` as long as a load on a joint without play goes on one way: what [`Self::step`] does,
+    /// without asking at each sample what may happen.
+    fn glide(
+        &mut self,
+        position: &[f64],
+        to: usize,
+        h: impl Fn(usize) -> f64,
+        mut torque: impl FnMut(usize, f64),
+    ) {
+        let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
+        let rubs = dry > 0.0;
+        let sign = if rubs { self.now.mode.sign() } else { 0.0 };
+        let Some(swing) = &self.swing else {
+            return;
+        };
+        let first = position.get(self.sample);
+        let Some(first) = first.filter(|_| coupling.half_gap == 0.0 && !(rubs && sign == 0.0))
+        else {
+            return;
+        };
+        let friction = -sign * dry;
+        let pull = swing.pull(friction);
+        let mut swung = [self.now.motion.x - first, self.now.motion.v * swing.h];
+        let begun = self.sample;
+        while self.sample < to && h(self.sample) == swing.h {
+            let course = Course::of(position, self.sample);
+            let body = course.parabola(0.0);
+            let next = swing.next(swung, &body, pull);
+            if rubs && next[1] * sign <= 0.0 {
+                break;
+            }
+            torque(self.sample, swing.torque(swung, next) - friction);
+            swung = [next[0] - course.way, next[1]];
+            self.sample += 1;
+        }
+        if self.sample > begun {
+            let from = position[self.sample.min(position.len() - 1)];
+            self.now.motion.x = from + swung[0];
+            self.now.motion.v = swung[1] / swing.h;
+            self.now.mode = Mode::of(self.now.motion.v);
+        }
+    }
+
+    /// Follows up to sample `to` as long as the friction of a load on a joint without play holds it.
+    fn hold(
+        &mut self,
+        position: &[f64],
+        to: usize,
+        h: impl Fn(usize) -> f64,
+        mut torque: impl FnMut(usize, f64),
+    ) {
+        let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
+        if coupling.half_gap > 0.0 || dry <= 0.0 || self.now.mode != Mode::Stick {
+            return;
+        }
+        while self.sample < to {
+            let h = h(self.sample);
+            let course = Course::of(position, self.sample);
+            let Parabola { from, begin, bend } = course.parabola(0.0);
+            let twist = from - self.now.motion.x;
+            let ends = [(0.0, begin), (course.way, begin + bend)];
+            let holds =
+                |(way, velocity)| coupling.unlimited(twist + way, velocity / h).abs() <= dry;
+            if !ends.into_iter().all(holds) {
+                return;
+            }
+            let mean = twist + 0.5 * course.way - bend / 12.0;
+            torque(self.sample, coupling.unlimited(mean, course.way / h));
+            self.sample += 1;
         }
     }
 
@@ -227,18 +316,16 @@ impl<'m> Follower<'m> {
         torque
     }
 
-    /// Moves the load in one step while the body goes on by `way`, bent by `bend`; mean torque or force on it. `None`
-    /// where the load turns or sticks, or comes or goes.
-    fn swing_along(&mut self, from: f64, way: f64, bend: f64, h: f64) -> Option<f64> {
+    /// Moves the load in one step while the body goes along its `course`; mean torque or force on it. `None` where the
+    /// load turns or sticks, or comes or goes.
+    fn swing_along(&mut self, course: &Course, h: f64) -> Option<f64> {
         let swing = self.swing.as_ref().filter(|s| s.h == h)?;
         let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
-        let side = (from - self.now.motion.x).signum();
-        let begin = way - 0.5 * bend;
-        if !coupling.joins(
-            side,
-            from - self.now.motion.x,
-            begin / h - self.now.motion.v,
-        ) {
+        let Course { from, way, bend } = *course;
+        let twist = from - self.now.motion.x;
+        let side = twist.signum();
+        let body = course.parabola(side * coupling.half_gap);
+        if !coupling.joins(side, twist, body.begin / h - self.now.motion.v) {
             return None;
         }
         let rubs = dry > 0.0;
@@ -246,14 +333,10 @@ impl<'m> Follower<'m> {
         if rubs && sign == 0.0 {
             return None;
         }
-        let body = Parabola {
-            from: from - side * coupling.half_gap,
-            begin,
-            bend,
-        };
         let (end, torque) = swing.advance(self.now.motion, &body, -sign * dry);
         let turns = rubs && end.v * sign <= 0.0;
-        if turns || !coupling.joins(side, from + way - end.x, (begin + bend) / h - end.v) {
+        let rate = (body.begin + bend) / h - end.v;
+        if turns || !coupling.joins(side, from + way - end.x, rate) {
             return None;
         }
         self.now = Followed {
@@ -266,19 +349,12 @@ impl<'m> Follower<'m> {
     /// Moves the body along `position` from sample `i` to the next one in `h` seconds, on a parabola
     /// bent like the samples around; mean torque or force on the load.
     fn advance(&mut self, position: &[f64], i: usize, h: f64) -> f64 {
-        let at = |j: usize| position[j.min(position.len() - 1)];
-        let (from, to) = (at(i), at(i + 1));
-        let before = if i == 0 { from } else { at(i - 1) };
-        // Mean second difference; the samples are taken as equally spaced.
-        let bend = if i == 0 || i + 2 >= position.len() {
-            0.0
-        } else {
-            0.5 * (at(i + 2) - to - from + before)
-        };
-        if let Some(torque) = self.swing_along(from, to - from, bend, h) {
+        let course = Course::of(position, i);
+        if let Some(torque) = self.swing_along(&course, h) {
             return torque;
         }
-        let v1 = (to - from) / h;
+        let Course { from, way, bend } = course;
+        let v1 = way / h;
         let touching = self
             .load
             .may_touch(from - self.now.motion.x, v1 - self.now.motion.v, h);
@@ -287,7 +363,7 @@ impl<'m> Follower<'m> {
         let mut sum = 0.0;
         for k in 0..steps {
             let share = (f64::from(k) + 0.5) / f64::from(steps);
-            let middle = from + (to - from) * share - 0.5 * bend * share * (1.0 - share);
+            let middle = from + way * share - 0.5 * bend * share * (1.0 - share);
             let rate = v1 - 0.5 * bend * (1.0 - 2.0 * share) / h;
             let twist = middle - self.now.motion.x - 0.5 * part * self.now.motion.v;
             let force = self.load.coupling.force(twist, rate - self.now.motion.v);
@@ -306,6 +382,45 @@ impl<'m> Follower<'m> {
     }
 }
 
+/// How the body goes on from one sample to the next: a parabola, bent like the samples around.
+struct Course {
+    from: f64,
+    way: f64,
+    bend: f64,
+}
+
+impl Course {
+    /// From sample `i`; the samples are taken as equally spaced.
+    fn of(position: &[f64], i: usize) -> Self {
+        let around = i
+            .checked_sub(1)
+            .and_then(|before| position.get(before..i + 3));
+        if let Some([before, from, to, after]) = around {
+            // Mean second difference.
+            return Self {
+                from: *from,
+                way: to - from,
+                bend: 0.5 * (after - to - from + before),
+            };
+        }
+        let at = |j: usize| position[j.min(position.len() - 1)];
+        Self {
+            from: at(i),
+            way: at(i + 1) - at(i),
+            bend: 0.0,
+        }
+    }
+
+    /// The same, seen from where it begins but for `play`.
+    fn parabola(&self, play: f64) -> Parabola {
+        Parabola {
+            from: self.from - play,
+            begin: self.way - 0.5 * self.bend,
+            bend: self.bend,
+        }
+    }
+}
+
 /// Torque or force that `load` would put on a body which is moved as measured: `position` at equal steps of
 /// `h` seconds. It is found at the samples of `spans` (first and end, ascending) and is 0 elsewhere.
 pub fn load_torque(load: &Load, position: &[f64], h: f64, spans: &[(usize, usize)]) -> Vec<f64> {
@@ -315,13 +430,53 @@ pub fn load_torque(load: &Load, position: &[f64], h: f64, spans: &[(usize, usize
     };
     let mut follower = Follower::new(load, *first, h);
     for (from, to) in spans {
-        let Some(part) = torque.get_mut(*from..*to) else {
+        if torque.get(*from..*to).is_none() {
             continue;
-        };
-        follower.reach(position, *from, |_| h);
-        for value in part {
-            *value = follower.step(position, h);
         }
+        follower.reach(position, *from, |_| h);
+        follower.follow(position, *to, h, |i, value| torque[i] = value);
     }
     torque
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn following_many_samples_at_once_is_following_them_one_by_one() {
+        let h = 2e-4;
+        let position: Vec<f64> = (0..4000)
+            .map(|i| {
+                0.3 * libm::sin(0.011 * f64::from(i)) + 0.05 * libm::sin(1e-5 * f64::from(i * i))
+            })
+            .collect();
+        for dry_friction in [0.0, 0.05, 0.5, 1.5] {
+            let load = Load {
+                inertia: 7e-4,
+                viscous: 1e-3,
+                dry_friction,
+                coupling: Coupling {
+                    half_gap: 0.0,
+                    stiffness: 5.0,
+                    damping: 4e-3,
+                },
+            };
+            let at_once = load_torque(&load, &position, h, &[(0, position.len())]);
+            let mut follower = Follower::new(&load, position[0], h);
+            let mut held = 0;
+            for (i, at_once) in at_once.iter().enumerate() {
+                let one = follower.step(&position, h);
+                held += usize::from(follower.now.mode == Mode::Stick);
+                // A load that is held is asked in the middles of short steps there; torques are about 1 N m.
+                assert!(
+                    (at_once - one).abs() < 1e-4,
+                    "{dry_friction}, {i}: {at_once} is not {one}"
+                );
+            }
+            if dry_friction == 1.5 {
+                assert!((100..3900).contains(&held), "{held} samples held");
+            }
+        }
+    }
 }

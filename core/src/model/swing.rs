@@ -4,7 +4,7 @@
 //! J2 u' = K (x1 - x2) + D (v1 - u) - d2 u + f      x1 = from + begin s + bend s^2 / 2,  s = t / h
 //! ```
 
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix};
 
 use super::Load;
 use super::flow::Motion;
@@ -71,17 +71,38 @@ impl Swing {
 
     /// Motion of the load after the interval, with this force on it besides; and the mean torque or force of the joint.
     pub fn advance(&self, load: Motion, body: &Parabola, force: f64) -> (Motion, f64) {
-        let h = self.h;
-        let pull = force * h * h / self.inertia;
-        let start = SVector::from([load.x - body.from, load.v * h, body.begin, body.bend, pull]);
-        let end = self.flow * start;
+        let start = [load.x - body.from, load.v * self.h];
+        let end = self.next(start, body, self.pull(force));
         let next = Motion {
             x: body.from + end[0],
-            v: end[1] / h,
+            v: end[1] / self.h,
             z: load.z,
         };
-        let momentum = self.inertia * (next.v - load.v) + self.viscous * (next.x - load.x);
-        (next, momentum / h - force)
+        (next, self.torque(start, end) - force)
+    }
+
+    /// What a force on the load pulls in an interval.
+    pub fn pull(&self, force: f64) -> f64 {
+        force * self.h * self.h / self.inertia
+    }
+
+    /// Place of the load from where the body begins, and its velocity times `h`, after the interval; from where it begins,
+    /// whatever the body's `from`.
+    pub fn next(&self, [place, velocity]: [f64; 2], body: &Parabola, pull: f64) -> [f64; 2] {
+        let f = &self.flow;
+        // The load's own part last: the next interval waits for it.
+        [0, 1].map(|i| {
+            let given = f[(i, 2)] * body.begin + f[(i, 3)] * body.bend + f[(i, 4)] * pull;
+            given + (f[(i, 0)] * place + f[(i, 1)] * velocity)
+        })
+    }
+
+    /// Mean torque or force on the load that takes it from one to the other.
+    pub fn torque(&self, start: [f64; 2], end: [f64; 2]) -> f64 {
+        let rate = 1.0 / self.h;
+        let momentum =
+            self.inertia * rate * (end[1] - start[1]) + self.viscous * (end[0] - start[0]);
+        momentum * rate
     }
 }
 

@@ -9,8 +9,9 @@ use std::f64::consts::SQRT_2;
 use nalgebra::{DMatrix, DVector};
 
 use super::spatial::{APART, FASTEST_SPATIAL};
-use super::{Probe, dot, solved};
+use super::{Probe, solved};
 use crate::effect::spec::SEEN_TURN;
+use crate::sums::dot;
 
 /// Samples at most that are looked at.
 const LOOKED_AT: usize = 6_000;

@@ -37,10 +37,10 @@ impl Probe {
         }
         let mut probe = Self {
             spans,
-            rubs: true,
             ..self.clone()
         };
         probe.look(Self::bends);
+        probe.explain(|k| self.velocity[k].signum());
         Some(probe)
     }
 

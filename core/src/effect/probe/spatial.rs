@@ -6,9 +6,10 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use rustfft::FftPlanner;
 
-use super::{BASE, Probe, dot, solved, spans_stride};
+use super::{BASE, Probe, solved, spans_stride};
 use crate::effect::spec::SEEN_TURN;
 use crate::order::median;
+use crate::sums::dot;
 
 /// Samples at most that enter the regressions of a scan, and the number of peaks of it that are looked at by a regression
 /// on all windows: where the body is held in many of them, a few may say anything.

@@ -7,7 +7,8 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, dot};
+use super::Probe;
+use crate::sums::dot;
 
 /// Parts of an axis at most.
 const PARTS: usize = 30;

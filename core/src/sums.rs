@@ -1,0 +1,33 @@
+//! Sums over long series.
+
+/// Sums that go on side by side, since each addition waits for the one before.
+const LANES: usize = 8;
+
+/// Sum of the products of two series, as far as both go.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let length = a.len().min(b.len());
+    let (a_parts, a_rest) = a[..length].as_chunks::<LANES>();
+    let (b_parts, b_rest) = b[..length].as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a_parts.iter().zip(b_parts) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_are_summed_as_far_as_both_go() {
+        let a: Vec<f64> = (0..21).map(f64::from).collect();
+        // Sum of squares up to n: n (n + 1) (2 n + 1) / 6.
+        assert_eq!(dot(&a, &a), 2870.0);
+        assert_eq!(dot(&a, &a[..19]), 2109.0);
+        assert_eq!(dot(&a, &[]), 0.0);
+    }
+}
