@@ -241,9 +241,11 @@ impl DiagnosisJob {
         let unknown = report.verdict.as_ref().filter(|v| v.unknown);
         let imitation = unknown.and_then(|_| job.imitation(report.step.error));
         let (session, next) = job.successor();
-        let worthwhile = next
-            .as_ref()
-            .is_some_and(|model| model.score.error < LATE_GAIN * report.step.error);
+        // What is needless is taken out in any case.
+        let worthwhile = next.as_ref().is_some_and(|model| {
+            model.score.error < LATE_GAIN * report.step.error
+                || session.effects(&model.fit).len() < effects
+        });
         let ended = self.diagnosis.steps.len() >= MAX_STEPS
             || effects > MAX_EFFECTS
             || (session.data.tried_enough() && !worthwhile);

@@ -120,7 +120,7 @@ impl Contender {
             let search = self.search.get_or_insert_with(|| {
                 let instead = track.instead.as_ref().map(|(fit, place)| (fit, *place));
                 let (fit, probed, ground) = (&track.fit, &track.probed, Some(track.ground));
-                Search::adding(data, fit, self.effect, probed, instead, ground)
+                Search::adding(data, fit, self.effect, probed, instead, ground, scales)
             });
             if !search.scan(data, scout, scales) {
                 self.stage = Stage::FirstHeat;

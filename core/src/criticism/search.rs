@@ -90,6 +90,9 @@ pub(super) struct Search {
     optimism: f64,
 }
 
+/// Shares of every window from which a point is grown.
+const GROWING: [f64; 4] = [0.1, 0.2, 0.4, 0.7];
+
 /// Share of the inertia of body and joined load that the body has at least.
 const LEAST_ALONE: f64 = 0.1;
 
@@ -121,6 +124,7 @@ impl Search {
         probed: &Probed,
         instead: Option<(&Fit, usize)>,
         ground: Option<Ground>,
+        scales: &Scales,
     ) -> Self {
         let settled = ground.is_some_and(|g| g.settled);
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
@@ -188,7 +192,9 @@ impl Search {
                 values[..own.len()].copy_from_slice(&own);
                 values.extend(start);
                 structure.begin(&mut values, kept.len());
-                points.push((values, data.guessed_starts()));
+                let point = (values, data.guessed_starts());
+                points.extend(Self::grown(data, &structure, &point, scales));
+                points.push(point);
             }
             points.extend(Self::other_valleys(
                 data, fit, &rest, &kept, &structure, &own, probed,
@@ -234,6 +240,28 @@ impl Search {
             .any(|(g, v)| (g - v).abs() > WORTH_A_START * v.abs());
         values[..guess.len()].copy_from_slice(&guess);
         far.then(|| (values, data.guessed_starts()))
+    }
+
+    /// A point to which the first part of every window leads, then more and more of it, where a force depends on the
+    /// position: a body that comes to the wrong side of a hill goes quite another way from there, so that whole windows
+    /// tell little of values that are a little off.
+    fn grown(
+        data: &Data,
+        structure: &Structure,
+        (values, starts): &Point,
+        scales: &Scales,
+    ) -> Option<Point> {
+        if structure.model(values).is_same_everywhere() {
+            return None;
+        }
+        let (mut values, mut starts) = (values.clone(), starts.clone());
+        for share in GROWING {
+            let part = data.beginning(share);
+            let mut fit = Fit::new(&part, structure.clone(), values, starts, scales);
+            come_on(&mut fit, &part, scales, 0.0);
+            (values, starts) = (fit.values, fit.starts);
+        }
+        Some((values, starts))
     }
 
     /// The same point with the dry friction of the body moved to the load that the newest effect brings: as long as that was

@@ -29,8 +29,8 @@ const STIFFNESS: [f64; 4] = [0.03, 0.01, 0.2, 1.0];
 /// Damping ratio of the contact.
 const DAMPING_RATIO: f64 = 0.3;
 
-/// A contact that a fit left soft, and so damped that it hardly bounces, may as well be as many times as stiff.
-const STIFFER: [f64; 3] = [6.0, 40.0, 250.0];
+/// A contact that a fit left soft, and so damped that it hardly bounces, may as well bounce, or be as many times as stiff.
+const STIFFER: [f64; 4] = [1.0, 6.0, 40.0, 250.0];
 
 /// Stiffness of a contact that was felt, in times of what the length of its push tells.
 const FELT_STIFFNESS: [f64; 10] = [0.01, 0.018, 0.032, 0.056, 0.1, 0.18, 0.32, 0.56, 1.0, 3.2];

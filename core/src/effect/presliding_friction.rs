@@ -24,8 +24,8 @@ fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
 }
 
 /// Values with the longer deflections that leave least of the unexplained force, beside friction that needs none, if that
-/// is less than this `share` of it.
-fn long_starts(probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+/// is less than this `share` of it; and the body that goes with them.
+fn long_starts(probe: &Probe, share: f64) -> Vec<([f64; 2], Vec<f64>)> {
     let shortest = CROSSINGS[3] * probe.scales.crossed();
     let ratio = libm::pow(probe.scales.travel / shortest, 1.0 / f64::from(LONGER));
     if !(ratio > 1.0 && ratio.is_finite()) {
@@ -38,12 +38,12 @@ fn long_starts(probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         let fit = probe.regress(&[&probe.deflection(s), &sign])?;
         let level = -fit.coefficients[0];
         (level > 0.0 && fit.left < share && Probe::may_be(fit.left))
-            .then_some((fit.left, vec![level, s, 0.1]))
+            .then_some((fit.left, (fit.body, vec![level, s, 0.1])))
     });
-    let mut found: Vec<(f64, Vec<f64>)> = tried.into_iter().flatten().collect();
+    let mut found: Vec<(f64, _)> = tried.into_iter().flatten().collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.truncate(BEST);
-    found.into_iter().map(|(_, values)| values).collect()
+    found.into_iter().map(|(_, start)| start).collect()
 }
 
 impl Effect for PreslidingFriction {
@@ -100,12 +100,19 @@ impl Effect for PreslidingFriction {
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         let mut all = starts(probe.friction_level(), probe);
-        all.extend(long_starts(probe, share));
+        all.extend(long_starts(probe, share).into_iter().map(|long| long.1));
         all
     }
 
     fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
         starts(probe.dissipated_level(), probe)
+    }
+
+    /// Where friction builds up over a long way, what it takes looked like a viscous friction that there is not.
+    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+        let mut found = long_starts(probe, 1.0);
+        found.retain(|(body, _)| body[1] >= 0.0);
+        found
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -81,6 +81,8 @@ pub struct Probe {
     known: Vec<Known>,
     base_left: f64,
     inverse_inertia: f64,
+    /// Viscous friction of the present model.
+    viscous: f64,
     gap: Option<SeenGap>,
     /// Who tries forces.
     pub crew: Crew,
@@ -182,6 +184,8 @@ pub struct ProbeInput<'a> {
 pub struct Regression {
     /// Force per unit of each signature.
     pub coefficients: Vec<f64>,
+    /// Inertia and viscous friction that go with them.
+    pub body: [f64; 2],
     /// Share of the squared error that is left, 0 to 1.
     pub left: f64,
 }
@@ -222,6 +226,7 @@ impl Probe {
             known: Vec::new(),
             base_left: f64::NAN,
             inverse_inertia: 1.0 / inertia,
+            viscous,
             gap: input.gap,
             crew: input.crew.clone(),
         };
@@ -417,6 +422,10 @@ impl Probe {
         (b * self.inverse_inertia > 0.0 && coefficients.iter().all(|c| c.is_finite())).then(|| {
             Regression {
                 coefficients,
+                body: [
+                    1.0 / b,
+                    (self.viscous * self.inverse_inertia + solution[1]) / b,
+                ],
                 left: left / without,
             }
         })

@@ -10,17 +10,50 @@ const TREMBLING: f64 = 2.0;
 /// Displacements of a friction contact after which the state before is forgotten to the last digit.
 const FORGOTTEN: f64 = 37.0;
 
-/// The measured position without its trembling.
+/// Displacement over which friction builds up, in standard deviations of the noise, from which on trembling hardly bends
+/// the contact, and less than the way would that is lost where it is taken out.
+const LONG: f64 = 500.0;
+
+/// The way of a body.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Steady {
+struct Way {
     position: Vec<f64>,
     /// Way travelled up to each sample.
     travelled: Vec<f64>,
 }
 
+/// What a body did as measured.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Steady {
+    /// With its trembling.
+    all: Way,
+    /// Without.
+    quiet: Way,
+    noise: f64,
+}
+
 impl Steady {
     pub fn new(measured: &[f64], noise: f64) -> Self {
-        let width = TREMBLING * noise;
+        Self {
+            all: Way::new(measured, 0.0),
+            quiet: Way::new(measured, TREMBLING * noise),
+            noise,
+        }
+    }
+
+    /// The first `n` samples.
+    pub fn head(&self, n: usize) -> Self {
+        Self {
+            all: self.all.head(n),
+            quiet: self.quiet.head(n),
+            noise: self.noise,
+        }
+    }
+}
+
+impl Way {
+    /// The way of what follows at this distance.
+    fn new(measured: &[f64], width: f64) -> Self {
         let mut now = measured.first().copied().unwrap_or(0.0);
         let mut way = 0.0;
         let (position, travelled) = measured
@@ -38,8 +71,7 @@ impl Steady {
         }
     }
 
-    /// The first `n` samples.
-    pub fn head(&self, n: usize) -> Self {
+    fn head(&self, n: usize) -> Self {
         Self {
             position: self.position.iter().take(n).copied().collect(),
             travelled: self.travelled.iter().take(n).copied().collect(),
@@ -50,7 +82,7 @@ impl Steady {
 /// A friction contact that follows a body which moves as measured.
 pub(super) struct Bristle<'e> {
     contact: &'e Contact,
-    steady: &'e Steady,
+    way: &'e Way,
     friction: &'e DryFriction,
     deflection: f64,
     /// Sample up to which it has followed.
@@ -59,9 +91,10 @@ pub(super) struct Bristle<'e> {
 
 impl<'e> Bristle<'e> {
     pub fn new(contact: &'e Contact, steady: &'e Steady, friction: &'e DryFriction) -> Self {
+        let long = friction.presliding > LONG * steady.noise;
         Self {
             contact,
-            steady,
+            way: if long { &steady.all } else { &steady.quiet },
             friction,
             deflection: 0.0,
             sample: 0,
@@ -70,10 +103,10 @@ impl<'e> Bristle<'e> {
 
     /// Deflection at a sample, not before the last one asked for.
     pub fn at(&mut self, sample: usize, time: &[f64]) -> f64 {
-        let Steady {
+        let Way {
             position,
             travelled,
-        } = self.steady;
+        } = self.way;
         // The contact forgets over its displacement, which is longest at the highest level; a fast body may move
         // farther in the last interval alone.
         let since = travelled[sample] - FORGOTTEN * self.friction.presliding;

@@ -239,8 +239,7 @@ impl Fit {
     /// Looks where an effect says that a lower valley may be, if the load behind a gap is hidden; true if one is.
     fn try_other_valleys(&mut self, data: &Data, scales: &Scales) -> bool {
         let model = self.structure.model(&self.values);
-        let hidden = self.structure.load_begin == LoadBegin::Carried
-            && !data.excitation.sees_load_of(&model);
+        let hidden = model.load.is_some() && !data.excitation.sees_load_of(&model);
         if !hidden || self.valleys_seen >= MOST_VALLEYS {
             return false;
         }

@@ -272,6 +272,7 @@ impl StepJob {
                         &probed,
                         None,
                         None,
+                        &self.session.scales,
                     )
                 });
                 self.session

@@ -24,9 +24,11 @@ const LEAST: usize = 40;
 /// A force speaks for another body if it leaves less than this share of what none does.
 const CLEARLY: f64 = 0.7;
 
-/// Waves along the way that are tried at most, and parts of their distance in which the best of them is looked for.
+/// Waves along the way that are tried at most; parts of their distance in which the best of them is looked for, and how
+/// often among ever closer ones.
 const WAVES: usize = 500;
 const PARTS: i32 = 5;
+const FINER: usize = 2;
 
 /// Inertia, viscous friction and missing forces, as the balance of momentum tells them.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,11 +159,15 @@ impl Probe {
             let n = (first + i) as f64 * spacing;
             if n <= fastest { waves(n) } else { None }
         });
-        let (n, _) = least(scanned)?;
-        let finer = self.crew.gather(2 * PARTS as usize + 1, |i| {
-            waves(n + (i as f64 / f64::from(PARTS) - 1.0) * spacing)
-        });
-        let found = least(finer)?;
+        let mut found = least(scanned)?;
+        let mut apart = spacing;
+        for _ in 0..FINER {
+            let finer = self.crew.gather(2 * PARTS as usize + 1, |i| {
+                waves(found.0 + (i as f64 / f64::from(PARTS) - 1.0) * apart)
+            });
+            found = least(finer)?;
+            apart /= f64::from(PARTS);
+        }
         let alone = stretches.balance(&[])?;
         (found.1.left < CLEARLY * alone.left).then_some(found)
     }
