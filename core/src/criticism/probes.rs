@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::fit::{Fit, same_place};
-use crate::effect::{Effect, EffectId, Probe};
+use crate::effect::{BodyStart, Effect, EffectId, Probe};
 
 /// Models that are remembered.
 const REMEMBERED: usize = 12;
@@ -16,13 +16,17 @@ const SAME_COST: f64 = 0.01;
 /// A probe with the starting values that were found in it.
 pub(super) struct Probed {
     pub probe: Probe,
-    starts: Mutex<BTreeMap<EffectId, Found>>,
+    starts: Searched<Vec<f64>>,
+    with_body: Searched<BodyStart>,
 }
 
+/// What was searched for, by effect.
+type Searched<T> = Mutex<BTreeMap<EffectId, Found<T>>>;
+
 /// Starting values, and the share of the squared error up to which they were searched for with care.
-struct Found {
+struct Found<T> {
     share: f64,
-    starts: Vec<Vec<f64>>,
+    starts: Vec<T>,
 }
 
 impl Probed {
@@ -30,26 +34,46 @@ impl Probed {
         Self {
             probe,
             starts: Mutex::default(),
+            with_body: Mutex::default(),
         }
     }
 
     /// Starting values of `effect` where it may leave less than this share of the squared error, searched for once.
     pub fn starts(&self, effect: &dyn Effect, share: f64) -> Vec<Vec<f64>> {
-        let known = || self.starts.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = known().get(&effect.id())
-            && found.share >= share
-        {
-            return found.starts.clone();
-        }
-        // Not under the lock: the search is long, and others look for other effects meanwhile.
-        let starts = effect.starts(&self.probe, share);
-        let found = Found {
-            share,
-            starts: starts.clone(),
-        };
-        known().insert(effect.id(), found);
-        starts
+        once(&self.starts, effect.id(), share, || {
+            effect.starts(&self.probe, share)
+        })
     }
+
+    /// The same with a body of their own.
+    pub fn starts_with_body(&self, effect: &dyn Effect, share: f64) -> Vec<BodyStart> {
+        once(&self.with_body, effect.id(), share, || {
+            effect.starts_with_body(&self.probe, share)
+        })
+    }
+}
+
+/// What is known, or as `search` finds it.
+fn once<T: Clone>(
+    searched: &Searched<T>,
+    id: EffectId,
+    share: f64,
+    search: impl FnOnce() -> Vec<T>,
+) -> Vec<T> {
+    let known = || searched.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(found) = known().get(&id)
+        && found.share >= share
+    {
+        return found.starts.clone();
+    }
+    // Not under the lock: the search is long, and others look for other effects meanwhile.
+    let starts = search();
+    let found = Found {
+        share,
+        starts: starts.clone(),
+    };
+    known().insert(id, found);
+    starts
 }
 
 /// A model that was probed.

@@ -129,7 +129,17 @@ impl Search {
         let settled = ground.is_some_and(|g| g.settled);
         let (rest, kept) = fit.structure.without_contained(effect, &fit.values);
         let structure = rest.with(effect);
-        let own = probed.starts(effect, ground.map_or(1.0, |g| g.share));
+        let share = ground.map_or(1.0, |g| g.share);
+        let with_body = if settled {
+            Vec::new()
+        } else {
+            probed.starts_with_body(effect, share)
+        };
+        let mut own = probed.starts(effect, share);
+        if own.is_empty() {
+            // The body may as well be the present one.
+            own = with_body.iter().map(|start| start.1.clone()).collect();
+        }
         let mut points = Vec::new();
         let related =
             |other: &dyn Effect| other.has_part(effect.id()) || same_dimensions(effect, other);
@@ -187,7 +197,7 @@ impl Search {
                 structure.begin(&mut values, kept.len());
                 points.push((values, at.starts.clone()));
             }
-            for (own, start) in effect.starts_with_body(&probed.probe) {
+            for (own, start) in with_body {
                 let mut values = kept.clone();
                 values[..own.len()].copy_from_slice(&own);
                 values.extend(start);

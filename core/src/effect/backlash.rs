@@ -5,7 +5,10 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Dimension, Effect, EffectId, GapLoad, ParameterSpec, Probe, Range, SeenGap};
+use super::probe::Bounces;
+use super::{
+    BodyStart, Dimension, Effect, EffectId, GapLoad, ParameterSpec, Probe, Range, SeenGap,
+};
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
 use crate::simplex::minimise;
@@ -21,10 +24,22 @@ const GAP_SPACING: f64 = 1.0 / 160.0;
 
 /// Rate at which a free load is slowed down by viscous friction, per sample, and its dry friction in
 /// units of the typical input.
-const LOAD_FRICTION: [(f64, f64); 4] = [(1e-3, 0.01), (1e-3, 0.0), (4e-3, 0.0), (1e-3, 0.05)];
+const LOAD_FRICTION: [(f64, f64); 5] = [
+    (1e-3, 0.01),
+    (1e-3, 0.0),
+    (4e-3, 0.0),
+    (3e-2, 0.0),
+    (1e-3, 0.05),
+];
 
 /// Stiffness of the contact: squared radians of its oscillation in a sample.
 const STIFFNESS: [f64; 4] = [0.03, 0.01, 0.2, 1.0];
+
+/// Friction and stiffness with which all gaps are tried: a load that goes on by itself, and one that is soon slow.
+const SCANNED: [((f64, f64), f64); 2] = [
+    (LOAD_FRICTION[0], STIFFNESS[0]),
+    (LOAD_FRICTION[3], STIFFNESS[3]),
+];
 
 /// Damping ratio of the contact.
 const DAMPING_RATIO: f64 = 0.3;
@@ -124,6 +139,8 @@ struct Trial {
     load: Load,
     /// By how much the load must be scaled.
     scale: f64,
+    /// Inertia and viscous friction of the body that goes with it.
+    body: [f64; 2],
 }
 
 impl Trial {
@@ -146,6 +163,7 @@ impl Trial {
             guess,
             load,
             scale,
+            body: fit.body,
         })
     }
 
@@ -234,16 +252,34 @@ fn behind(probe: &Probe, gaps: &[f64]) -> Vec<Trial> {
     best(refined, BEST)
 }
 
+/// Starting points where a load was met again and again.
+fn met_again(met: &Bounces) -> Vec<BodyStart> {
+    let [inertia, viscous, dry] = met.load;
+    let [stiffness, damping] = met.contact;
+    let start = |times: f64| {
+        vec![
+            met.half_gap,
+            inertia,
+            viscous,
+            dry,
+            times * stiffness,
+            times.sqrt() * damping,
+        ]
+    };
+    MET_STIFFNESS.map(|times| (met.body, start(times))).to_vec()
+}
+
 /// The best loads behind a gap that nobody has seen, where one may leave less than this share of the unexplained force.
 fn hidden(stretch: &Probe, share: f64) -> Vec<Trial> {
     let gaps = gap_shares().map(|share| share * stretch.scales.travel);
-    let guesses = gaps.map(|gap| Guess::new(gap, LOAD_FRICTION[0], STIFFNESS[0]));
+    let guesses = gaps.flat_map(|gap| SCANNED.map(|(friction, k)| Guess::new(gap, friction, k)));
     let scanned = tried(stretch, &guesses.collect::<Vec<_>>());
-    let gaps: Vec<f64> = best(scanned, REFINED)
+    let mut gaps: Vec<f64> = best(scanned, REFINED)
         .iter()
         .filter(|trial| trial.left < PROMISING.min(share))
         .map(|trial| trial.guess.half_gap)
         .collect();
+    gaps.dedup();
     let mut found = behind(stretch, &gaps);
     found.retain(|trial| Probe::may_be(trial.left));
     found
@@ -319,44 +355,40 @@ impl Effect for Backlash {
         const { &[EffectId::new("joint_compliance")] }
     }
 
-    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         if let Some((half_gap, load)) = probe.gap().and_then(|g| Some((g.half_gap, g.load?))) {
             return felt(probe, half_gap, load);
         }
         let seen = probe
             .gap()
             .map_or_else(Vec::new, |gap| behind(probe, &[gap.half_gap]));
-        if seen.first().is_some_and(|trial| trial.left < WELL_SEEN) {
-            return seen.iter().map(Trial::values).collect();
+        seen.iter().map(Trial::values).collect()
+    }
+
+    fn starts_with_body(&self, probe: &Probe, share: f64) -> Vec<BodyStart> {
+        let met = probe.bounces().map_or_else(Vec::new, |met| met_again(&met));
+        let told = probe.gap().is_some_and(|gap| {
+            let seen = || behind(probe, &[gap.half_gap]);
+            gap.load.is_some() || seen().first().is_some_and(|trial| trial.left < WELL_SEEN)
+        });
+        if told {
+            return met;
         }
         let stretch = probe.stretch();
         let mut found = hidden(&stretch, share);
         if found.first().is_none_or(|trial| trial.left > WELL_SEEN) {
             found.extend(hidden(&stretch.as_measured(), share));
         }
-        found.iter().map(Trial::values).collect()
+        let found = found.iter().filter(|trial| trial.body[1] >= 0.0);
+        let found = found.map(|trial| (trial.body, trial.values()));
+        met.into_iter().chain(found).collect()
     }
 
-    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
-        let Some(met) = probe.bounces() else {
+    fn other_valleys(&self, values: &[f64], goes_on: bool) -> Vec<Vec<f64>> {
+        let bounces = values[5] < 2.0 * (values[4] * values[1]).sqrt();
+        if bounces && !goes_on {
             return Vec::new();
-        };
-        let [inertia, viscous, dry] = met.load;
-        let [stiffness, damping] = met.contact;
-        let start = |times: f64| {
-            vec![
-                met.half_gap,
-                inertia,
-                viscous,
-                dry,
-                times * stiffness,
-                times.sqrt() * damping,
-            ]
-        };
-        MET_STIFFNESS.map(|times| (met.body, start(times))).to_vec()
-    }
-
-    fn other_valleys(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        }
         let stiffer = |times: &f64| {
             let mut values = values.to_vec();
             values[4] *= times;

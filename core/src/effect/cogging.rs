@@ -1,6 +1,6 @@
 //! Cogging: a torque that repeats with the position.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -65,7 +65,7 @@ impl Effect for Cogging {
             .collect()
     }
 
-    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+    fn starts_with_body(&self, probe: &Probe, _share: f64) -> Vec<BodyStart> {
         let found = probe.balanced_wave().map(|(n, balance)| {
             let (sine, cosine) = (balance.forces[0], balance.forces[1]);
             let wave = vec![libm::hypot(sine, cosine), n, libm::atan2(cosine, sine)];

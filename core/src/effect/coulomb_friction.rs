@@ -5,7 +5,7 @@
 //! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
 //! none it goes to 0 and the contact is rigid.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -74,7 +74,7 @@ impl Effect for CoulombFriction {
         starts(probe.dissipated_level(), probe)
     }
 
-    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+    fn starts_with_body(&self, probe: &Probe, _share: f64) -> Vec<BodyStart> {
         let Some(balance) = probe.balanced(|_, v| -v.signum()) else {
             return Vec::new();
         };

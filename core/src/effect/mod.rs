@@ -32,6 +32,9 @@ pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales, shown_unit};
 use crate::measurement::Kind;
 use crate::model::Model;
 
+/// Inertia and viscous friction of a body, and values of an effect that go with them.
+pub type BodyStart = ([f64; 2], Vec<f64>);
+
 /// A piece of physics that a user can add to a model.
 pub trait Effect: Sync {
     /// Name in files, JSON and links.
@@ -58,12 +61,13 @@ pub trait Effect: Sync {
     }
 
     /// The same with inertia and viscous friction of the body, where the record tells them together.
-    fn starts_with_body(&self, _probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
+    fn starts_with_body(&self, _probe: &Probe, _share: f64) -> Vec<BodyStart> {
         Vec::new()
     }
 
-    /// Values from which a fit may come to a lower valley, where it has stalled at these.
-    fn other_valleys(&self, _values: &[f64]) -> Vec<Vec<f64>> {
+    /// Values from which a fit may come to a lower valley, where it has stalled at these; a hidden load goes on from window
+    /// to window, or is where it must be if the body moved as measured.
+    fn other_valleys(&self, _values: &[f64], _goes_on: bool) -> Vec<Vec<f64>> {
         Vec::new()
     }
 

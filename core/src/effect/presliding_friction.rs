@@ -3,7 +3,7 @@
 //! The same contact as in Coulomb friction, with a deflection so long that its build-up is seen
 //! sample by sample (Maxwell-slip elements along Dahl's curve).
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -25,7 +25,7 @@ fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
 
 /// Values with the longer deflections that leave least of the unexplained force, beside friction that needs none, if that
 /// is less than this `share` of it; and the body that goes with them.
-fn long_starts(probe: &Probe, share: f64) -> Vec<([f64; 2], Vec<f64>)> {
+fn long_starts(probe: &Probe, share: f64) -> Vec<BodyStart> {
     let shortest = CROSSINGS[3] * probe.scales.crossed();
     let ratio = libm::pow(probe.scales.travel / shortest, 1.0 / f64::from(LONGER));
     if !(ratio > 1.0 && ratio.is_finite()) {
@@ -109,8 +109,8 @@ impl Effect for PreslidingFriction {
     }
 
     /// Where friction builds up over a long way, what it takes looked like a viscous friction that there is not.
-    fn starts_with_body(&self, probe: &Probe) -> Vec<([f64; 2], Vec<f64>)> {
-        let mut found = long_starts(probe, 1.0);
+    fn starts_with_body(&self, probe: &Probe, share: f64) -> Vec<BodyStart> {
+        let mut found = long_starts(probe, share);
         found.retain(|(body, _)| body[1] >= 0.0);
         found
     }
