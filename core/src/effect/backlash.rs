@@ -44,8 +44,10 @@ const SCANNED: [((f64, f64), f64); 2] = [
 /// Damping ratio of the contact.
 const DAMPING_RATIO: f64 = 0.3;
 
-/// A contact that a fit left soft, and so damped that it hardly bounces, may as well bounce, or be as many times as stiff.
-const STIFFER: [f64; 4] = [1.0, 6.0, 40.0, 250.0];
+/// A contact that a fit left soft may as well be as many times as stiff; one that does not bounce may as well do so, with
+/// these stiffnesses in times of that at which the damping is critical.
+const STIFFER: [f64; 3] = [6.0, 40.0, 250.0];
+const BOUNCING: [f64; 3] = [0.25, 1.0, 4.0];
 
 /// Stiffness of a contact that was felt, in times of what the length of its push tells.
 const FELT_STIFFNESS: [f64; 10] = [0.01, 0.018, 0.032, 0.056, 0.1, 0.18, 0.32, 0.56, 1.0, 3.2];
@@ -273,13 +275,15 @@ fn met_again(met: &Bounces) -> Vec<BodyStart> {
 fn hidden(stretch: &Probe, share: f64) -> Vec<Trial> {
     let gaps = gap_shares().map(|share| share * stretch.scales.travel);
     let guesses = gaps.flat_map(|gap| SCANNED.map(|(friction, k)| Guess::new(gap, friction, k)));
-    let scanned = tried(stretch, &guesses.collect::<Vec<_>>());
-    let mut gaps: Vec<f64> = best(scanned, REFINED)
-        .iter()
-        .filter(|trial| trial.left < PROMISING.min(share))
-        .map(|trial| trial.guess.half_gap)
-        .collect();
-    gaps.dedup();
+    let mut scanned = tried(stretch, &guesses.collect::<Vec<_>>());
+    scanned.sort_by(|a, b| a.left.total_cmp(&b.left));
+    let mut gaps: Vec<f64> = Vec::new();
+    for trial in scanned {
+        let gap = trial.guess.half_gap;
+        if trial.left < PROMISING.min(share) && gaps.len() < REFINED && !gaps.contains(&gap) {
+            gaps.push(gap);
+        }
+    }
     let mut found = behind(stretch, &gaps);
     found.retain(|trial| Probe::may_be(trial.left));
     found
@@ -385,17 +389,19 @@ impl Effect for Backlash {
     }
 
     fn other_valleys(&self, values: &[f64], goes_on: bool) -> Vec<Vec<f64>> {
-        let bounces = values[5] < 2.0 * (values[4] * values[1]).sqrt();
-        if bounces && !goes_on {
-            return Vec::new();
-        }
-        let stiffer = |times: &f64| {
+        let [inertia, stiffness, damping] = [values[1], values[4], values[5]];
+        let critical = damping * damping / (4.0 * inertia);
+        let bouncing = BOUNCING.map(|times| times * critical);
+        let bouncing = bouncing.into_iter().filter(|_| stiffness < critical);
+        let stiffer = STIFFER.map(|times| times * stiffness);
+        let stiffer = stiffer.into_iter().filter(|_| goes_on);
+        let other = |stiffness: f64| {
             let mut values = values.to_vec();
-            values[4] *= times;
-            values[5] = 2.0 * DAMPING_RATIO * (values[4] * values[1]).sqrt();
+            values[4] = stiffness;
+            values[5] = 2.0 * DAMPING_RATIO * (stiffness * inertia).sqrt();
             values
         };
-        STIFFER.iter().map(stiffer).collect()
+        bouncing.chain(stiffer).map(other).collect()
     }
 
     fn least_errors(&self, values: &[f64], gap: &SeenGap) -> Vec<f64> {
