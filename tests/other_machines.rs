@@ -281,6 +281,58 @@ fn a_load_that_is_met_again_and_again_is_found_behind_its_gap() {
     assert!(d.steps.last().unwrap().error < 1.2);
 }
 
+/// In a position loop the load is carried along most of the time, and body and load look like one heavier body.
+#[test]
+fn a_load_that_is_soon_slow_is_found_behind_its_gap() {
+    let load = Load {
+        half_gap: 0.02,
+        stiffness: 300.0,
+        damping: 0.15,
+        inertia: 4e-4,
+        viscous: 8e-3,
+        coulomb: 0.0,
+    };
+    let rig = DriveRig {
+        load: Some(load),
+        velocity_noise: 5e-3,
+        recorded: Recorded::Both,
+        ..machine(1e3, 5_000, servo(1.2, 0.625, 30.0))
+    };
+    let d = diagnose(&rig);
+    assert_eq!(classes(&d), [["backlash"]], "{}", d.verdict.text);
+    let last = d.steps.last().unwrap();
+    let gap = last.parameters.iter().find(|p| p.name == "beta").unwrap();
+    assert!(
+        (gap.value / load.half_gap - 1.0).abs() < 0.05,
+        "{}",
+        gap.value
+    );
+    // How the contact gives way is hardly told; what it leaves must be said.
+    assert_eq!(d.verdict.complete, last.error < 1.2, "{}", d.verdict.text);
+}
+
+/// A belt that gives way over a tenth of a move: what that takes looks like viscous friction at first.
+#[test]
+fn friction_that_builds_up_over_a_long_way_is_found() {
+    let (level, displacement) = (0.03, 0.05);
+    let rig = DriveRig {
+        friction: Friction {
+            displacement,
+            ..Friction::dry(level)
+        },
+        velocity_noise: 2e-3,
+        recorded: Recorded::Both,
+        ..machine(500.0, 10_000, servo(0.5, 0.8, 30.0))
+    };
+    let d = diagnose(&rig);
+    check(
+        &d,
+        &["presliding_friction"],
+        &[("c", level), ("s", displacement)],
+    );
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+}
+
 /// Twelve hundred poles go by: a wave that is met nowhere on a coarse grid of frequencies.
 #[test]
 fn cogging_of_a_long_axis_is_found() {
