@@ -58,8 +58,8 @@ fn trial(probe: &Probe, beside: &Probe, guess: Guess) -> Option<(f64, Guess, Vec
     };
     let torque = probe.load_torque(&load);
     // An input that never changes has no shift.
-    let fit = beside.regress(&[&torque]);
-    let fit = fit.or_else(|| probe.regress(&[&torque]))?;
+    let alone = || probe.regress(&[&torque]);
+    let fit = beside.regress(&[&torque]).or_else(alone)?;
     let scale = -fit.coefficients[0];
     (scale > 0.0).then(|| {
         let c = load.coupling;

@@ -443,8 +443,8 @@ impl Probe {
         forces: &[Box<dyn Fn(usize) -> f64 + '_>],
         stride: usize,
     ) -> Option<(DVector<f64>, f64)> {
-        let explained = self.explained();
-        let p = explained + forces.len();
+        let given = self.explained();
+        let p = given + forces.len();
         let mut normal = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         let (mut power, mut count) = (0.0, 0);
@@ -456,13 +456,13 @@ impl Probe {
             let columns: Vec<&[f64]> = base.iter().chain(&own).map(Vec::as_slice).collect();
             for a in 0..p {
                 for b in 0..=a {
-                    normal[(a, b)] += if a < explained {
+                    normal[(a, b)] += if a < given {
                         known.normal[a][b]
                     } else {
                         dot(columns[a], columns[b])
                     };
                 }
-                right[a] += if a < explained {
+                right[a] += if a < given {
                     known.right[a]
                 } else {
                     dot(columns[a], target)

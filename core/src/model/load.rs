@@ -215,24 +215,27 @@ impl<'m> Follower<'m> {
             (self.now.motion.x, self.now.motion.v) = (from, v);
             self.now.mode = Mode::of(v);
         }
-        while self.sample < sample {
-            self.hold(position, sample, &h, |_, _| ());
-            self.glide(position, sample, &h, |_, _| ());
-            if self.sample < sample {
-                self.step(position, h(self.sample));
-            }
-        }
+        self.follow(position, sample, h, |_, _| ());
     }
 
-    /// Follows up to sample `to`, `h` seconds from each to the next; `torque` takes the mean torque or force on the load
-    /// for each of them.
-    fn follow(&mut self, position: &[f64], to: usize, h: f64, mut torque: impl FnMut(usize, f64)) {
+    /// Follows up to sample `to`; `h` tells the time from a sample to the next, and `torque` takes the mean torque or force
+    /// on the load after each.
+    fn follow(
+        &mut self,
+        position: &[f64],
+        to: usize,
+        h: impl Fn(usize) -> f64,
+        mut torque: impl FnMut(usize, f64),
+    ) {
+        let plays = self.load.coupling.half_gap > 0.0;
         while self.sample < to {
-            self.hold(position, to, |_| h, &mut torque);
-            self.glide(position, to, |_| h, &mut torque);
+            if !plays {
+                self.hold(position, to, &h, &mut torque);
+                self.glide(position, to, &h, &mut torque);
+            }
             if self.sample < to {
                 let sample = self.sample;
-                torque(sample, self.step(position, h));
+                torque(sample, self.step(position, h(sample)));
             }
         }
     }
@@ -246,17 +249,15 @@ impl<'m> Follower<'m> {
         h: impl Fn(usize) -> f64,
         mut torque: impl FnMut(usize, f64),
     ) {
-        let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
+        let dry = self.load.dry_friction;
         let rubs = dry > 0.0;
         let sign = if rubs { self.now.mode.sign() } else { 0.0 };
-        let Some(swing) = &self.swing else {
+        let (Some(swing), Some(first)) = (&self.swing, position.get(self.sample)) else {
             return;
         };
-        let first = position.get(self.sample);
-        let Some(first) = first.filter(|_| coupling.half_gap == 0.0 && !(rubs && sign == 0.0))
-        else {
+        if rubs && sign == 0.0 {
             return;
-        };
+        }
         let friction = -sign * dry;
         let pull = swing.pull(friction);
         let mut swung = [self.now.motion.x - first, self.now.motion.v * swing.h];
@@ -289,7 +290,7 @@ impl<'m> Follower<'m> {
         mut torque: impl FnMut(usize, f64),
     ) {
         let (coupling, dry) = (self.load.coupling, self.load.dry_friction);
-        if coupling.half_gap > 0.0 || dry <= 0.0 || self.now.mode != Mode::Stick {
+        if dry <= 0.0 || self.now.mode != Mode::Stick {
             return;
         }
         while self.sample < to {
@@ -434,7 +435,7 @@ pub fn load_torque(load: &Load, position: &[f64], h: f64, spans: &[(usize, usize
             continue;
         }
         follower.reach(position, *from, |_| h);
-        follower.follow(position, *to, h, |i, value| torque[i] = value);
+        follower.follow(position, *to, |_| h, |i, value| torque[i] = value);
     }
     torque
 }

@@ -7,7 +7,7 @@ use crate::criticism::fit::Fit;
 use crate::criticism::probes::Probed;
 use crate::criticism::structure::Structure;
 use crate::effect::{Effect, Scales};
-use crate::model::{Start, load_torque};
+use crate::model::load_torque;
 
 /// A regressed baseline that differs by less than this share from the present one is no new start.
 const WORTH_A_START: f64 = 0.2;
@@ -136,7 +136,7 @@ impl Search {
         fit: &Fit,
         structure: &Structure,
         mut values: Vec<f64>,
-    ) -> Option<(Vec<f64>, Vec<Start>)> {
+    ) -> Option<Point> {
         let model = structure.model(&values);
         if let Some(load) = model.load.filter(|_| model.friction.level > 0.0) {
             // A regression without dry friction knows the body less well than the fit, which took the load for a part of it.
@@ -187,11 +187,7 @@ impl Search {
 
     /// The same point with the dry friction of the body moved to the load that the newest effect brings: as long as that was
     /// missing, what rubs there rubbed here.
-    fn with_friction_of_load(
-        fit: &Fit,
-        structure: &Structure,
-        values: &[f64],
-    ) -> Option<(Vec<f64>, Vec<Start>)> {
+    fn with_friction_of_load(fit: &Fit, structure: &Structure, values: &[f64]) -> Option<Point> {
         let newest = structure.effects.len().checked_sub(1)?;
         let place = |index: usize, symbol: &str| {
             let parameters = structure.effects[index].parameters();
@@ -218,7 +214,7 @@ impl Search {
         structure: &Structure,
         own: &[Vec<f64>],
         probed: &Probed,
-    ) -> Vec<(Vec<f64>, Vec<Start>)> {
+    ) -> Vec<Point> {
         let mut points = Vec::new();
         if own.len() > FEW_STARTS {
             return points;
