@@ -5,6 +5,7 @@
 //! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
 //! none it goes to 0 and the contact is rigid.
 
+use super::spec::HARD_CROSSINGS;
 use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -14,7 +15,7 @@ pub(super) struct CoulombFriction;
 /// Values with this level. The deflection is seen if it takes about a sample to cross after a reversal.
 fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
     let crossed = probe.scales.crossed();
-    let values = [0.01, 0.35, 0.8].map(|samples| vec![level, samples * crossed, 0.1]);
+    let values = [HARD_CROSSINGS, 0.35, 0.8].map(|samples| vec![level, samples * crossed, 0.1]);
     values.to_vec()
 }
 

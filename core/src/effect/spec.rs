@@ -160,8 +160,12 @@ pub const SHORT_CROSSINGS: f64 = 8.0;
 /// Nor can it be seen within this many times the noise of the position.
 pub const BLURRED: f64 = 1.0;
 
-/// Below this share of it the contact cannot be told from a rigid one.
-pub const RIGID_CROSSINGS: f64 = 0.01;
+/// Below this share of it the contact cannot be told from a rigid one: the impulse that friction lacks while it builds up
+/// goes with the root of it, and adds up from turn to turn.
+pub const RIGID_CROSSINGS: f64 = 1e-4;
+
+/// Share of it at which a search begins with a contact that is all but rigid.
+pub const HARD_CROSSINGS: f64 = 0.003;
 
 /// A spring that swings by more than this in a sample, squared radians, is rigid to the measurement.
 pub const STIFFEST: f64 = 0.3;

@@ -2,6 +2,7 @@
 //!
 //! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
 
+use super::spec::HARD_CROSSINGS;
 use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -10,6 +11,14 @@ pub(super) struct StribeckFriction;
 
 /// Stribeck speeds that are tried, in typical speeds.
 const SPEEDS: [f64; 8] = [0.03, 0.06, 0.12, 0.2, 0.3, 0.45, 0.7, 1.1];
+
+/// The same friction in a contact that is all but rigid, and in one that can be seen to give way: at every turn a body on
+/// a rigid one rubs at its excess, so that a search on too soft a contact gives it another Stribeck speed.
+fn contacts(soft: Vec<f64>, crossed: f64) -> [Vec<f64>; 2] {
+    let mut rigid = soft.clone();
+    rigid[3] = HARD_CROSSINGS * crossed;
+    [rigid, soft]
+}
 
 impl Effect for StribeckFriction {
     fn id(&self) -> EffectId {
@@ -102,7 +111,8 @@ impl Effect for StribeckFriction {
             })
             .collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.into_iter().take(2).map(|f| f.1).collect()
+        let best = found.into_iter().take(2);
+        best.flat_map(|f| contacts(f.1, crossed)).collect()
     }
 
     fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
@@ -111,7 +121,10 @@ impl Effect for StribeckFriction {
             let speed = share * probe.scales.speed;
             vec![level, 0.1 * level, speed, 0.5 * crossed, 0.1]
         };
-        SPEEDS.iter().skip(1).step_by(3).map(at).collect()
+        let speeds = SPEEDS.iter().skip(1).step_by(3);
+        speeds
+            .flat_map(|share| contacts(at(share), crossed))
+            .collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
