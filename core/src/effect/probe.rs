@@ -478,12 +478,23 @@ impl Probe {
         Some((solution, (power - explained).max(0.0)))
     }
 
+    /// Whether the body moves both ways: where it does not, dry friction and a constant force are the same.
+    fn turns(&self) -> bool {
+        let (low, high) = self.velocity_range();
+        let still = STILL * self.scales.speed;
+        low < -still && high > still
+    }
+
     /// Level of dry friction that the unexplained force suggests.
     pub fn friction_level(&self) -> f64 {
-        let sign = self.signature(|_, v| v.signum());
-        let level = self
-            .regress(&[&sign])
-            .map_or(0.0, |fit| -fit.coefficients[0]);
+        let level = if self.turns() {
+            let sign = self.signature(|_, v| v.signum());
+            let found = self.regress(&[&sign]);
+            found.map_or(0.0, |fit| -fit.coefficients[0])
+        } else {
+            let (low, high) = self.velocity_range();
+            -self.offset() * (low + high).signum()
+        };
         level.max(LEAST_FRICTION * self.scales.force)
     }
 
@@ -525,7 +536,7 @@ impl Probe {
         &'a self,
         mut forces: Vec<Box<dyn Fn(usize) -> f64 + 'a>>,
     ) -> Option<DVector<f64>> {
-        if self.kind == Kind::Drive {
+        if self.kind == Kind::Drive && self.turns() {
             let sign = self.signature(|_, v| v.signum());
             forces.push(Box::new(move |k| 0.5 * (sign[k] + sign[k + 1])));
         }
