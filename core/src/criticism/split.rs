@@ -8,11 +8,12 @@
 //! models.) The judge stays fair: the values of no effect are known yet when the windows are divided.
 
 use super::cost::cost_between;
-use super::cut::MIN_WINDOW;
+use super::cut::{Block, MIN_WINDOW};
 use super::data::Data;
 use super::fit::Fit;
 use super::knowledge::Knowledge;
 use super::structure::Structure;
+use super::window::bend_between;
 use crate::effect::Scales;
 use crate::measurement::Kind;
 
@@ -24,13 +25,17 @@ const LONE: f64 = 0.6;
 const PIECES: usize = 8;
 const CUTS: usize = 2;
 
+/// Least share of the bend of the motion that the fitted windows have.
+const TOLD: f64 = 0.2;
+
 /// Mean square, in noise units, that may be noise.
 const NOISY: f64 = 4.0;
 
 /// Holds back one of every two neighbouring windows, so that both parts know as much of what the baseline that
 /// begins at `values` does not explain.
 ///
-/// A window that holds most of it is cut into shorter ones first. A process runs through without a restart: what it
+/// A window that holds most of it, or the one transient that there is, is cut into shorter ones first: a step that fell to
+/// the judge alone would leave the body unknown. A process runs through without a restart: what it
 /// leaves in a block is not that block's own, and the order of the blocks stays as it is. So does that of windows that
 /// begin where a load was felt: they are of no fixed length, and tell by turns of one end of the gap and of the other.
 pub(super) fn hold_back(
@@ -46,7 +51,9 @@ pub(super) fn hold_back(
     structure.begin(&mut values, 0);
     let mut fit = fitted(data, &structure, &values, scales);
     for _ in 0..CUTS {
-        let Some((window, pieces)) = lone(data, &fit) else {
+        let Some((window, pieces)) =
+            lone(data, &left(data, &fit)).or_else(|| lone(data, &bends(data)))
+        else {
             break;
         };
         data.cut_finer(window, pieces);
@@ -67,6 +74,21 @@ pub(super) fn hold_back(
         let held = if is_odd(rank) { worse } else { better };
         data.blocks[held].held_back = true;
     }
+    share_bends(data);
+}
+
+/// Where nearly all of the motion's bends fell to the judge, the pair with most of them changes sides.
+fn share_bends(data: &mut Data) {
+    let bends = bends(data);
+    let all: f64 = bends.iter().sum();
+    let blocks = || data.blocks.iter().zip(&bends);
+    let fitted: f64 = blocks().filter(|(b, _)| !b.held_back).map(|(_, w)| w).sum();
+    let held = (0..bends.len() / 2 * 2).filter(|k| data.blocks[*k].held_back);
+    let most = held.max_by(|a, b| bends[*a].total_cmp(&bends[*b]));
+    if let Some(most) = most.filter(|_| fitted < TOLD * all) {
+        data.blocks[most].held_back = false;
+        data.blocks[most ^ 1].held_back = true;
+    }
 }
 
 /// The baseline from `values`, fitted a little to all windows.
@@ -83,18 +105,39 @@ fn fitted(data: &mut Data, structure: &Structure, values: &[f64], scales: &Scale
     fit
 }
 
-/// The window that holds most of what is left beyond the noise, and into how many it can be cut, if one does and can be:
-/// what acts once only, as a limit of the input while a machine starts, would be seen by the fit or by the judge alone.
-fn lone(data: &Data, fit: &Fit) -> Option<(usize, usize)> {
-    let outputs = data.outputs.len() as f64;
+/// What is left of each window beyond the noise: what acts once only, as a limit of the input while a machine starts,
+/// would be seen by the fit or by the judge alone.
+fn left(data: &Data, fit: &Fit) -> Vec<f64> {
     let beyond = data.blocks.iter().map(|b| {
-        let noise = NOISY * outputs * (b.to - b.from) as f64;
-        (cost_between(data, &fit.motion, b.from, b.to) - noise).max(0.0)
+        let left = cost_between(data, &fit.motion, b.from, b.to);
+        (left - noisy(data, b)).max(0.0)
     });
-    let beyond: Vec<f64> = beyond.collect();
-    let worst = (0..beyond.len()).max_by(|a, b| beyond[*a].total_cmp(&beyond[*b]))?;
+    beyond.collect()
+}
+
+/// How far the motion bends in each window beyond the noise: what a body that goes on without a force does not tell.
+fn bends(data: &Data) -> Vec<f64> {
+    let bend = |b: &Block| {
+        let outputs = data.outputs.iter();
+        outputs.map(|o| bend_between(o, b.from, b.to)).sum::<f64>()
+    };
+    let beyond = data
+        .blocks
+        .iter()
+        .map(|b| (bend(b) - noisy(data, b)).max(0.0));
+    beyond.collect()
+}
+
+/// Squares, in noise units, that may be noise.
+fn noisy(data: &Data, block: &Block) -> f64 {
+    NOISY * data.outputs.len() as f64 * (block.to - block.from) as f64
+}
+
+/// The window that holds most of this share of all, and into how many it can be cut, if one does and can be.
+fn lone(data: &Data, shares: &[f64]) -> Option<(usize, usize)> {
+    let worst = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]))?;
     let block = &data.blocks[worst];
-    let most = beyond[worst] > LONE * beyond.iter().sum::<f64>();
+    let most = shares[worst] > LONE * shares.iter().sum::<f64>();
     let pieces = PIECES.min((block.to - block.from) / MIN_WINDOW);
     (most && pieces > 1).then_some((block.window, pieces))
 }

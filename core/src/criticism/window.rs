@@ -27,29 +27,32 @@ pub(super) fn drive_window(outputs: &[Output], longest: usize) -> usize {
 /// Root mean square, in noise units, of what is left of an output in windows of this length without its mean,
 /// and of a position without its slope.
 fn bend(output: &Output, length: usize) -> f64 {
-    let (mut square, mut count) = (0.0, 0.0);
-    let middle = (length as f64 - 1.0) / 2.0;
-    let spread: f64 = (0..length).map(|k| (k as f64 - middle).powi(2)).sum();
-    for window in output.values.chunks_exact(length) {
-        let n = length as f64;
-        let mean = window.iter().sum::<f64>() / n;
-        let tilt: f64 = window
-            .iter()
-            .enumerate()
-            .map(|(k, v)| (k as f64 - middle) * (v - mean))
-            .sum();
-        let total: f64 = window.iter().map(|v| (v - mean).powi(2)).sum();
-        let straight = if output.is_velocity || spread == 0.0 {
-            0.0
-        } else {
-            tilt * tilt / spread
-        };
-        square += (total - straight).max(0.0);
-        count += n;
-    }
-    if count > 0.0 {
-        (square / count).sqrt() / output.noise
+    let windows = output.values.len() / length;
+    let squares = (0..windows).map(|k| bend_between(output, k * length, (k + 1) * length));
+    if windows > 0 {
+        (squares.sum::<f64>() / (windows * length) as f64).sqrt()
     } else {
         0.0
     }
+}
+
+/// Sum of squares of the same between two samples, in noise units.
+pub(super) fn bend_between(output: &Output, from: usize, to: usize) -> f64 {
+    let window = &output.values[from..to];
+    let n = window.len() as f64;
+    let middle = (n - 1.0) / 2.0;
+    let spread: f64 = (0..window.len()).map(|k| (k as f64 - middle).powi(2)).sum();
+    let mean = window.iter().sum::<f64>() / n;
+    let tilt: f64 = window
+        .iter()
+        .enumerate()
+        .map(|(k, v)| (k as f64 - middle) * (v - mean))
+        .sum();
+    let total: f64 = window.iter().map(|v| (v - mean).powi(2)).sum();
+    let straight = if output.is_velocity || spread == 0.0 {
+        0.0
+    } else {
+        tilt * tilt / spread
+    };
+    (total - straight).max(0.0) / output.noise.powi(2)
 }
