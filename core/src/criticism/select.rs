@@ -15,6 +15,9 @@ const LEAST_STATISTIC: f64 = 30.0;
 /// not what the model is missing.
 const LEAST_FALL: f64 = 0.03;
 
+/// Relative fall of the error, on the held-back and on the fitted part, that counts whatever the statistic says.
+const GREAT_FALL: f64 = 0.7;
+
 /// Of the held-back blocks in which a step changes the error, the least share in which it falls, and the least number
 /// of these (fewer do if they are that share of all, or if nothing but noise is left in them).
 const LEAST_BLOCKS: f64 = 0.6;
@@ -57,6 +60,11 @@ const SMALL_ERROR: f64 = 3.0;
 /// The same share where the input is known at its samples only, and what it did between them was found from the rest.
 pub(super) const SAMPLED_SHARE: f64 = 1e-2;
 
+/// Error, in noise units, above which much is left, and the part of the way to it (in logarithms) that speaks for a part
+/// of an effect there.
+const MUCH_LEFT: f64 = 3.0;
+const PART_OF_THE_WAY: f64 = 0.5;
+
 /// Share of the held-back blocks that may be more than noise, and share of the error there that may be
 /// left, where a model explains all the rest.
 const ODD_STRETCHES: f64 = 0.35;
@@ -85,9 +93,16 @@ pub(super) fn usual_fall(before: &Score, after: &Score) -> f64 {
 
 /// Whether held-back data want the step from `before` to `after`.
 pub(super) fn helps(before: &Score, after: &Score) -> bool {
-    statistic(before, after) > LEAST_STATISTIC
+    (statistic(before, after) > LEAST_STATISTIC || speaks_for_itself(before, after))
         && fall(before, after) > LEAST_FALL
         && helps_widely(&before.held_blocks, &after.held_blocks)
+}
+
+/// Whether the error falls so far, on both parts, that it is no chance however few independent stretches the record has: what
+/// is left then is correlated because something else is missing.
+fn speaks_for_itself(before: &Score, after: &Score) -> bool {
+    let fitted = 1.0 - after.error_fit / before.error_fit;
+    fall(before, after).min(fitted) > GREAT_FALL
 }
 
 /// Whether the error falls in most of the blocks in which it changes, and not only somewhat in one or two.
@@ -145,6 +160,13 @@ fn usual_errors(a: &Score, b: &Score) -> (f64, f64) {
 pub(super) fn suffices(part: &Score, whole: &Score, first: &Score) -> bool {
     (statistic(part, whole) < SAME_STATISTIC && fall(part, whole) < LEAST_FALL)
         || !matters(part, whole, first)
+}
+
+/// Whether a `part` of an effect is added `before` the whole: where even the whole leaves much, its further values only
+/// bend to what another effect would explain, and the part takes most of the way.
+pub(super) fn goes_first(before: &Score, part: &Score, whole: &Score) -> bool {
+    let way = |to: &Score| libm::log(before.error / to.error);
+    whole.error > MUCH_LEFT && way(part) > PART_OF_THE_WAY * way(whole)
 }
 
 /// Whether the step from `before` to `after` takes away more than a trifle of the error that there was at

@@ -173,16 +173,34 @@ pub(super) fn add_imitations(verdict: &mut Verdict, imitations: &[EffectId]) {
     );
 }
 
-/// Says which effects of the user's model the data do not need.
-pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId]) {
-    if idle.is_empty() {
-        return;
+/// Says which effect would lower the error much, and to what, though chance is not ruled out.
+pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
+    if let Some((id, error)) = hint.filter(|_| verdict.unknown) {
+        let _ = write!(
+            verdict.text,
+            " Perhaps {}: it would lower the error to {error:.2} times the noise, but not in enough independent stretches of \
+             the record to rule out chance.",
+            name_of(id)
+        );
     }
-    let _ = write!(
-        verdict.text,
-        " In the model, but without a trace in these data: {}.",
-        names(idle, ", ")
-    );
+}
+
+/// Says which effects of the user's model the data do not need: `idle` ones leave no trace, `unsure` ones lower the error.
+pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId], unsure: &[EffectId]) {
+    if !idle.is_empty() {
+        let _ = write!(
+            verdict.text,
+            " In the model, but without a trace in these data: {}.",
+            names(idle, ", ")
+        );
+    }
+    if !unsure.is_empty() {
+        let _ = write!(
+            verdict.text,
+            " In the model, and the error is lower with it, but not beyond chance: {}.",
+            names(unsure, ", ")
+        );
+    }
 }
 
 /// Puts the experiments that were found in the place of the general advice.
@@ -254,12 +272,12 @@ fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
     main.map_or_else(
         || name_of(*id).to_owned(),
         |p| {
-            format!(
-                "{}, {} {}",
-                name_of(*id),
-                p.label,
-                with_error(p.value, p.std_error, &p.unit)
-            )
+            let (name, value) = (name_of(*id), with_error(p.value, p.std_error, &p.unit));
+            if name.eq_ignore_ascii_case(&p.label) {
+                format!("{name} {value}")
+            } else {
+                format!("{name}, {} {value}", p.label)
+            }
         },
     )
 }

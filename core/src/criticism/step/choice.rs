@@ -7,12 +7,17 @@ use crate::criticism::judge::{
 };
 use crate::criticism::knowledge::contradictions;
 use crate::criticism::score::Score;
-use crate::criticism::select::{helps, is_plain_noise, outweighs};
+use crate::criticism::select::{fall, goes_first, helps, is_plain_noise, outweighs};
 use crate::criticism::session::Scored;
 use crate::effect::{Effect, EffectId};
 
 /// The effect that is tried together with others where nothing helps by itself.
 const COMPANION: EffectId = EffectId::new("constant_load");
+
+/// Relative fall of the error from which an effect leaves a trace, and the one from which it is mentioned though chance is
+/// not ruled out.
+const SEEN_FALL: f64 = 0.03;
+const HINT_FALL: f64 = 0.3;
 
 impl StepJob {
     /// Known values that the data contradict more than they want any effect.
@@ -45,6 +50,7 @@ impl StepJob {
                 if best.0.has_part(e.id()) {
                     let place = best.1.fit.structure.effects.len() - 1;
                     part_does(&best.1, s, place, first)
+                        || goes_first(&model.score, &s.score, &best.1.score)
                 } else {
                     let (own, most) = (s.fit.values.len(), best.1.fit.values.len());
                     alike(s, &best.1) && (own < most || (own == most && tied(s, &best.1)))
@@ -79,6 +85,27 @@ impl StepJob {
             .filter(|(e, without)| idle(&without.score) || !model.fit.shows_marks_of(**e))
             .map(|(e, _)| e.id())
             .partition(|id| self.session.knowledge.has(*id))
+    }
+
+    /// Whether the effect of this id lowers the error of the model, though perhaps not beyond chance.
+    pub(super) fn lowers(&self, model: &Scored, id: EffectId) -> bool {
+        let place = self.wanted.iter().position(|w| w.id() == id);
+        let without = place.and_then(|place| self.without.get(place));
+        without.is_some_and(|without| fall(&without.score, &model.score) > SEEN_FALL)
+    }
+
+    /// The effect that would lower the error most, and to what, where that is much and yet not beyond chance.
+    pub(super) fn hint(&self, model: &Scored) -> Option<(EffectId, f64)> {
+        let first = self.session.first(model);
+        let much = |s: &Scored| {
+            let fitted = 1.0 - s.score.error_fit / model.score.error_fit;
+            fall(&model.score, &s.score).min(fitted) > HINT_FALL
+        };
+        let unsure = self.tried.iter().filter(|(e, s)| {
+            !self.barred.contains(&e.id()) && much(s) && !helps_clearly(model, s, first)
+        });
+        let best = unsure.min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error));
+        best.map(|(e, s)| (e.id(), self.session.completed(s).score.error))
     }
 
     /// In a last model that leaves more than noise, this `error` on the whole record, the effect that explains

@@ -3,6 +3,7 @@
 mod choice;
 mod report;
 
+use super::fit::Fit;
 use super::judge::{HUGE_FALL, alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
@@ -346,7 +347,12 @@ impl StepJob {
     /// What a race came to.
     fn scored_all(&self, race: Race) -> Vec<(&'static dyn Effect, Scored)> {
         let scored = |(effect, fit)| (effect, self.session.scored(fit));
-        race.finish().into_iter().map(scored).collect()
+        let finite = |(_, fit): &(_, Fit)| fit.cost.is_finite();
+        race.finish()
+            .into_iter()
+            .filter(finite)
+            .map(scored)
+            .collect()
     }
 
     /// Where little is left, it may be for how the record was made; if so, no other effect is tried before that is in the
@@ -465,7 +471,7 @@ impl StepJob {
         id.is_some_and(|id| self.session.knowledge.has(id))
     }
 
-    fn judge_swaps(&mut self, place: usize, fits: Vec<(&'static dyn Effect, super::fit::Fit)>) {
+    fn judge_swaps(&mut self, place: usize, fits: Vec<(&'static dyn Effect, Fit)>) {
         let Some(model) = &self.model else {
             return;
         };

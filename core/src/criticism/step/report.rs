@@ -9,7 +9,7 @@ use crate::criticism::score::Score;
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
-    add_experiments, add_glitches, add_idle, add_imitations, add_rest, verdict,
+    add_experiments, add_glitches, add_hint, add_idle, add_imitations, add_rest, verdict,
 };
 use crate::criticism::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
@@ -51,7 +51,10 @@ impl StepJob {
             let first = self.session.first(&whole).error;
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
             add_imitations(&mut verdict, &self.barred);
-            add_idle(&mut verdict, &self.idle(model).0);
+            add_hint(&mut verdict, self.hint(model));
+            let present = self.idle(model).0.into_iter();
+            let (unsure, idle): (Vec<_>, Vec<_>) = present.partition(|id| self.lowers(model, *id));
+            add_idle(&mut verdict, &idle, &unsure);
             add_experiments(&mut verdict, &self.experiments);
             add_glitches(&mut verdict, self.session.whole().glitches);
             verdict
