@@ -39,6 +39,16 @@ const MOST_COUNTS: u32 = 16;
 /// Distance from a whole number of counts up to which many counts are whole.
 const WHOLE: f64 = 0.1;
 
+/// Digits after the point up to which values are looked at as printed ones, the most units of the last digit that they
+/// may be, and how far they may be from whole ones: that of binary numbers.
+const MOST_DIGITS: usize = 12;
+const MOST_UNITS: f64 = 1e9;
+const PRINTED: f64 = 1e-6;
+
+/// A count is that of a sensor behind the print where it is this many units of the last digit, seen in so many steps.
+const BEHIND_PRINT: f64 = 8.0;
+const STEPS_BEHIND_PRINT: usize = 5;
+
 /// Standard deviation of the noise in `values`, in their unit; above 0 unless all are equal.
 ///
 /// `input` is as long and tells when the signal may have kinks.
@@ -80,10 +90,32 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
         0.0
     };
     let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * 1e-9;
+    let printed = resolution(values);
     Noise {
-        level: variance.max(uniform).max(rounding * rounding).sqrt(),
+        level: variance
+            .max(uniform)
+            .max(printed * printed / 12.0)
+            .max(rounding * rounding)
+            .sqrt(),
         counted: false,
     }
+}
+
+/// Unit of the last digit to which the values were printed; 0 where they are no decimal numbers.
+fn resolution(values: &[f64]) -> f64 {
+    let most = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut units = 1.0;
+    for _ in 0..=MOST_DIGITS {
+        if most * units > MOST_UNITS {
+            break;
+        }
+        let is_whole = |v: &f64| (v * units - (v * units).round()).abs() < PRINTED;
+        if values.iter().all(is_whole) {
+            return 1.0 / units;
+        }
+        units *= 10.0;
+    }
+    0.0
 }
 
 /// Step of a quantised channel; 0 where none is seen.
@@ -104,7 +136,17 @@ fn quantum(values: &[f64]) -> f64 {
     let least = steps[single / 2];
     // What runs on fast may never stop on two neighbouring counts.
     let mut parts = (1..=MOST_COUNTS).map(|n| refined(&steps, least / f64::from(n)));
-    let step = parts.find(|step| is_whole(&steps, *step));
+    // Either end of a step was rounded where it was printed.
+    let printed = resolution(values);
+    let seen = steps.len() >= STEPS_BEHIND_PRINT;
+    let rounded = |step: f64| {
+        if seen && step > BEHIND_PRINT * printed {
+            printed / step
+        } else {
+            0.0
+        }
+    };
+    let step = parts.find(|step| is_whole(&steps, *step, rounded(*step)));
     step.unwrap_or(0.0)
 }
 
@@ -123,11 +165,11 @@ fn refined(ascending: &[f64], rough: f64) -> f64 {
     step
 }
 
-/// Whether nearly all of these steps are whole multiples of one.
-fn is_whole(steps: &[f64], step: f64) -> bool {
+/// Whether nearly all of these steps are whole multiples of one, but for a share of it by which they are rounded.
+fn is_whole(steps: &[f64], step: f64, rounded: f64) -> bool {
     let whole = steps.iter().filter(|d| {
         let ratio = *d / step;
-        (ratio - ratio.round()).abs() < WHOLE * (0.2 * ratio).clamp(0.2, 1.0)
+        (ratio - ratio.round()).abs() < WHOLE * (0.2 * ratio).clamp(0.2, 1.0) + rounded
     });
     whole.count() as f64 > 0.95 * steps.len() as f64
 }
@@ -308,6 +350,38 @@ mod tests {
             .collect();
         let found = quantum(&values);
         assert!((found / step - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    #[test]
+    fn a_count_that_is_no_round_number_is_found_behind_the_print() {
+        // A converter's steps of 0.3223 degrees, printed with two digits: they are 0.32 and 0.33.
+        let step = 0.3223;
+        let values: Vec<f64> = (0..800)
+            .map(|i| 40.0 * (1.0 - libm::exp(-f64::from(i) / 150.0)))
+            .map(|x| 20.9 + (x / step).floor() * step)
+            .map(|x| (x * 100.0).round() / 100.0)
+            .collect();
+        let found = quantum(&values);
+        assert!((found / step - 1.0).abs() < 1e-3, "{found}");
+        let noise = noise(&values, &vec![50.0; 800]);
+        assert!(noise.counted);
+        assert!((noise.level / (step / 12.0_f64.sqrt()) - 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn noise_is_never_less_than_what_print_rounds_off() {
+        // A reading stays for a while, of no fixed length.
+        let (mut values, mut hundredths) = (Vec::new(), 0);
+        for k in 0..60_u32 {
+            hundredths += 40 + 7 * k * k % 61;
+            let stay = 3 + k * k % 11;
+            values.extend((0..stay).map(|_| f64::from(hundredths) / 100.0));
+        }
+        assert!((resolution(&values) - 0.01).abs() < 1e-12);
+        let level = noise_level(&values, &vec![0.0; values.len()]);
+        assert!(level >= 0.01 / 12.0_f64.sqrt(), "{level}");
+        let exact: Vec<f64> = (0..300).map(|i| libm::sin(f64::from(i))).collect();
+        assert_eq!(resolution(&exact), 0.0);
     }
 
     #[test]
