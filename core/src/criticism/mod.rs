@@ -10,6 +10,7 @@ mod data;
 mod fingerprint;
 mod fit;
 mod glitches;
+mod held;
 mod job;
 mod judge;
 mod knowledge;

@@ -3,7 +3,10 @@
 //! Differences of order p of a smooth signal vanish and leave `sqrt(binomial(2p, p))` times the
 //! noise. A switching input makes kinks, always at the same times after the switch: differences
 //! are therefore grouped by the number of samples since the input changed, and the quiet groups
-//! decide. Within a group a low quantile keeps what kinks remain from counting.
+//! decide. Within a group a low quantile keeps what kinks remain from counting. Of a channel that holds its readings only
+//! the fresh ones tell.
+
+use super::held::fresh;
 
 /// Orders of difference that are tried.
 const ORDERS: [usize; 4] = [2, 3, 4, 5];
@@ -67,6 +70,18 @@ pub(super) struct Noise {
 }
 
 pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
+    let Some(mut fresh) = fresh(values) else {
+        let places: Vec<usize> = (0..values.len()).collect();
+        return noise_at(&places, values, input);
+    };
+    // At rest even a fresh reading may be the same again.
+    fresh.dedup_by_key(|i| values[*i].to_bits());
+    let at = |all: &[f64]| -> Vec<f64> { fresh.iter().map(|i| all[*i]).collect() };
+    noise_at(&fresh, &at(values), &at(input))
+}
+
+/// The same of values at these samples.
+fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
     let quantum = quantum(values);
     // A quantised signal is dithered by one step, evenly spread, so that quantiles are smooth.
     let dithered: Vec<f64> = values
@@ -76,7 +91,7 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
         .collect();
     let uniform = quantum * quantum / 12.0;
     let groups = since_change(input);
-    let smallest = least_level(&dithered, &groups);
+    let smallest = least_level(places, &dithered, &groups);
     // Quantisation and dither alone, within what the estimate can tell.
     if quantum > 0.0 && smallest * smallest < QUANTISED * 2.0 * uniform {
         return Noise {
@@ -102,7 +117,7 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
 }
 
 /// Unit of the last digit to which the values were printed; 0 where they are no decimal numbers.
-fn resolution(values: &[f64]) -> f64 {
+pub(super) fn resolution(values: &[f64]) -> f64 {
     let most = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let mut units = 1.0;
     for _ in 0..=MOST_DIGITS {
@@ -203,10 +218,10 @@ fn since_change(input: &[f64]) -> Vec<usize> {
 
 /// The noise that the differences of that order show which cancel the signal best; of all that could be as good, the
 /// mean.
-fn least_level(values: &[f64], groups: &[usize]) -> f64 {
+fn least_level(places: &[usize], values: &[f64], groups: &[usize]) -> f64 {
     let levels = ORDERS.iter();
     let levels: Vec<_> = levels
-        .filter_map(|order| level_at_order(values, groups, *order))
+        .filter_map(|order| level_at_order(places, values, groups, *order))
         .collect();
     let of = |(level, count): &(f64, usize)| level * (1.0 + chance(*count));
     let most = levels.iter().map(of).fold(f64::INFINITY, f64::min);
@@ -219,11 +234,17 @@ fn least_level(values: &[f64], groups: &[usize]) -> f64 {
 }
 
 /// The noise that the differences of this order show, and the number of those that tell.
-fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<(f64, usize)> {
+fn level_at_order(
+    places: &[usize],
+    values: &[f64],
+    groups: &[usize],
+    order: usize,
+) -> Option<(f64, usize)> {
     let signs = binomials(order);
     let gain = signs.iter().map(|c| c * c).sum::<f64>().sqrt();
     let mut by_group: Vec<Vec<f64>> = vec![Vec::new(); GROUPS];
-    for (i, window) in values.windows(order + 1).enumerate() {
+    let even = evenly_spaced(places, order);
+    for (i, window) in values.windows(order + 1).enumerate().filter(|w| even[w.0]) {
         let difference: f64 = window.iter().zip(&signs).map(|(v, c)| v * c).sum();
         by_group[groups[i + order]].push(difference.abs() / gain);
     }
@@ -252,6 +273,20 @@ fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<(f64
     by_group.retain_mut(as_quiet);
     let mut pooled = by_group.concat();
     Some((low_quantile(&mut pooled), pooled.len()))
+}
+
+/// Whether the samples of each difference are evenly spaced: only then does a smooth signal vanish. All may speak where
+/// too few are.
+fn evenly_spaced(places: &[usize], order: usize) -> Vec<bool> {
+    let is_even = |window: &[usize]| {
+        let mut steps = window.windows(2).map(|w| w[1] - w[0]);
+        steps.next().is_none_or(|first| steps.all(|s| s == first))
+    };
+    let even: Vec<bool> = places.windows(order + 1).map(is_even).collect();
+    if even.iter().filter(|e| **e).count() < MIN_GROUP {
+        return vec![true; even.len()];
+    }
+    even
 }
 
 /// Share by which the level of so many differences may be off by chance.
