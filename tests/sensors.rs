@@ -110,3 +110,22 @@ fn single_values_that_jump_are_left_out_and_said() {
         );
     }
 }
+
+/// A bus that is slower than the log: each reading comes four times.
+#[test]
+fn of_a_channel_that_holds_its_readings_only_the_fresh_ones_count() {
+    for (friction, missing) in [(0.0, vec![]), (0.01, vec!["coulomb_friction"])] {
+        let mut record = with_noise(drive(friction, None), 0.0, 7);
+        for readings in record.outputs[0].values.chunks_mut(4) {
+            let fresh = readings[0];
+            readings.fill(fresh);
+        }
+        let d = diagnose(&record);
+        check(&d, &missing);
+        assert!(
+            d.verdict.text.contains("between 2000 readings"),
+            "{}",
+            d.verdict.text
+        );
+    }
+}

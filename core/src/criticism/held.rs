@@ -75,6 +75,21 @@ fn goes_by_counts(readings: &[f64]) -> bool {
     usual as f64 >= COUNTED * moves.len() as f64
 }
 
+/// Values for every time, on straight lines between the `readings` at these samples, of which there must be one.
+pub(super) fn bridged(readings: &[f64], samples: &[usize], time: &[f64]) -> Vec<f64> {
+    let last = readings.len() - 1;
+    let value = |i: usize| {
+        let next = samples.partition_point(|s| *s <= i);
+        if next == 0 || next > last {
+            return readings[next.min(last)];
+        }
+        let (from, to) = (time[samples[next - 1]], time[samples[next]]);
+        let share = (time[i] - from) / (to - from);
+        readings[next - 1] + share * (readings[next] - readings[next - 1])
+    };
+    (0..time.len()).map(value).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,5 +152,12 @@ mod tests {
         // Slips of many counts between rests.
         assert_eq!(fresh(&count(&|i| (i / 50.0 - 0.8).max(0.0).floor())), None);
         assert_eq!(fresh(&held(&|i| !(1000..=1500).contains(&i), 1e-6)), None);
+    }
+
+    #[test]
+    fn between_fresh_readings_are_straight_lines() {
+        let time = [0.0, 1.0, 2.0, 3.0, 5.0, 6.0];
+        let values = bridged(&[1.0, 5.0], &[1, 4], &time);
+        assert_eq!(values, [1.0, 1.0, 2.0, 3.0, 5.0, 5.0]);
     }
 }

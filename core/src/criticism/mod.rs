@@ -21,6 +21,7 @@ mod missing;
 mod next_experiment;
 mod noise;
 mod odd_windows;
+mod output;
 mod probes;
 mod race;
 mod report;

@@ -86,9 +86,8 @@ fn fitted(data: &mut Data, structure: &Structure, values: &[f64], scales: &Scale
 /// The window that holds most of what is left beyond the noise, and into how many it can be cut, if one does and can be:
 /// what acts once only, as a limit of the input while a machine starts, would be seen by the fit or by the judge alone.
 fn lone(data: &Data, fit: &Fit) -> Option<(usize, usize)> {
-    let outputs = data.outputs.len() as f64;
     let beyond = data.blocks.iter().map(|b| {
-        let noise = NOISY * outputs * (b.to - b.from) as f64;
+        let noise = NOISY * data.measured(b.from, b.to) as f64;
         (cost_between(data, &fit.motion, b.from, b.to) - noise).max(0.0)
     });
     let beyond: Vec<f64> = beyond.collect();
