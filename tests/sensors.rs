@@ -129,3 +129,21 @@ fn of_a_channel_that_holds_its_readings_only_the_fresh_ones_count() {
         );
     }
 }
+
+#[test]
+fn two_values_in_a_row_beyond_all_others_are_left_out_and_said() {
+    for (friction, missing) in [(0.0, vec![]), (0.01, vec!["coulomb_friction"])] {
+        let mut record = with_noise(drive(friction, None), 0.0, 8);
+        let values = &mut record.outputs[0].values;
+        let highest = values.iter().fold(0.0_f64, |high, v| high.max(*v));
+        values[3100] = 2.0 * highest;
+        values[3101] = 2.1 * highest;
+        let d = diagnose(&record);
+        check(&d, &missing);
+        assert!(
+            d.verdict.text.contains("2 values stood alone"),
+            "{}",
+            d.verdict.text
+        );
+    }
+}

@@ -54,7 +54,7 @@ pub(super) struct Data {
     pub input: Vec<f64>,
     pub time: Vec<f64>,
     pub outputs: Vec<Output>,
-    /// Single values of the outputs that stood alone and were put where their neighbours are.
+    /// Values of the outputs that stood alone and were put where their neighbours are.
     pub glitches: usize,
     /// Sample before each contact with a load that the motor felt.
     pub felt: Vec<usize>,

@@ -13,7 +13,7 @@ pub(super) struct Output {
     pub noise: f64,
     /// The noise is that of counting alone.
     pub counted: bool,
-    /// Samples at which nothing was measured, readings that a channel held: the values there
+    /// Samples at which nothing was measured, readings that a channel held and glitches of several values: the values there
     /// lie between those around and are compared with no model. Empty where every sample tells.
     pub silent: Vec<bool>,
 }
@@ -29,8 +29,8 @@ impl Output {
             None => values,
         };
         let glitches = mend(&mut readings, noise.level);
-        if fresh.is_some() {
-            silent = vec![true; time.len()];
+        if fresh.is_some() || !glitches.lost.is_empty() {
+            silent = vec![fresh.is_some(); time.len()];
         }
         values = match &fresh {
             Some(fresh) => {
@@ -41,6 +41,9 @@ impl Output {
             }
             None => readings,
         };
+        for i in &glitches.lost {
+            silent[fresh.as_ref().map_or(*i, |fresh| fresh[*i])] = true;
+        }
         let output = Self {
             is_velocity: channel.quantity != Quantity::Position,
             noise: noise.level,
@@ -48,7 +51,7 @@ impl Output {
             values,
             silent,
         };
-        (output, glitches)
+        (output, glitches.mended.len() + glitches.lost.len())
     }
 
     /// Whether the channel holds its readings over several samples.

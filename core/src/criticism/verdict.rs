@@ -147,7 +147,7 @@ pub(super) fn add_rest(
     }
 }
 
-/// Says how many single values were left out.
+/// Says how many values were left out.
 pub(super) fn add_glitches(verdict: &mut Verdict, glitches: usize) {
     let _ = match glitches {
         0 => return,
