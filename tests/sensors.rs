@@ -110,3 +110,40 @@ fn single_values_that_jump_are_left_out_and_said() {
         );
     }
 }
+
+/// A bus that is slower than the log: each reading comes four times.
+#[test]
+fn of_a_channel_that_holds_its_readings_only_the_fresh_ones_count() {
+    for (friction, missing) in [(0.0, vec![]), (0.01, vec!["coulomb_friction"])] {
+        let mut record = with_noise(drive(friction, None), 0.0, 7);
+        for readings in record.outputs[0].values.chunks_mut(4) {
+            let fresh = readings[0];
+            readings.fill(fresh);
+        }
+        let d = diagnose(&record);
+        check(&d, &missing);
+        assert!(
+            d.verdict.text.contains("between 2000 readings"),
+            "{}",
+            d.verdict.text
+        );
+    }
+}
+
+#[test]
+fn two_values_in_a_row_beyond_all_others_are_left_out_and_said() {
+    for (friction, missing) in [(0.0, vec![]), (0.01, vec!["coulomb_friction"])] {
+        let mut record = with_noise(drive(friction, None), 0.0, 8);
+        let values = &mut record.outputs[0].values;
+        let highest = values.iter().fold(0.0_f64, |high, v| high.max(*v));
+        values[3100] = 2.0 * highest;
+        values[3101] = 2.1 * highest;
+        let d = diagnose(&record);
+        check(&d, &missing);
+        assert!(
+            d.verdict.text.contains("2 values stood alone"),
+            "{}",
+            d.verdict.text
+        );
+    }
+}

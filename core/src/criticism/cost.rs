@@ -20,6 +20,7 @@ pub(super) fn cost_between(data: &Data, motion: &Motion, from: usize, to: usize)
         .map(|o| {
             let modelled = motion.of(o.is_velocity);
             (from..to)
+                .filter(|i| o.tells(*i))
                 .map(|i| ((o.values[i] - modelled[i]) / o.noise).powi(2))
                 .sum::<f64>()
         })
@@ -45,7 +46,7 @@ fn fitted_windows(data: &Data, motion: &Motion) -> Vec<(f64, f64)> {
     let mut windows = vec![(0.0, 0.0); data.windows.len()];
     for b in data.blocks.iter().filter(|b| !b.held_back) {
         windows[b.window].0 += cost_between(data, motion, b.from, b.to);
-        windows[b.window].1 += ((b.to - b.from) * data.outputs.len()) as f64;
+        windows[b.window].1 += data.measured(b.from, b.to) as f64;
     }
     for ((cost, n), prior) in windows.iter_mut().zip(&motion.priors) {
         if *n > 0.0 {

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::CriticismError;
 use super::cut::{self, Block, MIN_WINDOW};
 use super::fit::Motion;
-use super::glitches::mend;
 use super::noise::{Noise, noise};
+use super::output::Output;
 use super::window::drive_window;
 use crate::crew::Crew;
 use crate::effect::Scales;
-use crate::measurement::{Kind, Measurement, Quantity};
+use crate::measurement::{Kind, Measurement};
 use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start, smoothed};
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
@@ -35,16 +35,6 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Samples around a window start from which its state is first guessed.
 const GUESS_SAMPLES: usize = 5;
 
-/// An output with its noise.
-#[derive(Clone, Debug)]
-pub(super) struct Output {
-    pub is_velocity: bool,
-    pub values: Vec<f64>,
-    pub noise: f64,
-    /// The noise is that of counting alone.
-    pub counted: bool,
-}
-
 /// Share of what is left that a scout must see, in times of its share of the record.
 const SEEN: f64 = 0.5;
 
@@ -64,7 +54,7 @@ pub(super) struct Data {
     pub input: Vec<f64>,
     pub time: Vec<f64>,
     pub outputs: Vec<Output>,
-    /// Single values of the outputs that stood alone and were put where their neighbours are.
+    /// Values of the outputs that stood alone and were put where their neighbours are.
     pub glitches: usize,
     /// Sample before each contact with a load that the motor felt.
     pub felt: Vec<usize>,
@@ -93,15 +83,10 @@ impl Data {
             .outputs
             .iter()
             .zip(noise)
-            .map(|(c, noise)| {
-                let mut values = c.values.clone();
-                glitches += mend(&mut values, noise.level);
-                Output {
-                    is_velocity: c.quantity != Quantity::Position,
-                    noise: noise.level,
-                    counted: noise.counted,
-                    values,
-                }
+            .map(|(channel, noise)| {
+                let (output, found) = Output::new(channel, &measurement.time, noise);
+                glitches += found;
+                output
             })
             .collect();
         if let Some(c) = measurement
@@ -242,6 +227,11 @@ impl Data {
             output.values = motion.of(output.is_velocity).to_vec();
         }
         said
+    }
+
+    /// Number of measured values of all outputs in a run of samples.
+    pub fn measured(&self, from: usize, to: usize) -> usize {
+        self.outputs.iter().map(|o| o.telling(from, to)).sum()
     }
 
     /// Samples that are used.
@@ -405,6 +395,7 @@ impl Data {
         part.felt.retain(|s| *s < end);
         for output in &mut part.outputs {
             output.values.truncate(end);
+            output.silent.truncate(end);
         }
         part.windows.retain(|w| *w < end);
         part.blocks = blocks;

@@ -2,8 +2,9 @@
 
 use super::Finding;
 use super::axes::{Axis, Parts, axes};
-use super::data::{Data, Output};
+use super::data::Data;
 use super::fit::{Motion, residuals};
+use super::output::Output;
 use super::spectrum::Spectrum;
 use crate::measurement::Kind;
 

@@ -10,6 +10,7 @@ use super::correlation::product;
 use super::data::Data;
 use super::fit::{Motion, residuals};
 use super::locate::depends_on_the_motion;
+use super::output::Output;
 
 /// Samples within which it forgets, and up to which it must not remember again.
 const FORGETS: usize = 6;
@@ -37,16 +38,18 @@ pub(super) fn is_noise_with_memory(data: &Data, motion: &Motion, velocity_unit: 
     // What was measured has the noise in it: at rest, it would sort the residual by its own size.
     let said = data.saying(motion);
     let axes = axes(&said, motion, velocity_unit);
-    let input = centred(&data.input, &runs);
-    let is_noise = |residual: &Vec<f64>| {
-        let power = product(residual, residual, &runs, 0);
-        let remembers = |lag: usize| product(residual, residual, &runs, lag) / power;
+    let is_noise = |(output, residual): (&Output, &Vec<f64>)| {
+        let (input, _) = output.told(&data.input, &runs);
+        let (told, runs) = output.told(residual, &runs);
+        let input = centred(&input, &runs);
+        let power = product(&told, &told, &runs, 0);
+        let remembers = |lag: usize| product(&told, &told, &runs, lag) / power;
         let forgets = || (FORGETS..=NEVER_AGAIN).all(|lag| remembers(lag).abs() < FORGOTTEN);
         let powers = power * product(&input, &input, &runs, 0);
-        let with = |lag: usize| product(&input, residual, &runs, lag) / powers.sqrt();
+        let with = |lag: usize| product(&input, &told, &runs, lag) / powers.sqrt();
         let follows = || (0..=FORGETS).any(|lag| with(lag).abs() > UNRELATED);
         let alike = 1.0 + 2.0 * (1..FORGETS).map(|lag| remembers(lag).max(0.0)).sum::<f64>();
-        let by_chance = PARTS as f64 * alike / data.len() as f64;
+        let by_chance = PARTS as f64 * alike / told.len() as f64;
         let most = SAME_MEAN + CHANCE * by_chance;
         forgets()
             && !follows()
@@ -54,7 +57,8 @@ pub(super) fn is_noise_with_memory(data: &Data, motion: &Motion, velocity_unit: 
                 .iter()
                 .all(|axis| power_of_means(axis, residual) < most)
     };
-    residuals(data, motion).iter().all(is_noise)
+    let residuals = residuals(data, motion);
+    data.outputs.iter().zip(&residuals).all(is_noise)
         && !depends_on_the_motion(data, motion, velocity_unit)
 }
 

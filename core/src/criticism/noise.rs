@@ -3,7 +3,10 @@
 //! Differences of order p of a smooth signal vanish and leave `sqrt(binomial(2p, p))` times the
 //! noise. A switching input makes kinks, always at the same times after the switch: differences
 //! are therefore grouped by the number of samples since the input changed, and the quiet groups
-//! decide. Within a group a low quantile keeps what kinks remain from counting.
+//! decide. Within a group a low quantile keeps what kinks remain from counting. Of a channel that holds its readings only
+//! the fresh ones tell.
+
+use super::held::fresh;
 
 /// Orders of difference that are tried.
 const ORDERS: [usize; 4] = [2, 3, 4, 5];
@@ -39,6 +42,16 @@ const MOST_COUNTS: u32 = 16;
 /// Distance from a whole number of counts up to which many counts are whole.
 const WHOLE: f64 = 0.1;
 
+/// Digits after the point up to which values are looked at as printed ones, the most units of the last digit that they
+/// may be, and how far they may be from whole ones: that of binary numbers.
+const MOST_DIGITS: usize = 12;
+const MOST_UNITS: f64 = 1e9;
+const PRINTED: f64 = 1e-6;
+
+/// A count is that of a sensor behind the print where it is this many units of the last digit, seen in so many steps.
+const BEHIND_PRINT: f64 = 8.0;
+const STEPS_BEHIND_PRINT: usize = 5;
+
 /// Standard deviation of the noise in `values`, in their unit; above 0 unless all are equal.
 ///
 /// `input` is as long and tells when the signal may have kinks.
@@ -57,6 +70,18 @@ pub(super) struct Noise {
 }
 
 pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
+    let Some(mut fresh) = fresh(values) else {
+        let places: Vec<usize> = (0..values.len()).collect();
+        return noise_at(&places, values, input);
+    };
+    // At rest even a fresh reading may be the same again.
+    fresh.dedup_by_key(|i| values[*i].to_bits());
+    let at = |all: &[f64]| -> Vec<f64> { fresh.iter().map(|i| all[*i]).collect() };
+    noise_at(&fresh, &at(values), &at(input))
+}
+
+/// The same of values at these samples.
+fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
     let quantum = quantum(values);
     // A quantised signal is dithered by one step, evenly spread, so that quantiles are smooth.
     let dithered: Vec<f64> = values
@@ -66,7 +91,7 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
         .collect();
     let uniform = quantum * quantum / 12.0;
     let groups = since_change(input);
-    let smallest = least_level(&dithered, &groups);
+    let smallest = least_level(places, &dithered, &groups);
     // Quantisation and dither alone, within what the estimate can tell.
     if quantum > 0.0 && smallest * smallest < QUANTISED * 2.0 * uniform {
         return Noise {
@@ -80,10 +105,32 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
         0.0
     };
     let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * 1e-9;
+    let printed = resolution(values);
     Noise {
-        level: variance.max(uniform).max(rounding * rounding).sqrt(),
+        level: variance
+            .max(uniform)
+            .max(printed * printed / 12.0)
+            .max(rounding * rounding)
+            .sqrt(),
         counted: false,
     }
+}
+
+/// Unit of the last digit to which the values were printed; 0 where they are no decimal numbers.
+pub(super) fn resolution(values: &[f64]) -> f64 {
+    let most = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut units = 1.0;
+    for _ in 0..=MOST_DIGITS {
+        if most * units > MOST_UNITS {
+            break;
+        }
+        let is_whole = |v: &f64| (v * units - (v * units).round()).abs() < PRINTED;
+        if values.iter().all(is_whole) {
+            return 1.0 / units;
+        }
+        units *= 10.0;
+    }
+    0.0
 }
 
 /// Step of a quantised channel; 0 where none is seen.
@@ -104,7 +151,17 @@ fn quantum(values: &[f64]) -> f64 {
     let least = steps[single / 2];
     // What runs on fast may never stop on two neighbouring counts.
     let mut parts = (1..=MOST_COUNTS).map(|n| refined(&steps, least / f64::from(n)));
-    let step = parts.find(|step| is_whole(&steps, *step));
+    // Either end of a step was rounded where it was printed.
+    let printed = resolution(values);
+    let seen = steps.len() >= STEPS_BEHIND_PRINT;
+    let rounded = |step: f64| {
+        if seen && step > BEHIND_PRINT * printed {
+            printed / step
+        } else {
+            0.0
+        }
+    };
+    let step = parts.find(|step| is_whole(&steps, *step, rounded(*step)));
     step.unwrap_or(0.0)
 }
 
@@ -123,11 +180,11 @@ fn refined(ascending: &[f64], rough: f64) -> f64 {
     step
 }
 
-/// Whether nearly all of these steps are whole multiples of one.
-fn is_whole(steps: &[f64], step: f64) -> bool {
+/// Whether nearly all of these steps are whole multiples of one, but for a share of it by which they are rounded.
+fn is_whole(steps: &[f64], step: f64, rounded: f64) -> bool {
     let whole = steps.iter().filter(|d| {
         let ratio = *d / step;
-        (ratio - ratio.round()).abs() < WHOLE * (0.2 * ratio).clamp(0.2, 1.0)
+        (ratio - ratio.round()).abs() < WHOLE * (0.2 * ratio).clamp(0.2, 1.0) + rounded
     });
     whole.count() as f64 > 0.95 * steps.len() as f64
 }
@@ -161,10 +218,10 @@ fn since_change(input: &[f64]) -> Vec<usize> {
 
 /// The noise that the differences of that order show which cancel the signal best; of all that could be as good, the
 /// mean.
-fn least_level(values: &[f64], groups: &[usize]) -> f64 {
+fn least_level(places: &[usize], values: &[f64], groups: &[usize]) -> f64 {
     let levels = ORDERS.iter();
     let levels: Vec<_> = levels
-        .filter_map(|order| level_at_order(values, groups, *order))
+        .filter_map(|order| level_at_order(places, values, groups, *order))
         .collect();
     let of = |(level, count): &(f64, usize)| level * (1.0 + chance(*count));
     let most = levels.iter().map(of).fold(f64::INFINITY, f64::min);
@@ -177,11 +234,17 @@ fn least_level(values: &[f64], groups: &[usize]) -> f64 {
 }
 
 /// The noise that the differences of this order show, and the number of those that tell.
-fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<(f64, usize)> {
+fn level_at_order(
+    places: &[usize],
+    values: &[f64],
+    groups: &[usize],
+    order: usize,
+) -> Option<(f64, usize)> {
     let signs = binomials(order);
     let gain = signs.iter().map(|c| c * c).sum::<f64>().sqrt();
     let mut by_group: Vec<Vec<f64>> = vec![Vec::new(); GROUPS];
-    for (i, window) in values.windows(order + 1).enumerate() {
+    let even = evenly_spaced(places, order);
+    for (i, window) in values.windows(order + 1).enumerate().filter(|w| even[w.0]) {
         let difference: f64 = window.iter().zip(&signs).map(|(v, c)| v * c).sum();
         by_group[groups[i + order]].push(difference.abs() / gain);
     }
@@ -210,6 +273,20 @@ fn level_at_order(values: &[f64], groups: &[usize], order: usize) -> Option<(f64
     by_group.retain_mut(as_quiet);
     let mut pooled = by_group.concat();
     Some((low_quantile(&mut pooled), pooled.len()))
+}
+
+/// Whether the samples of each difference are evenly spaced: only then does a smooth signal vanish. All may speak where
+/// too few are.
+fn evenly_spaced(places: &[usize], order: usize) -> Vec<bool> {
+    let is_even = |window: &[usize]| {
+        let mut steps = window.windows(2).map(|w| w[1] - w[0]);
+        steps.next().is_none_or(|first| steps.all(|s| s == first))
+    };
+    let even: Vec<bool> = places.windows(order + 1).map(is_even).collect();
+    if even.iter().filter(|e| **e).count() < MIN_GROUP {
+        return vec![true; even.len()];
+    }
+    even
 }
 
 /// Share by which the level of so many differences may be off by chance.
@@ -308,6 +385,38 @@ mod tests {
             .collect();
         let found = quantum(&values);
         assert!((found / step - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    #[test]
+    fn a_count_that_is_no_round_number_is_found_behind_the_print() {
+        // A converter's steps of 0.3223 degrees, printed with two digits: they are 0.32 and 0.33.
+        let step = 0.3223;
+        let values: Vec<f64> = (0..800)
+            .map(|i| 40.0 * (1.0 - libm::exp(-f64::from(i) / 150.0)))
+            .map(|x| 20.9 + (x / step).floor() * step)
+            .map(|x| (x * 100.0).round() / 100.0)
+            .collect();
+        let found = quantum(&values);
+        assert!((found / step - 1.0).abs() < 1e-3, "{found}");
+        let noise = noise(&values, &vec![50.0; 800]);
+        assert!(noise.counted);
+        assert!((noise.level / (step / 12.0_f64.sqrt()) - 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn noise_is_never_less_than_what_print_rounds_off() {
+        // A reading stays for a while, of no fixed length.
+        let (mut values, mut hundredths) = (Vec::new(), 0);
+        for k in 0..60_u32 {
+            hundredths += 40 + 7 * k * k % 61;
+            let stay = 3 + k * k % 11;
+            values.extend((0..stay).map(|_| f64::from(hundredths) / 100.0));
+        }
+        assert!((resolution(&values) - 0.01).abs() < 1e-12);
+        let level = noise_level(&values, &vec![0.0; values.len()]);
+        assert!(level >= 0.01 / 12.0_f64.sqrt(), "{level}");
+        let exact: Vec<f64> = (0..300).map(|i| libm::sin(f64::from(i))).collect();
+        assert_eq!(resolution(&exact), 0.0);
     }
 
     #[test]

@@ -206,7 +206,7 @@ fn odd(data: &Data, costs: &[f64]) -> Vec<bool> {
     let squares: Vec<f64> = costs
         .iter()
         .zip(&spans)
-        .map(|(cost, (from, to))| cost / ((to - from) * data.outputs.len()).max(1) as f64)
+        .map(|(cost, (from, to))| cost / data.measured(*from, *to).max(1) as f64)
         .collect();
     let limit = ODD_TIMES * median(&mut squares.clone()).max(1.0);
     let odd: Vec<bool> = squares.iter().map(|square| *square > limit).collect();

@@ -53,11 +53,14 @@ pub struct ResidualTest {
 /// Both tests of every output.
 pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> {
     let runs = data.runs();
-    let input = Series::new(&data.input, &runs);
     let step = data.excitation.mean_step();
     let outputs = data.outputs.iter().zip(residuals(data, motion)).enumerate();
     outputs
         .flat_map(|(output, (channel, residual))| {
+            let (input, _) = channel.told(&data.input, &runs);
+            let (residual, runs) = channel.told(&residual, &runs);
+            let step = step * data.len() as f64 / residual.len() as f64;
+            let input = Series::new(&input, &runs);
             let residual = Series::new(&residual, &runs);
             let test = |kind, (lag, correlation, bound): (usize, f64, f64)| {
                 let lag = lag as f64 * step;

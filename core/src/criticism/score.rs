@@ -28,12 +28,11 @@ pub(super) struct Score {
 pub(super) fn score(data: &Data, fit: &Fit) -> Score {
     let states = if data.has_position { 2.0 } else { 1.0 };
     let informed = informed_windows(data);
-    let outputs = data.outputs.len() as f64;
     let count = |held: bool| -> f64 {
         data.blocks
             .iter()
             .filter(|b| b.held_back == held)
-            .map(|b| (b.to - b.from) as f64 * outputs)
+            .map(|b| data.measured(b.from, b.to) as f64)
             .sum()
     };
     // A held-back block that is a window of its own has its states fitted.
@@ -62,7 +61,7 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
         .blocks
         .iter()
         .filter(|b| b.held_back)
-        .map(|b| ((b.to - b.from) as f64 * outputs - own_states).max(1.0));
+        .map(|b| (data.measured(b.from, b.to) as f64 - own_states).max(1.0));
     let fit_cost = fit_cost(data, &fit.motion);
     let held_count = (count(true) - own(false)).max(1.0);
     let fit_count = (count(false) - own(true) - fit.structure.free_count() as f64).max(1.0);
@@ -93,9 +92,10 @@ fn within_counts(data: &Data, motion: &Motion) -> bool {
         }
         let modelled = motion.of(o.is_velocity);
         for b in data.blocks.iter().filter(|b| b.held_back) {
-            let left = (b.from..b.to).map(|i| (o.values[i] - modelled[i]).abs() / o.noise);
+            let told = (b.from..b.to).filter(|i| o.tells(*i));
+            let left = told.map(|i| (o.values[i] - modelled[i]).abs() / o.noise);
             within += left.filter(|r| *r < HALF_STEP).count();
-            all += b.to - b.from;
+            all += o.telling(b.from, b.to);
         }
     }
     within as f64 > WITHIN * all as f64
@@ -109,12 +109,13 @@ const MAX_LAG: usize = 200;
 fn correlation_inflation(data: &Data, motion: &Motion) -> f64 {
     let (mut weighted, mut weights) = (0.0, 0.0);
     let runs = data.runs();
-    for r in residuals(data, motion) {
+    for (o, r) in data.outputs.iter().zip(residuals(data, motion)) {
+        let (r, runs) = o.told(&r, &runs);
         let power = product(&r, &r, &runs, 0);
         if power == 0.0 {
             continue;
         }
-        let count = data.used();
+        let count: usize = runs.iter().map(|(from, to)| to - from).sum();
         let white = 2.0 / (count as f64).sqrt();
         let mut sum = 1.0;
         for lag in 1..MAX_LAG.min(count / 4) {

@@ -233,7 +233,9 @@ impl Session {
                     .zip(fit.motion.of(o.is_velocity))
                     .map(|(y, m)| y - m)
                     .collect(),
-                noise: o.noise,
+                // Between two readings that a channel held there is nothing new.
+                noise: o.noise
+                    * (data.len() as f64 / o.telling(0, data.len()).max(1) as f64).sqrt(),
             })
             .collect();
         Probe::new(&ProbeInput {

@@ -130,7 +130,7 @@ fn bends(data: &Data) -> Vec<f64> {
 
 /// Squares, in noise units, that may be noise.
 fn noisy(data: &Data, block: &Block) -> f64 {
-    NOISY * data.outputs.len() as f64 * (block.to - block.from) as f64
+    NOISY * data.measured(block.from, block.to) as f64
 }
 
 /// The window that holds most of this share of all, and into how many it can be cut, if one does and can be.

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::data::Data;
+use super::locate::signal_name;
 use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
@@ -145,7 +147,7 @@ pub(super) fn add_rest(
     }
 }
 
-/// Says how many single values were left out.
+/// Says how many values were left out.
 pub(super) fn add_glitches(verdict: &mut Verdict, glitches: usize) {
     let _ = match glitches {
         0 => return,
@@ -158,6 +160,18 @@ pub(super) fn add_glitches(verdict: &mut Verdict, glitches: usize) {
             " {many} values stood alone, far off their neighbours, and were left out: glitches of the sensor."
         ),
     };
+}
+
+/// Says of which outputs only the fresh readings were used.
+pub(super) fn add_held(verdict: &mut Verdict, data: &Data) {
+    for output in data.outputs.iter().filter(|o| o.is_held()) {
+        let _ = write!(
+            verdict.text,
+            " The {} stays as it is between {} readings: only these were used.",
+            signal_name(data.kind, output),
+            output.telling(0, data.len())
+        );
+    }
 }
 
 /// Says which effects lower the error but may be imitations: they explain less than they leave, or their size is

@@ -5,7 +5,7 @@
 //! would drown an effect in drift; where samples come fast or the encoder is coarse, short ones show nothing
 //! but noise. So a window is short as long as the motion in it stands well above the noise.
 
-use super::data::Output;
+use super::output::Output;
 
 /// Samples of the shortest window; a few relay periods fit in.
 pub(super) const SHORTEST: usize = 250;

@@ -109,7 +109,7 @@ impl Fit {
                 let weight = robust[block.window].sqrt() / output.noise;
                 let modelled = self.motion.of(output.is_velocity);
                 let parts: Vec<&[f64]> = columns.iter().map(|c| c.of(output.is_velocity)).collect();
-                for i in block.from..block.to {
+                for i in (block.from..block.to).filter(|i| output.tells(*i)) {
                     let r = (output.values[i] - modelled[i]) * weight;
                     for (value, part) in row.iter_mut().zip(&parts) {
                         *value = part[i] * weight;

@@ -9,7 +9,7 @@ use crate::criticism::score::Score;
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
-    add_experiments, add_glitches, add_hint, add_idle, add_imitations, add_rest, verdict,
+    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_rest, verdict,
 };
 use crate::criticism::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
@@ -57,6 +57,7 @@ impl StepJob {
             add_idle(&mut verdict, &idle, &unsure);
             add_experiments(&mut verdict, &self.experiments);
             add_glitches(&mut verdict, self.session.whole().glitches);
+            add_held(&mut verdict, self.session.whole());
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
