@@ -250,6 +250,72 @@ fn the_ways_in_which_programs_write_csv_are_all_one() {
     }
 }
 
+/// Rows of four numbers, divided by this.
+fn rows(separator: &str) -> String {
+    let row = |i: i32| {
+        let numbers = [f64::from(i) * 0.5, f64::from(i % 2), f64::from(-i), 1.5];
+        numbers.map(|n| format!("{n:.3e}")).join(separator) + "\n"
+    };
+    (0..30).map(row).collect()
+}
+
+#[test]
+fn a_header_may_stand_in_the_comment_above_the_numbers() {
+    let plain = import(&format!("t [s],u [N m],x1 [rad],a [1]\n{}", rows(",")));
+    for (header, separator) in [
+        ("# t [s], u [N m], x1 [rad], a [1]", ","),
+        ("#t [s],u [N m],x1 [rad],a [1]", ","),
+        (
+            "# rig 3, 2026, b, c\n\n## t [s],u [N m],x1 [rad],a [1]\n",
+            ",",
+        ),
+        ("#t [s]\tu [N m]\tx1 [rad]\ta [1]", "\t"),
+        ("# t [s] u [N m] x1[rad] a", " "),
+    ] {
+        let text = format!("{header}\n{}", rows(separator));
+        let read = import_csv("rig.csv", text.as_bytes(), None);
+        assert_eq!(read.as_ref(), Ok(&plain), "{header}");
+    }
+    // What is no header stays a comment: too few columns, or numbers alone; and a header that is there is the one.
+    for comment in ["# rig 3, 2026", "# 1,2,3,4"] {
+        let text = format!("{comment}\n{}", rows(","));
+        refused(&text, &["line 2", "is not a header"]);
+        let text = format!("{comment}\nt [s],u [N m],x1 [rad],a [1]\n{}", rows(","));
+        assert_eq!(import(&text), plain, "{comment}");
+    }
+    // What is wrong in it is said where it stands.
+    let text = format!("# rig\n# t [s],u,x1 [rad],a\n{}", rows(","));
+    refused(&text, &["line 2, column 2 (u)", "no unit"]);
+}
+
+#[test]
+fn blanks_divide_columns_where_nothing_else_does() {
+    let plain = import(&format!("t [s],u [N m],x1 [rad],a [1]\n{}", rows(",")));
+    for header in [
+        "t [s] u [N m] x1 [rad] a [1]",
+        "  t[s]   u[N m]\t x1 [rad]   \"a\"  ",
+        "t [s]   u [N m]   x1 (rad)   a",
+    ] {
+        for separator in [" ", "    ", " \t", "\t  "] {
+            let text = format!("{header}\n  {}", rows(separator).replace('\n', "  \n  "));
+            let read = import_csv("rig.csv", text.as_bytes(), None);
+            assert_eq!(read.as_ref(), Ok(&plain), "{header:?} {separator:?}");
+        }
+    }
+    // Names have blanks in them where something else divides.
+    for separator in [" \t ", " ; ", " , "] {
+        let header = ["t [s]", "u [N m]", "x1 [rad]", "motor pos"].join(separator);
+        let m = import(&format!("{header}\n{}", rows(separator)));
+        assert_eq!(m.outputs, plain.outputs, "{separator:?}");
+        assert!(m.warnings[0].contains("'motor pos'"));
+    }
+    // Without a header the first line is missed.
+    let first = "'0.000e0  0.000e0  0.000e0  1.5' is not a header";
+    refused(&rows("  "), &["line 1", first, "the first line must name"]);
+    let text = format!("t [s]  u [N m]  x1 [rad]\n{}", rows("  "));
+    refused(&text, &["line 2", "4 fields, but the header has 3"]);
+}
+
 #[test]
 fn a_decimal_comma_that_comes_late_is_still_one() {
     let mut text = file(HEADER, 30).replace(',', ";");
