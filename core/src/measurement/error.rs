@@ -79,7 +79,7 @@ pub enum Problem {
     #[error("no column '{wanted}' to map; the file has {found}")]
     NoSuchColumn { wanted: String, found: String },
     #[error(
-        "a torque constant by {given} does not fit an input in {unit}; it makes torque of a current in A or a voltage in V"
+        "a torque constant by {given} does not fit an input in {unit}; it makes torque of a current in A, a voltage in V or a command in %, PWM, counts or 1"
     )]
     NeedlessTorqueConstant { unit: String, given: &'static str },
     #[error(

@@ -139,8 +139,8 @@ impl FoundColumn {
         if counted(last) {
             return Some(COUNTS.to_owned());
         }
-        // `pos_mm`, but not `x`: a name that is a unit alone says nothing.
-        let named = last.len() < self.name.len() && usual.contains(&last);
+        // `pos_mm`, but not `x`: a name that is a unit alone says nothing, nor does the 1 of `command_1`.
+        let named = last.len() < self.name.len() && last != "1" && usual.contains(&last);
         named.then(|| last.to_owned())
     }
 }

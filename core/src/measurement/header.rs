@@ -292,13 +292,13 @@ fn convert(
     name: &str,
     unit: &str,
 ) -> Result<(Measures, f64, String), Problem> {
-    use Measures::{Angle, AngularVelocity, Current, Force, Length, Speed, Time, Torque, Voltage};
+    use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
     let expected: (&[Measures], &str) = match (role, kind) {
         (Role::Time, _) => (&[Time], "a time: s, ms, us, min"),
         (_, Kind::Process) => return Ok((Measures::Other, 1.0, unit.to_owned())),
         (Role::Measured(Quantity::Input), _) => (
-            &[Torque, Force, Current, Voltage],
-            "a torque or force: N m, mN m, N, kN, or the current or voltage of the motor: A, V",
+            &[Torque, Force],
+            "a torque or force: N m, mN m, N, kN, the current or voltage of the motor: A, V, or a command: %, PWM, counts, 1",
         ),
         (Role::Measured(Quantity::Position | Quantity::LoadPosition), _) => (
             &[Angle, Length],
@@ -318,8 +318,15 @@ fn convert(
             name: name.to_owned(),
         });
     }
-    match unit::parse(unit) {
-        Some((measures, factor)) if expected.0.contains(&measures) => {
+    let input = role == Role::Measured(Quantity::Input);
+    let parsed = if input {
+        unit::parse_input(unit)
+    } else {
+        unit::parse(unit)
+    };
+    let fits = |m: Measures| expected.0.contains(&m) || (input && m.needs_torque_constant());
+    match parsed {
+        Some((measures, factor)) if fits(measures) => {
             Ok((measures, factor, measures.si().to_owned()))
         }
         Some(_) => Err(Problem::WrongUnit {
@@ -333,9 +340,9 @@ fn convert(
     }
 }
 
-/// Turns a current or voltage into torque or force: by the constant that is given, or by one.
+/// Turns a current, voltage or command into torque or force: by the constant that is given, or by one.
 fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Located> {
-    use Measures::{Current, Force, Length, Speed, Torque, Voltage};
+    use Measures::{Command, Force, Length, Speed, Torque, Voltage};
     let turns = !header
         .columns
         .iter()
@@ -345,7 +352,7 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
         return Ok(());
     };
     let before = column.measures;
-    let electric = matches!(before, Current | Voltage);
+    let turned = before.needs_torque_constant();
     let wrong = |given: Measures| {
         let problem = Problem::NeedlessTorqueConstant {
             unit: column.unit.clone(),
@@ -354,9 +361,9 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
         Err((Some((column.index + 1, column.name.clone())), problem))
     };
     let (factor, gives) = match options.torque_constant {
-        Some(constant) if !electric || constant.per != before => return wrong(constant.per),
+        Some(constant) if !turned || constant.per != before => return wrong(constant.per),
         Some(constant) => (constant.value(), constant.gives),
-        None if !electric => return Ok(()),
+        None if !turned => return Ok(()),
         None => (1.0, if turns { Torque } else { Force }),
     };
     column.factor *= factor;
@@ -371,12 +378,17 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
             per = before.si(),
         ));
     }
-    if before == Voltage {
-        header.notes.push(
+    let note = match before {
+        Voltage => {
             "The input is a voltage: the back-EMF acts as viscous friction and is part of it here."
-                .to_owned(),
-        );
-    }
+        }
+        Command(_) => {
+            "The input is a command: where it sets the voltage of the motor, the back-EMF acts as viscous \
+             friction and is part of it here."
+        }
+        _ => return Ok(()),
+    };
+    header.notes.push(note.to_owned());
     Ok(())
 }
 
