@@ -149,11 +149,11 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         return exact;
     }
     Some(match compact.to_lowercase().as_str() {
-        "s" | "sec" | "second" | "seconds" => (Time, 1.0),
-        "ms" | "millisecond" | "milliseconds" => (Time, 1e-3),
-        "us" | "microseconds" => (Time, 1e-6),
-        "min" | "minutes" => (Time, 60.0),
-        "h" => (Time, 3600.0),
+        "s" | "sec" | "secs" | "second" | "seconds" | "sekunde" | "sekunden" => (Time, 1.0),
+        "ms" | "msec" | "millis" | "millisec" | "millisecond" | "milliseconds" => (Time, 1e-3),
+        "us" | "usec" | "micros" | "microsec" | "microsecond" | "microseconds" => (Time, 1e-6),
+        "min" | "mins" | "minute" | "minutes" | "minuten" => (Time, 60.0),
+        "h" | "hour" | "hours" => (Time, 3600.0),
         "nm" | "n.m" | "n-m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
         "knm" => (Torque, 1e3),
         "ncm" => (Torque, 1e-2),
@@ -211,7 +211,19 @@ mod tests {
 
     #[test]
     fn common_spellings() {
-        check("ms", Measures::Time, 1e-3);
+        for second in ["s", "sec", "Second", "seconds"] {
+            check(second, Measures::Time, 1.0);
+        }
+        for milli in ["ms", "msec", "millis", "millisec", "milliseconds"] {
+            check(milli, Measures::Time, 1e-3);
+        }
+        for micro in ["us", "µs", "usec", "micros", "microsecond"] {
+            check(micro, Measures::Time, 1e-6);
+        }
+        for minute in ["min", "minute", "minutes"] {
+            check(minute, Measures::Time, 60.0);
+        }
+        check("hours", Measures::Time, 3600.0);
         check("N·m", Measures::Torque, 1.0);
         check("mN m", Measures::Torque, 1e-3);
         check("mN", Measures::Force, 1e-3);
