@@ -1,7 +1,9 @@
 //! Measurements as people have them go in; SI units, or one line that says what to correct, come out.
 
 use hysteron_core::effect::Motion;
-use hysteron_core::measurement::{Kind, MIN_SAMPLES, Measurement, Quantity, import_csv};
+use hysteron_core::measurement::{
+    ImportOptions, Kind, MIN_SAMPLES, Measurement, Quantity, import as import_with, import_csv,
+};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -344,6 +346,166 @@ fn a_process_needs_no_units_but_that_of_time() {
     assert!(import("t [s],u [V],y [K]").unwrap().warnings.is_empty());
     let error = import("t,u,y").unwrap_err().to_string();
     assert!(error.contains("such as t [s]"), "{error}");
+}
+
+/// A header and rows in which only the first column increases, and those that are called `still` are constant.
+fn log(header: &str) -> String {
+    let names: Vec<&str> = header.split(',').collect();
+    let mut text = format!("{header}\n");
+    for row in 0..40 {
+        let field = |(i, name): (usize, &&str)| match i {
+            0 => f64::from(row) * 0.5,
+            _ if name.contains("still") => 3.0,
+            _ => f64::from(row * i32::try_from(i).unwrap() % 7),
+        };
+        let fields: Vec<String> = names
+            .iter()
+            .enumerate()
+            .map(field)
+            .map(|v| v.to_string())
+            .collect();
+        let _ = writeln!(text, "{}", fields.join(","));
+    }
+    text
+}
+
+#[test]
+fn what_only_one_column_can_be_it_is() {
+    // Time, input and output, each in its column by name.
+    for (header, kind, named) in [
+        ("Time [s],T1 [degC],u [%]", Kind::Process, ["u", "T1"]),
+        ("Time [s],Q1,T1", Kind::Process, ["Q1", "T1"]),
+        (
+            "time_ms,heater_pwm,Temperature",
+            Kind::Process,
+            ["heater_pwm", "Temperature"],
+        ),
+        (
+            "elapsed [min],duty,Reactor [°C]",
+            Kind::Process,
+            ["duty", "Reactor"],
+        ),
+        (
+            "t [s],pump [%],tank level [cm]",
+            Kind::Process,
+            ["pump", "tank level"],
+        ),
+        ("t [s],Voltage,y", Kind::Process, ["Voltage", "y"]),
+        (
+            "t [s],Heater 1,Heater still,T2,setpoint T1",
+            Kind::Process,
+            ["Heater 1", "T2"],
+        ),
+        (
+            "Tiempo (s),Voltaje (V),Velocidad (rad/s)",
+            Kind::Drive,
+            ["Voltaje", "Velocidad"],
+        ),
+        (
+            "t [s],pwm [PWM],motor_pos [deg]",
+            Kind::Drive,
+            ["pwm", "motor_pos"],
+        ),
+        (
+            "t [s],current [A],x1 [rad],target speed [rpm]",
+            Kind::Drive,
+            ["current", "x1"],
+        ),
+    ] {
+        let m = import(&log(header));
+        let names = [&m.input, &m.outputs[0]].map(|c| c.name.as_str());
+        assert_eq!(
+            (m.kind, names, m.outputs.len()),
+            (kind, named, 1),
+            "{header}"
+        );
+        let taken = m.warnings.iter().filter(|w| w.contains("is taken for the"));
+        assert!(taken.count() > 0, "{header}: {:?}", m.warnings);
+    }
+    let m = import(&log("time_ms,heater_pwm,Temperature,note"));
+    assert_eq!(m.time[1], 0.5e-3);
+    assert_eq!(
+        m.warnings,
+        [
+            "The column 'note' is not used: a process has t, u, y.",
+            "The column 'time_ms' is taken for the time.",
+            "The column 'heater_pwm' is taken for the input.",
+            "The column 'Temperature' is taken for the output.",
+            "No unit is given for heater_pwm, Temperature: taken as plain numbers.",
+        ]
+    );
+    // What is there by its name is not looked for, whatever else resembles it.
+    let m = import(&log("t [s],u [N m],x1 [rad],motor speed [rpm],current [A]"));
+    assert_eq!((m.outputs.len(), m.input.name.as_str()), (1, "u"));
+}
+
+#[test]
+fn what_several_columns_could_be_is_asked() {
+    let asked: [(&str, &[&str]); 7] = [
+        (
+            "Time [s],T1,Q1,Q2",
+            &[
+                "no column 'u'",
+                "not clear which is meant: Q1, Q2;",
+                "such as u=Q1",
+            ],
+        ),
+        (
+            "Time [s],T1 [degC],T2 [degC],u [%]",
+            &["no column 'y'", ": T1, T2;", "y=T1"],
+        ),
+        (
+            "t [s],pwm,motor_pos [deg],motor_temp [degC]",
+            &[
+                "no column 'x1' or 'y'",
+                ": motor_pos, motor_temp;",
+                "such as y=motor_temp",
+            ],
+        ),
+        (
+            "t [s],pwm,Voltage (V),speed [rpm]",
+            &["line 1", "no column 'u'", ": pwm, Voltage;"],
+        ),
+        // Of one that could be two things, and of two that have one name.
+        ("t [s],heater temp,y", &["no column 'u'", ": heater temp;"]),
+        (
+            "t [s],pump flow",
+            &["no column 'u'", ": pump flow;", "u=pump flow"],
+        ),
+        (
+            "t [s],y,duty,duty",
+            &["no column 'u'", ": column 3, column 4;", "u=column 3"],
+        ),
+    ];
+    for (header, parts) in asked {
+        refused(&log(header), parts);
+    }
+    // A mapping answers it.
+    let text = log("Time [s],T1,Q1,Q2");
+    let options = |map: &str| ImportOptions {
+        mapping: map.parse().unwrap(),
+        ..ImportOptions::default()
+    };
+    let m = import_with("rig.csv", text.as_bytes(), &options("u=Q2")).unwrap();
+    assert_eq!(
+        (m.input.name.as_str(), m.outputs[0].name.as_str()),
+        ("Q2", "T1")
+    );
+    // What it leaves out is not looked for.
+    let text = log("t [s],u [N m],x1 [rad],motor speed [rpm]");
+    let error = import_with("rig.csv", text.as_bytes(), &options("x1=-,v1=-")).unwrap_err();
+    assert!(error.to_string().contains("no column 'x1'"), "{error}");
+    // Of a drive no unit is guessed.
+    refused(
+        &log("t [s],pwm,motor_pos [deg]"),
+        &["column 2 (pwm)", "no unit"],
+    );
+    refused(
+        &log("t [s],u [V],encoder"),
+        &["column 3 (encoder)", "no unit"],
+    );
+    // A unit alone tells neither what moves nor what pushes.
+    refused(&log("t [s],a [N m],b [rad]"), &["no column 'u'"]);
 }
 
 #[test]

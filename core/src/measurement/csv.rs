@@ -1,6 +1,8 @@
 //! Comma-separated files, as people have them.
 
 use super::error::{ImportError, Problem};
+use super::found::{Numbers, addressed};
+use super::guess::fill;
 use super::header::{Field, Header, Role, map, name_and_unit, shorten, understand};
 use super::mapping::ImportOptions;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
@@ -22,7 +24,8 @@ struct Dialect {
 /// no other and it names as many columns as there are. Everything but the
 /// signals of a process is converted to SI units; encoder counts state their resolution in the
 /// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). `kind` is guessed from the columns
-/// if not given. Columns with other names are ignored with a warning.
+/// if not given. What no column is called is taken from the only one whose name resembles it, with a
+/// warning. Other columns are ignored with a warning.
 ///
 /// # Errors
 /// One line that names file, line and column and says what was expected.
@@ -64,10 +67,17 @@ pub(super) fn import_text(
         return Err(fail(Some(line), None, Problem::NoHeader { found }));
     }
     map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
-    let header = understand(fields, options).map_err(|(column, problem)| {
+    let look = || {
+        Some(addressed(
+            survey(bytes, Numbers::default(), Numbers::take).ok()?,
+        ))
+    };
+    let taken = fill(&mut fields, options, look).map_err(|p| fail(Some(line), None, p))?;
+    let mut header = understand(fields, options).map_err(|(column, problem)| {
         let column = column.map(|(i, n)| format!("{i} ({n})"));
         fail(Some(line), column, problem)
     })?;
+    header.notes.splice(..0, taken);
     let values = read_rows(&header, dialect, rows)
         .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
     assemble(name, &header, values).map_err(|problem| fail(None, None, problem))

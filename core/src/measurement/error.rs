@@ -36,6 +36,7 @@ impl Problem {
                 | Self::WrongUnit { .. }
                 | Self::BareCounts { .. }
                 | Self::NoColumn { .. }
+                | Self::Unclear { .. }
                 | Self::NoSuchColumn { .. }
                 | Self::NeedlessTorqueConstant { .. }
                 | Self::NotMapped { .. }
@@ -75,6 +76,14 @@ pub enum Problem {
     NoColumn {
         wanted: &'static str,
         hint: &'static str,
+    },
+    #[error(
+        "no column '{wanted}', and it is not clear which is meant: {found}; say it in a mapping, such as {example}"
+    )]
+    Unclear {
+        wanted: String,
+        found: String,
+        example: String,
     },
     #[error("no column '{wanted}' to map; the file has {found}")]
     NoSuchColumn { wanted: String, found: String },

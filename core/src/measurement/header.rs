@@ -208,6 +208,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
             Kind::Drive
         },
     );
+    present(&roles, kind)?;
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
     let mut plain = Vec::new();
@@ -263,7 +264,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
         header.notes.push(note);
     }
     make_torque(&mut header, options)?;
-    complete(&header)?;
+    agree(&header)?;
     Ok(header)
 }
 
@@ -392,9 +393,9 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
     Ok(())
 }
 
-/// Checks that what a measurement needs is there, and that the units belong together.
-fn complete(header: &Header) -> Result<(), Located> {
-    let has = |role: Role| header.columns.iter().any(|c| c.role == role);
+/// Checks that what a measurement needs is there.
+fn present(roles: &[Option<Role>], kind: Kind) -> Result<(), Located> {
+    let has = |role: Role| roles.contains(&Some(role));
     let measured = |q: Quantity| has(Role::Measured(q));
     let missing = |wanted, hint| Err((None, Problem::NoColumn { wanted, hint }));
     if !has(Role::Time) {
@@ -406,18 +407,20 @@ fn complete(header: &Header) -> Result<(), Located> {
             "add the input, such as u [N m], u [N] or for a process u [1]",
         );
     }
-    match header.kind {
-        Kind::Drive if !measured(Quantity::Position) && !measured(Quantity::Velocity) => {
-            return missing(
-                "x1",
-                "a drive needs its position x1 [rad] or its velocity v1 [rad/s], or both; a process needs y [1]",
-            );
-        }
+    match kind {
+        Kind::Drive if !measured(Quantity::Position) && !measured(Quantity::Velocity) => missing(
+            "x1",
+            "a drive needs its position x1 [rad] or its velocity v1 [rad/s], or both; a process needs y [1]",
+        ),
         Kind::Process if !measured(Quantity::Output) => {
-            return missing("y", "a process needs its output, such as y [1]");
+            missing("y", "a process needs its output, such as y [1]")
         }
-        _ => {}
+        _ => Ok(()),
     }
+}
+
+/// Checks that the units belong together.
+fn agree(header: &Header) -> Result<(), Located> {
     let rotational = |m: Measures| match m {
         Measures::Torque | Measures::Angle | Measures::AngularVelocity => Some(true),
         Measures::Force | Measures::Length | Measures::Speed => Some(false),
