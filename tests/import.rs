@@ -332,7 +332,7 @@ fn a_decimal_comma_that_comes_late_is_still_one() {
 }
 
 #[test]
-fn a_process_needs_no_units_but_that_of_time() {
+fn a_process_needs_no_units() {
     let rows: Vec<String> = (0..40).map(|k| format!("{k},{},{k}", k % 2)).collect();
     let rows = rows.join("\n");
     let import = |head: &str| import_csv("process.csv", format!("{head}\n{rows}").as_bytes(), None);
@@ -344,8 +344,56 @@ fn a_process_needs_no_units_but_that_of_time() {
         ["No unit is given for u, y: taken as plain numbers."]
     );
     assert!(import("t [s],u [V],y [K]").unwrap().warnings.is_empty());
-    let error = import("t,u,y").unwrap_err().to_string();
-    assert!(error.contains("such as t [s]"), "{error}");
+}
+
+#[test]
+fn a_process_without_a_unit_of_time_has_seconds_unless_its_steps_are_long() {
+    let seconds = |step: f64| {
+        let row = |k: i32| format!("{},{},{k}", f64::from(k) * step, k % 2);
+        (0..40).map(row).collect::<Vec<_>>().join("\n")
+    };
+    for (name, step) in [("t", 1.0), ("Time", 2.0), ("time", 0.01), ("Zeit", 9.9)] {
+        let m = import(&format!("{name},u,y\n{}", seconds(step)));
+        assert!((m.time[1] - step).abs() < 1e-12, "{name}");
+        let note = format!("No unit is given for {name}: taken as seconds.");
+        assert!(m.warnings.contains(&note), "{:?}", m.warnings);
+    }
+    // Those are milliseconds more likely.
+    for step in [10.0, 50.0, 1000.0] {
+        refused(
+            &format!("# oven\ntime,u,y\n{}", seconds(step)),
+            &["line 2, column 1 (time)", "no unit", "such as time [s]"],
+        );
+    }
+    // Another name says less, and of a drive every result hangs on it.
+    refused(
+        &format!("timestamp,u,y\n{}", seconds(1.0)),
+        &["column 1 (timestamp)", "no unit"],
+    );
+    refused(
+        &format!("t,u [N m],x1 [rad]\n{}", seconds(1.0)),
+        &["column 1 (t)", "no unit"],
+    );
+    assert_eq!(
+        import(&format!("t [ms],u,y\n{}", seconds(50.0))).time[2],
+        0.1
+    );
+}
+
+#[test]
+fn what_is_no_unit_of_a_drive_may_be_one_of_a_process() {
+    for header in ["t [s],u [degC],x1 [rad]", "t [s],u [%],x [degC]"] {
+        let text = file(header, 30);
+        let said = "the output of a process is y, in any unit";
+        refused(&text, &["does not fit; expected", said]);
+        let error = import_csv("rig.csv", text.as_bytes(), Some(Kind::Drive)).unwrap_err();
+        assert!(!error.to_string().contains(said), "{error}");
+    }
+    // Without what moves it is asked for before any unit.
+    refused(
+        &file("t [s],u [degC],flux [kg/s]", 30),
+        &["line 1: no column 'x1'", "a process needs y [1]"],
+    );
 }
 
 /// A header and rows in which only the first column increases, and those that are called `still` are constant.

@@ -80,6 +80,9 @@ pub(super) fn import_text(
     header.notes.splice(..0, taken);
     let values = read_rows(&header, dialect, rows)
         .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
+    header
+        .doubt_seconds(&values)
+        .map_err(|(column, problem)| fail(Some(line), column, problem))?;
     assemble(name, &header, values).map_err(|problem| fail(None, None, problem))
 }
 

@@ -89,7 +89,33 @@ pub(super) struct Header {
     /// What had to be assumed, for the user.
     pub notes: Vec<String>,
     pub width: usize,
+    /// Whether the time has no unit and is taken as seconds.
+    pub assumes_seconds: bool,
 }
+
+impl Header {
+    /// What is wrong with taking these times as seconds: a clock that counts in large steps may count anything.
+    pub fn doubt_seconds(&self, values: &[Vec<f64>]) -> Result<(), (Option<String>, Problem)> {
+        let times = self.columns.iter().zip(values);
+        let Some((column, [first, .., last])) = times
+            .filter(|_| self.assumes_seconds)
+            .find(|(column, _)| column.role == Role::Time)
+            .map(|(column, times)| (column, times.as_slice()))
+        else {
+            return Ok(());
+        };
+        let steps = values.first().map_or(0, Vec::len).saturating_sub(1);
+        if (last - first) / (steps as f64) < LONGEST_ASSUMED {
+            return Ok(());
+        }
+        let here = format!("{} ({})", column.index + 1, column.name);
+        let (name, example) = (column.name.clone(), example(Role::Time));
+        Err((Some(here), Problem::NoUnit { name, example }))
+    }
+}
+
+/// The step from which times without a unit are not taken as seconds: milliseconds are more likely then.
+const LONGEST_ASSUMED: f64 = 10.0;
 
 /// A problem and the column (from 1, with its name) that it concerns.
 pub(super) type Located = (Option<(usize, String)>, Problem);
@@ -212,6 +238,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
     let mut plain = Vec::new();
+    let mut clock = None;
     for (index, field) in fields.into_iter().enumerate() {
         let Field {
             name,
@@ -235,13 +262,17 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
                 plain.push(shorten(&name));
                 "1".to_owned()
             }
+            None if kind == Kind::Process && is_time(&name) => {
+                clock = Some(shorten(&name));
+                "s".to_owned()
+            }
             None => {
                 let example = example(role);
                 return Err((here(), Problem::NoUnit { name, example }));
             }
         };
-        let (measures, factor, unit) =
-            convert(role, kind, &name, &unit).map_err(|p| (here(), p))?;
+        let (measures, factor, unit) = convert(role, kind, &name, &unit)
+            .map_err(|p| (here(), or_process(p, role, options)))?;
         columns.push(Column {
             index,
             role,
@@ -257,7 +288,12 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
         ignored,
         notes: Vec::new(),
         width,
+        assumes_seconds: clock.is_some(),
     };
+    if let Some(clock) = clock {
+        let note = format!("No unit is given for {clock}: taken as seconds.");
+        header.notes.push(note);
+    }
     if !plain.is_empty() {
         let plain = plain.join(", ");
         let note = format!("No unit is given for {plain}: taken as plain numbers.");
@@ -266,6 +302,26 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
     make_torque(&mut header, options)?;
     agree(&header)?;
     Ok(header)
+}
+
+/// Whether a column of this name can be nothing but the time.
+fn is_time(name: &str) -> bool {
+    role(name) == Some(Role::Time)
+}
+
+/// Says of a unit that no drive has that a process may, where it was not said which of the two it is.
+fn or_process(problem: Problem, role: Role, options: &ImportOptions) -> Problem {
+    match problem {
+        Problem::WrongUnit { unit, expected }
+            if options.kind.is_none()
+                && role != Role::Time
+                && unit::parse_input(&unit).is_none() =>
+        {
+            let expected = format!("{expected}; the output of a process is y, in any unit");
+            Problem::WrongUnit { unit, expected }
+        }
+        other => other,
+    }
 }
 
 /// A unit that a column in this role may have.
