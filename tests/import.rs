@@ -505,7 +505,7 @@ fn what_several_columns_could_be_is_asked() {
         (
             "t [s],pwm,motor_pos [deg],motor_temp [degC]",
             &[
-                "no column 'x1' or 'y'",
+                "no column 'x1' / 'y'",
                 ": motor_pos, motor_temp;",
                 "such as y=motor_temp",
             ],

@@ -81,9 +81,9 @@ pub enum Problem {
         "no column '{wanted}', and it is not clear which is meant: {found}; say it in a mapping, such as {example}"
     )]
     Unclear {
-        wanted: String,
+        wanted: &'static str,
         found: String,
-        example: String,
+        example: Box<str>,
     },
     #[error("no column '{wanted}' to map; the file has {found}")]
     NoSuchColumn { wanted: String, found: String },

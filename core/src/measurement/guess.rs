@@ -226,7 +226,6 @@ pub(super) fn fill(
         .filter(|(_, candidates)| !candidates.is_empty())
         .collect();
     let unclear = |of: &[&(&Resembling, Vec<usize>)]| {
-        let roles: Vec<&str> = of.iter().map(|(r, _)| r.role.name()).collect();
         let mut all: Vec<usize> = of.iter().flat_map(|(_, c)| c.iter().copied()).collect();
         all.sort_unstable();
         all.dedup();
@@ -236,9 +235,12 @@ pub(super) fn fill(
             Some(format!("{}={}", r.role.name(), shorten(address)))
         });
         Problem::Unclear {
-            wanted: roles.join("' or '"),
+            wanted: match of {
+                [(only, _)] => only.role.name(),
+                _ => "x1' / 'y",
+            },
             found: names.join(", ").chars().take(200).collect(),
-            example: example.unwrap_or_default(),
+            example: example.unwrap_or_default().into(),
         }
     };
     // A drive or a process?

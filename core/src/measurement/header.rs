@@ -392,7 +392,7 @@ fn convert(
         }),
         None => Err(Problem::WrongUnit {
             unit: shorten(unit),
-            expected: format!("{} ({ACCEPTED})", expected.1),
+            expected: format!("{}; accepted: {ACCEPTED}", expected.1),
         }),
     }
 }
