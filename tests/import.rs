@@ -314,6 +314,7 @@ fn blanks_divide_columns_where_nothing_else_does() {
     // Without a header the first line is missed.
     let first = "'0.000e0  0.000e0  0.000e0  1.5' is not a header";
     refused(&rows("  "), &["line 1", first, "the first line must name"]);
+    refused("0\t64\t0\n1\t64\t0\n", &["'0 64 0' is not a header"]);
     let text = format!("t [s]  u [N m]  x1 [rad]\n{}", rows("  "));
     refused(&text, &["line 2", "4 fields, but the header has 3"]);
 }

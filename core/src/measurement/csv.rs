@@ -63,7 +63,7 @@ pub(super) fn import_text(
         let found = rows
             .clone()
             .next()
-            .map_or_else(String::new, |r| shorten(r.1));
+            .map_or_else(String::new, |r| shorten(&r.1.trim().replace('\t', " ")));
         return Err(fail(Some(line), None, Problem::NoHeader { found }));
     }
     map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
