@@ -134,6 +134,54 @@ fn a_torque_constant_that_is_not_known_is_one_and_that_is_said() {
 }
 
 #[test]
+fn a_command_is_an_input_of_unknown_scale() {
+    for (unit, shown) in [
+        ("%", "%"),
+        ("PWM", "PWM"),
+        ("pwm", "PWM"),
+        ("1", "1"),
+        ("counts", "counts"),
+    ] {
+        let m = read(FLAT, &RIG.replace("[A]", &format!("[{unit}]")), None);
+        is_the_rig(&m, 1.0);
+        assert_eq!(m.input.unit, "N m", "{unit}");
+        assert!(m.warnings[0].contains(&format!("1 N m/{shown} is taken")));
+        assert!(m.warnings.len() == 2 && m.warnings[1].contains("is a command"));
+    }
+    let command = RIG.replace("[A]", "[%]");
+    let known = read(FLAT, &command, Some("0.002 N m/%"));
+    is_the_rig(&known, 0.002);
+    assert_eq!(known.warnings.len(), 1);
+    let slide = "t=time [ms],u=current [PWM],x1=enc [counts, 0.001 mm]";
+    assert_eq!(read(FLAT, slide, None).input.unit, "N");
+    // The constant of another command, or of a current, does not fit it.
+    for constant in ["1 N m/PWM", "0.05 N m/A"] {
+        refused(
+            FLAT,
+            &command,
+            Some(constant),
+            &["torque constant", "an input in %"],
+        );
+    }
+    // Only the input is one.
+    for wrong in [
+        "v1=speed [%]",
+        "v1=speed [counts]",
+        "x1=enc [%]",
+        "x1=enc [1]",
+    ] {
+        let mapping = format!("t=time [ms],u=current [%],{wrong}");
+        refused(FLAT, &mapping, None, &["does not fit"]);
+    }
+    refused(
+        FLAT,
+        &RIG.replace("[A]", "[degC]"),
+        None,
+        &["'degC' does not fit", "a command: %, PWM, counts, 1"],
+    );
+}
+
+#[test]
 fn a_process_keeps_its_units() {
     let m = read(FLAT, "t=time [s],u=current [%],y=speed [degC]", None);
     assert_eq!((m.kind, m.input.unit.as_str()), (Kind::Process, "%"));

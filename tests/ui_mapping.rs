@@ -282,6 +282,92 @@ fn a_process_takes_any_unit() {
 }
 
 #[test]
+fn numbers_alone_that_blanks_divide_are_mapped_with_a_command_as_input() {
+    let expected = expected();
+    let rows = drive().lines().skip(1).collect::<Vec<_>>().join("\n  ");
+    let mut harness = app("compare", TALL);
+    open(&mut harness, "rig.dat", rows.replace(',', "   ").as_bytes());
+    let reason = form(&harness)["reason"].clone();
+    assert!(
+        reason
+            .as_str()
+            .is_some_and(|r| r.contains("is not a header; the first line must name")),
+        "{reason}"
+    );
+    for (channel, column, unit, of) in [
+        ("Time", "column 1", "Unit of the time", "s"),
+        ("Input", "column 2", "Unit of the input", "PWM"),
+        ("Position", "column 3", "Unit of the position", "rad"),
+        ("Velocity", "column 4", "Unit of the velocity", "rad/s"),
+    ] {
+        choose(&mut harness, channel, column);
+        choose(&mut harness, unit, of);
+    }
+    harness.get_by_label("Torque constant, if it is known");
+    click(&mut harness, "Open it");
+    assert_eq!(state(&harness)["file"], "rig.dat");
+    assert_eq!(found(&harness), expected);
+    in_german(&mut harness);
+}
+
+/// Nothing that is shown is left in English.
+fn in_german(harness: &mut App) {
+    harness.state_mut().speak(Language::German);
+    finish(harness);
+    assert_eq!(language::missed(), Vec::<String>::new());
+    harness.state_mut().speak(Language::English);
+    finish(harness);
+}
+
+#[test]
+fn what_can_be_one_column_only_is_taken_and_what_can_be_several_is_asked() {
+    let row = |k: i32| {
+        let heat = f64::from(k / 10 % 2);
+        format!(
+            "{k},{heat},{},{}",
+            20.0 + 0.1 * f64::from(k % 20),
+            1 - k % 2
+        )
+    };
+    let rows = (0..200).map(row).collect::<Vec<_>>().join("\n");
+    let mut harness = app("compare", TALL);
+    open(
+        &mut harness,
+        "oven.csv",
+        format!("Time,Q1,T1,Q2\n{rows}").as_bytes(),
+    );
+    let reason = form(&harness)["reason"].clone();
+    assert!(
+        reason
+            .as_str()
+            .is_some_and(|r| r.contains("it is not clear which is meant: Q1, Q2")),
+        "{reason}"
+    );
+    in_german(&mut harness);
+    click(&mut harness, "Cancel");
+    open(
+        &mut harness,
+        "oven.csv",
+        format!("Time,Q1,T1,note\n{rows}").as_bytes(),
+    );
+    assert_eq!(form(&harness), Value::Null);
+    assert_eq!(state(&harness)["file"], "oven.csv");
+    in_german(&mut harness);
+    // A unit of a process in what looks like a drive.
+    open(
+        &mut harness,
+        "oven.csv",
+        format!("t [s],u [%],x [degC],note\n{rows}").as_bytes(),
+    );
+    let reason = form(&harness)["reason"].clone();
+    assert!(
+        reason.as_str().is_some_and(|r| r.contains("in any unit")),
+        "{reason}"
+    );
+    in_german(&mut harness);
+}
+
+#[test]
 fn cancel_keeps_what_was_open() {
     let mut harness = app("compare", WIDE);
     open(&mut harness, "drive.csv", drive().as_bytes());

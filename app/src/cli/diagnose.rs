@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// unit; such as "t=time [ms],u=-current [A],x1=enc [counts:4096]"
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     map: Option<AsWritten<Mapping>>,
-    /// What a current or voltage as input becomes, such as "0.05 N m/A"; without it all torques stand in
+    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"; without it all torques stand in
     /// multiples of it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     torque_constant: Option<AsWritten<TorqueConstant>>,

@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     /// Which column is what: t, u, x1 or v1, its name in the file (- before it turns the sign), its unit
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     map: Option<Mapping>,
-    /// What a current or voltage as input becomes, such as "0.05 N m/A"; the gap does not depend on it
+    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"; the gap does not depend on it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     torque_constant: Option<TorqueConstant>,
     /// For a person or for a program

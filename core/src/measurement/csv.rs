@@ -1,6 +1,8 @@
 //! Comma-separated files, as people have them.
 
 use super::error::{ImportError, Problem};
+use super::found::{Numbers, addressed};
+use super::guess::fill;
 use super::header::{Field, Header, Role, map, name_and_unit, shorten, understand};
 use super::mapping::ImportOptions;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
@@ -16,11 +18,14 @@ struct Dialect {
 /// Reads a CSV file.
 ///
 /// The header names the columns with units in brackets: `t [s],u [N m],x1 [rad],v1 [rad/s]` for a
-/// drive, `t [s],u [1],y [1]` for a process. Separated by comma, semicolon or tab; with the latter
-/// two a decimal comma is understood. Lines that start with `#` are comments. Everything but the
+/// drive, `t [s],u [1],y [1]` for a process. Separated by comma, semicolon, tab or, where none of
+/// these is there, blanks; with semicolon and tab a decimal comma is understood. Lines that start
+/// with `#` are comments, of which the last one before the numbers is the header where the file has
+/// no other and it names as many columns as there are. Everything but the
 /// signals of a process is converted to SI units; encoder counts state their resolution in the
 /// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). `kind` is guessed from the columns
-/// if not given. Columns with other names are ignored with a warning.
+/// if not given. What no column is called is taken from the only one whose name resembles it, with a
+/// warning. Other columns are ignored with a warning.
 ///
 /// # Errors
 /// One line that names file, line and column and says what was expected.
@@ -58,16 +63,26 @@ pub(super) fn import_text(
         let found = rows
             .clone()
             .next()
-            .map_or_else(String::new, |r| shorten(r.1));
+            .map_or_else(String::new, |r| shorten(&r.1.trim().replace('\t', " ")));
         return Err(fail(Some(line), None, Problem::NoHeader { found }));
     }
     map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
-    let header = understand(fields, options).map_err(|(column, problem)| {
+    let look = || {
+        Some(addressed(
+            survey(bytes, Numbers::default(), Numbers::take).ok()?,
+        ))
+    };
+    let taken = fill(&mut fields, options, look).map_err(|p| fail(Some(line), None, p))?;
+    let mut header = understand(fields, options).map_err(|(column, problem)| {
         let column = column.map(|(i, n)| format!("{i} ({n})"));
         fail(Some(line), column, problem)
     })?;
+    header.notes.splice(..0, taken);
     let values = read_rows(&header, dialect, rows)
         .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
+    header
+        .doubt_seconds(&values)
+        .map_err(|(column, problem)| fail(Some(line), column, problem))?;
     assemble(name, &header, values).map_err(|problem| fail(None, None, problem))
 }
 
@@ -93,22 +108,32 @@ fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &str)> + Clone
         (Some(line), Problem::NotText)
     })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut rows = text
+    let lines = text
         .lines()
         .enumerate()
         .map(|(i, line)| (i + 1, line))
-        .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
+        .filter(|(_, line)| !line.trim().is_empty());
+    let mut rows = lines.clone().filter(|(_, line)| comment(line).is_none());
     let whole = rows.clone();
-    let Some((line, first)) = rows.next() else {
+    let Some((mut line, first)) = rows.next() else {
         return Err((None, Problem::Empty));
     };
-    let separator = separator_of(first);
+    let separator = separator_of(first, rows.clone().next().map(|(_, row)| row));
     let mut dialect = Dialect {
         separator,
         mark: (separator == ',').then_some('.'),
     };
-    let names = split_header(first, separator);
-    let bare = names.iter().all(|f| number(f, &mut dialect).is_some());
+    let mut names = split_header(first, separator);
+    let mut numbers = |names: &[String]| names.iter().all(|f| number(f, &mut dialect).is_some());
+    let numeric = numbers(&names);
+    let mut bare = numeric;
+    let before = lines.take_while(|(at, _)| *at < line);
+    if numeric && let Some((at, header)) = before.last() {
+        let header = split_header(comment(header).unwrap_or_default(), separator);
+        if header.len() == names.len() && header.iter().any(|f| f.parse::<f64>().is_err()) {
+            (line, names, bare) = (at, header, false);
+        }
+    }
     let field = |text: &String| {
         let (name, unit) = if bare {
             Default::default()
@@ -121,8 +146,13 @@ fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &str)> + Clone
         fields: names.iter().map(field).collect(),
         line,
         dialect,
-        rows: if bare { whole } else { rows },
+        rows: if numeric { whole } else { rows },
     })
+}
+
+/// What a comment says; `None` of a line that is none.
+fn comment(line: &str) -> Option<&str> {
+    Some(line.trim_start().strip_prefix('#')?.trim_start_matches('#'))
 }
 
 /// Columns of a text, and what `look` has seen of their numbers; fields that are none are passed over.
@@ -150,33 +180,67 @@ pub(super) fn survey<S: Clone>(
     Ok(fields.into_iter().zip(seen).collect())
 }
 
-/// The separator: tab or semicolon where the header has one outside brackets, else a comma.
-fn separator_of(header: &str) -> char {
+/// Stands for any number of blanks and tabs.
+const BLANKS: char = ' ';
+
+/// The separator: tab or semicolon where the header has one outside brackets, else a comma, or blanks where
+/// neither the header nor the row after it has any of these and the row is divided by them.
+fn separator_of(header: &str, row: Option<&str>) -> char {
+    let outside = outside_brackets(header);
+    let numbers = |row: &str, separator| {
+        let mut fields = Vec::new();
+        split_row(row, separator, &mut fields);
+        let numeric = fields.iter().all(|f| f.parse::<f64>().is_ok());
+        numeric.then_some(fields.len())
+    };
+    let blanks = |row: &&str| {
+        let names = split_header(header, '\t').len();
+        let tabs = outside.contains('\t') && numbers(row.trim(), '\t') == Some(names);
+        !tabs && numbers(row, BLANKS).is_some_and(|count| count > 1)
+    };
+    if outside.contains(';') && !outside.contains('\t') {
+        ';'
+    } else if !outside.contains([',', ';']) && row.as_ref().is_some_and(blanks) {
+        BLANKS
+    } else if outside.contains('\t') {
+        '\t'
+    } else {
+        ','
+    }
+}
+
+/// A header without what stands in brackets.
+fn outside_brackets(header: &str) -> String {
     let mut depth = 0;
-    let mut found = ',';
-    for byte in header.bytes() {
-        match byte {
-            b'[' | b'(' => depth += 1,
-            b']' | b')' => depth -= 1,
-            b'\t' if depth == 0 => return '\t',
-            b';' if depth == 0 => found = ';',
+    let outside = header.chars().filter(|c| {
+        match c {
+            '[' | '(' => depth += 1,
+            ']' | ')' => depth -= 1,
             _ => {}
         }
-    }
-    found
+        depth == 0
+    });
+    outside.collect()
 }
 
 /// Splits a header; a separator inside brackets belongs to the unit (`[counts, 4096/rev]`).
 pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut depth = 0;
-    for c in header.chars() {
+    let mut quoted = false;
+    let blanks = separator == BLANKS;
+    for c in header
+        .trim_matches(|c: char| blanks && c.is_whitespace())
+        .chars()
+    {
         match c {
             '[' | '(' => depth += 1,
             ']' | ')' => depth -= 1,
+            '"' => quoted ^= blanks,
             _ => {}
         }
-        if depth <= 0 && c == separator {
+        let parts = c == separator || (blanks && c.is_whitespace());
+        if depth <= 0 && !quoted && parts {
             fields.push(String::new());
         } else if c != '"'
             && !c.is_control()
@@ -185,6 +249,9 @@ pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
             last.push(c);
         }
     }
+    if blanks {
+        return join_units(fields);
+    }
     // A separator at the end of the line is a habit of some loggers.
     if fields.len() > 1 && fields.last().is_some_and(|f| f.trim().is_empty()) {
         fields.pop();
@@ -192,9 +259,25 @@ pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
     fields.iter().map(|f| f.trim().to_owned()).collect()
 }
 
+/// Puts units that stand apart by blanks (`t [s]`) to their names, and leaves out what stands between blanks alone.
+fn join_units(parts: Vec<String>) -> Vec<String> {
+    let mut fields: Vec<String> = Vec::new();
+    for part in parts.into_iter().filter(|p| !p.is_empty()) {
+        match fields.last_mut() {
+            Some(name) if part.starts_with(['[', '(']) => *name = format!("{name} {part}"),
+            _ => fields.push(part),
+        }
+    }
+    fields
+}
+
 /// Splits a row of numbers; a separator inside quotes belongs to the field.
 fn split_row<'a>(row: &'a str, separator: char, fields: &mut Vec<&'a str>) {
     fields.clear();
+    if separator == BLANKS {
+        fields.extend(row.split_whitespace().map(|f| f.trim_matches('"')));
+        return;
+    }
     if !row.contains('"') {
         fields.extend(row.split(separator).map(str::trim));
         return;

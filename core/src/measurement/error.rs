@@ -36,6 +36,7 @@ impl Problem {
                 | Self::WrongUnit { .. }
                 | Self::BareCounts { .. }
                 | Self::NoColumn { .. }
+                | Self::Unclear { .. }
                 | Self::NoSuchColumn { .. }
                 | Self::NeedlessTorqueConstant { .. }
                 | Self::NotMapped { .. }
@@ -76,10 +77,18 @@ pub enum Problem {
         wanted: &'static str,
         hint: &'static str,
     },
+    #[error(
+        "no column '{wanted}', and it is not clear which is meant: {found}; say it in a mapping, such as {example}"
+    )]
+    Unclear {
+        wanted: &'static str,
+        found: String,
+        example: Box<str>,
+    },
     #[error("no column '{wanted}' to map; the file has {found}")]
     NoSuchColumn { wanted: String, found: String },
     #[error(
-        "a torque constant by {given} does not fit an input in {unit}; it makes torque of a current in A or a voltage in V"
+        "a torque constant by {given} does not fit an input in {unit}; it makes torque of a current in A, a voltage in V or a command in %, PWM, counts or 1"
     )]
     NeedlessTorqueConstant { unit: String, given: &'static str },
     #[error(

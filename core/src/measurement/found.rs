@@ -46,7 +46,7 @@ impl Numbers {
         !self.turns
     }
 
-    fn take(&mut self, value: f64) {
+    pub(super) fn take(&mut self, value: f64) {
         self.count += 1;
         if self.first.len() < FIRST {
             self.first.push(value);
@@ -76,11 +76,17 @@ pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError
         Format::Hdf5 => return Err(fail((None, Problem::Hdf5))),
         Format::Mat5 => survey_mat(bytes).map_err(|problem| fail((None, problem)))?,
     };
+    let mut found = addressed(seen);
+    found.retain(|column| column.numbers.count >= MIN_SAMPLES);
+    Ok(found)
+}
+
+/// Columns with their addresses.
+pub(super) fn addressed(seen: Vec<(Field, Numbers)>) -> Vec<FoundColumn> {
     let (fields, numbers): (Vec<Field>, Vec<Numbers>) = seen.into_iter().unzip();
     let addresses = addresses(&fields);
     let found = fields.into_iter().zip(addresses).zip(numbers);
-    Ok(found
-        .filter(|(_, numbers)| numbers.count >= MIN_SAMPLES)
+    found
         .map(|((field, address), numbers)| FoundColumn {
             name: field.name,
             address,
@@ -88,7 +94,7 @@ pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError
             known_as: field.role,
             numbers,
         })
-        .collect())
+        .collect()
 }
 
 fn survey_mat(bytes: &[u8]) -> Result<Vec<(Field, Numbers)>, Problem> {

@@ -1,8 +1,10 @@
-//! What the columns of a file most likely are, for a form that someone looks over: by their units, by what their names
-//! resemble, and by the order of their values.
+//! What the columns of a file most likely are: by their units, by what their names resemble, and by the order of their
+//! values. A form that someone looks over gets the likeliest; where nobody is asked, only what can be no other is taken.
 
+use super::error::Problem;
 use super::found::FoundColumn;
-use super::header::Role;
+use super::header::{Field, Role, shorten};
+use super::mapping::ImportOptions;
 use super::unit::{COUNTS, is_bare_counts, parse, usual_units};
 use super::{Kind, Quantity};
 
@@ -26,7 +28,7 @@ struct Resembling {
 const RESEMBLING: [Resembling; 5] = [
     Resembling {
         role: Role::Time,
-        parts: &["time", "zeit", "second", "sekunde"],
+        parts: &["time", "zeit", "tiempo", "second", "sekunde"],
         words: &["t", "sec"],
     },
     Resembling {
@@ -54,19 +56,47 @@ const RESEMBLING: [Resembling; 5] = [
         role: Role::Measured(Quantity::Input),
         parts: &[
             "torque", "moment", "force", "kraft", "current", "strom", "volt", "spannung",
-            "command", "stell", "input", "eingang", "power", "leistung",
+            "command", "stell", "input", "eingang", "power", "leistung", "pwm", "duty", "heater",
+            "heiz", "valve", "ventil", "pump",
         ],
-        words: &["u", "i", "iq", "m", "f", "tau"],
+        words: &["u", "i", "iq", "m", "f", "tau", "q1", "q2"],
     },
     Resembling {
         role: Role::Measured(Quantity::Output),
         parts: &[
             "output", "ausgang", "temp", "press", "druck", "level", "stand", "flow", "fluss",
-            "istwert",
+            "istwert", "pegel",
         ],
-        words: &["y"],
+        words: &["y", "t1", "t2"],
     },
 ];
+
+/// Parts of names of what no drive has, whatever its unit.
+const OF_PROCESS: [&str; 7] = ["temp", "press", "druck", "level", "pegel", "flow", "fluss"];
+
+/// Units of what no drive has.
+const UNITS_OF_PROCESS: [&str; 18] = [
+    "°c", "degc", "deg c", "celsius", "°f", "degf", "deg f", "k", "kelvin", "bar", "mbar", "pa",
+    "kpa", "hpa", "psi", "l/min", "l/s", "m3/h",
+];
+
+/// Parts of names of what was wanted, and not measured.
+const WANTED: [&str; 10] = [
+    "setpoint",
+    "set point",
+    "set_point",
+    "soll",
+    "target",
+    "desired",
+    "reference",
+    "wanted",
+    "error",
+    "fehler",
+];
+
+/// How much a column looks like a role by its unit and by its name; both add up.
+const BY_UNIT: u32 = 20;
+const BY_NAME: u32 = 10;
 
 /// Guesses what columns are.
 pub fn guess(columns: &[FoundColumn]) -> Guess {
@@ -103,15 +133,154 @@ impl Resembling {
             return 100;
         }
         let unit = column.unit.as_deref().filter(|u| parse(u).is_some());
-        let fits =
-            unit.map(|u| !usual_units(self.role).is_empty() && self.role.takes(Kind::Drive, u));
+        let output = self.role == Role::Measured(Quantity::Output);
+        let fits = if output {
+            column
+                .unit
+                .as_deref()
+                .is_some_and(is_of_process)
+                .then_some(true)
+        } else {
+            unit.map(|u| self.role.takes(Kind::Drive, u))
+        };
         let name = column.name.to_lowercase();
-        let part = self.parts.iter().any(|p| name.contains(p));
-        let word = words(&name).any(|w| self.words.contains(&w));
+        let has = |parts: &[&str]| parts.iter().any(|p| name.contains(p));
+        let named = has(self.parts) || words(&name).any(|w| self.words.contains(&w));
+        let measured = output || self.moves();
+        if (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS)) {
+            return 0;
+        }
+        // The output of a process may have any unit, which then says nothing.
+        let other = output && unit.is_some() && !has(&OF_PROCESS);
         match fits {
             Some(false) => 0,
-            fits => 20 * u32::from(fits.is_some()) + 10 * u32::from(part || word),
+            _ if other => 0,
+            fits => BY_UNIT * u32::from(fits.is_some()) + BY_NAME * u32::from(named),
         }
+    }
+
+    /// Whether it is what moves.
+    fn moves(&self) -> bool {
+        matches!(
+            self.role,
+            Role::Measured(Quantity::Position | Quantity::Velocity)
+        )
+    }
+
+    /// Whether a column may be it where nobody looks it over: its name says so, or its unit where that is enough.
+    fn may_be(&self, column: &FoundColumn) -> bool {
+        let by_unit = matches!(self.role, Role::Time | Role::Measured(Quantity::Output));
+        match self.likeness(column) {
+            0 => false,
+            BY_UNIT => by_unit,
+            _ => true,
+        }
+    }
+}
+
+/// Whether it is a unit of what no drive has.
+fn is_of_process(unit: &str) -> bool {
+    UNITS_OF_PROCESS.contains(&unit.trim().to_lowercase().as_str())
+}
+
+/// What a measurement still needs of its columns: time, input, and what moves or comes out.
+fn lacking(fields: &[Field], options: &ImportOptions) -> Vec<Role> {
+    use Quantity::{Input, Output, Position, Velocity};
+    let has = |role: Role| fields.iter().any(|f| f.role == Some(role));
+    let [moves, output] = [&[Position, Velocity][..], &[Output]]
+        .map(|all| all.iter().any(|q| has(Role::Measured(*q))));
+    let outputs: &[Quantity] = match options.kind {
+        Some(Kind::Drive) if !moves => &[Position, Velocity],
+        Some(Kind::Process) if !output => &[Output],
+        None if !moves && !output => &[Position, Velocity, Output],
+        _ => &[],
+    };
+    let first = [Role::Time, Role::Measured(Input)];
+    let first = first.into_iter().filter(|role| !has(*role));
+    let outputs = outputs.iter().map(|q| Role::Measured(*q));
+    // What the mapping speaks of is settled by it.
+    let settled = |role: &Role| options.mapping.entries.iter().any(|e| e.role == *role);
+    first.chain(outputs).filter(|role| !settled(role)).collect()
+}
+
+/// Gives what is lacking to the columns that can be nothing else, and says which; `look` finds the columns of the file.
+pub(super) fn fill(
+    fields: &mut [Field],
+    options: &ImportOptions,
+    look: impl FnOnce() -> Option<Vec<FoundColumn>>,
+) -> Result<Vec<String>, Problem> {
+    let lacking = lacking(fields, options);
+    let Some(columns) = (!lacking.is_empty()).then(look).flatten() else {
+        return Ok(Vec::new());
+    };
+    let free: Vec<usize> = (0..fields.len().min(columns.len()))
+        .filter(|i| fields[*i].role.is_none())
+        .collect();
+    let candidates = |resembling: &Resembling| -> Vec<usize> {
+        let free = free.iter().copied();
+        free.filter(|i| resembling.may_be(&columns[*i])).collect()
+    };
+    let wanted = RESEMBLING.iter().filter(|r| lacking.contains(&r.role));
+    let found: Vec<(&Resembling, Vec<usize>)> = wanted
+        .map(|r| (r, candidates(r)))
+        .filter(|(_, candidates)| !candidates.is_empty())
+        .collect();
+    let unclear = |of: &[&(&Resembling, Vec<usize>)]| {
+        let mut all: Vec<usize> = of.iter().flat_map(|(_, c)| c.iter().copied()).collect();
+        all.sort_unstable();
+        all.dedup();
+        let names: Vec<&str> = all.iter().map(|i| columns[*i].address.as_str()).collect();
+        let example = of.last().and_then(|(r, c)| {
+            let address = &columns[*c.first()?].address;
+            Some(format!("{}={}", r.role.name(), shorten(address)))
+        });
+        Problem::Unclear {
+            wanted: match of {
+                [(only, _)] => only.role.name(),
+                _ => "x1' / 'y",
+            },
+            found: names.join(", ").chars().take(200).collect(),
+            example: example.unwrap_or_default().into(),
+        }
+    };
+    // A drive or a process?
+    let output = |f: &&(&Resembling, Vec<usize>)| f.0.role == Role::Measured(Quantity::Output);
+    let outputs: Vec<_> = found.iter().filter(|f| output(f) || f.0.moves()).collect();
+    if outputs.iter().any(output) && outputs.len() > 1 {
+        return Err(unclear(&outputs));
+    }
+    for one in &found {
+        let something_else = |i: &usize| {
+            let mut others = RESEMBLING.iter().filter(|r| r.role != one.0.role);
+            others.any(|r| r.may_be(&columns[*i]))
+        };
+        if one.1.len() > 1 || one.1.iter().any(something_else) {
+            return Err(unclear(&[one]));
+        }
+    }
+    let mut notes = Vec::new();
+    for (resembling, candidates) in &found {
+        for i in candidates {
+            let (field, role) = (&mut fields[*i], resembling.role);
+            if role == Role::Time && field.unit.is_none() {
+                field.unit = columns[*i].unit_as(role, Kind::Drive);
+            }
+            field.role = Some(role);
+            let name = shorten(&field.name);
+            notes.push(format!("The column '{name}' is taken for {}.", said(role)));
+        }
+    }
+    Ok(notes)
+}
+
+/// A role in a sentence.
+fn said(role: Role) -> &'static str {
+    match role {
+        Role::Time => "the time",
+        Role::Measured(Quantity::Input) => "the input",
+        Role::Measured(Quantity::Position | Quantity::LoadPosition) => "the position",
+        Role::Measured(Quantity::Velocity | Quantity::LoadVelocity) => "the velocity",
+        Role::Measured(Quantity::Output) => "the output",
     }
 }
 
@@ -139,8 +308,8 @@ impl FoundColumn {
         if counted(last) {
             return Some(COUNTS.to_owned());
         }
-        // `pos_mm`, but not `x`: a name that is a unit alone says nothing.
-        let named = last.len() < self.name.len() && usual.contains(&last);
+        // `pos_mm`, but not `x`: a name that is a unit alone says nothing, nor does the 1 of `command_1`.
+        let named = last.len() < self.name.len() && last != "1" && usual.contains(&last);
         named.then(|| last.to_owned())
     }
 }
@@ -206,6 +375,22 @@ mod tests {
             Kind::Process,
             &["t=Zeit [s]", "u=Heizleistung [%]", "y=Kesseltemperatur [1]"],
         );
+        check(
+            "Time;Q1;T1",
+            Kind::Process,
+            &["t=Time []", "u=Q1 [1]", "y=T1 [1]"],
+        );
+        check(
+            "t [s];pump [%];setpoint level [cm];level [cm]",
+            Kind::Process,
+            &["t=t [s]", "u=pump [%]", "y=level [cm]"],
+        );
+        check(
+            "t [s];pwm [%];target angle [deg];angle_1 [deg];a [degC]",
+            Kind::Drive,
+            &["t=t [s]", "x1=angle_1 [deg]", "u=pwm [%]", "y=a []"],
+        );
+        check("t;command_1", Kind::Drive, &["t=t []", "u=command_1 []"]);
         check("1;2;3", Kind::Drive, &[]);
     }
 }

@@ -89,7 +89,33 @@ pub(super) struct Header {
     /// What had to be assumed, for the user.
     pub notes: Vec<String>,
     pub width: usize,
+    /// Whether the time has no unit and is taken as seconds.
+    pub assumes_seconds: bool,
 }
+
+impl Header {
+    /// What is wrong with taking these times as seconds: a clock that counts in large steps may count anything.
+    pub fn doubt_seconds(&self, values: &[Vec<f64>]) -> Result<(), (Option<String>, Problem)> {
+        let times = self.columns.iter().zip(values);
+        let Some((column, [first, .., last])) = times
+            .filter(|_| self.assumes_seconds)
+            .find(|(column, _)| column.role == Role::Time)
+            .map(|(column, times)| (column, times.as_slice()))
+        else {
+            return Ok(());
+        };
+        let steps = values.first().map_or(0, Vec::len).saturating_sub(1);
+        if (last - first) / (steps as f64) < LONGEST_ASSUMED {
+            return Ok(());
+        }
+        let here = format!("{} ({})", column.index + 1, column.name);
+        let (name, example) = (column.name.clone(), example(Role::Time));
+        Err((Some(here), Problem::NoUnit { name, example }))
+    }
+}
+
+/// The step from which times without a unit are not taken as seconds: milliseconds are more likely then.
+const LONGEST_ASSUMED: f64 = 10.0;
 
 /// A problem and the column (from 1, with its name) that it concerns.
 pub(super) type Located = (Option<(usize, String)>, Problem);
@@ -208,9 +234,11 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
             Kind::Drive
         },
     );
+    present(&roles, kind)?;
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
     let mut plain = Vec::new();
+    let mut clock = None;
     for (index, field) in fields.into_iter().enumerate() {
         let Field {
             name,
@@ -234,13 +262,17 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
                 plain.push(shorten(&name));
                 "1".to_owned()
             }
+            None if kind == Kind::Process && is_time(&name) => {
+                clock = Some(shorten(&name));
+                "s".to_owned()
+            }
             None => {
                 let example = example(role);
                 return Err((here(), Problem::NoUnit { name, example }));
             }
         };
-        let (measures, factor, unit) =
-            convert(role, kind, &name, &unit).map_err(|p| (here(), p))?;
+        let (measures, factor, unit) = convert(role, kind, &name, &unit)
+            .map_err(|p| (here(), or_process(p, role, options)))?;
         columns.push(Column {
             index,
             role,
@@ -256,15 +288,40 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
         ignored,
         notes: Vec::new(),
         width,
+        assumes_seconds: clock.is_some(),
     };
+    if let Some(clock) = clock {
+        let note = format!("No unit is given for {clock}: taken as seconds.");
+        header.notes.push(note);
+    }
     if !plain.is_empty() {
         let plain = plain.join(", ");
         let note = format!("No unit is given for {plain}: taken as plain numbers.");
         header.notes.push(note);
     }
     make_torque(&mut header, options)?;
-    complete(&header)?;
+    agree(&header)?;
     Ok(header)
+}
+
+/// Whether a column of this name can be nothing but the time.
+fn is_time(name: &str) -> bool {
+    role(name) == Some(Role::Time)
+}
+
+/// Says of a unit that no drive has that a process may, where it was not said which of the two it is.
+fn or_process(problem: Problem, role: Role, options: &ImportOptions) -> Problem {
+    match problem {
+        Problem::WrongUnit { unit, expected }
+            if options.kind.is_none()
+                && role != Role::Time
+                && unit::parse_input(&unit).is_none() =>
+        {
+            let expected = format!("{expected}; the output of a process is y, in any unit");
+            Problem::WrongUnit { unit, expected }
+        }
+        other => other,
+    }
 }
 
 /// A unit that a column in this role may have.
@@ -292,13 +349,13 @@ fn convert(
     name: &str,
     unit: &str,
 ) -> Result<(Measures, f64, String), Problem> {
-    use Measures::{Angle, AngularVelocity, Current, Force, Length, Speed, Time, Torque, Voltage};
+    use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
     let expected: (&[Measures], &str) = match (role, kind) {
         (Role::Time, _) => (&[Time], "a time: s, ms, us, min"),
         (_, Kind::Process) => return Ok((Measures::Other, 1.0, unit.to_owned())),
         (Role::Measured(Quantity::Input), _) => (
-            &[Torque, Force, Current, Voltage],
-            "a torque or force: N m, mN m, N, kN, or the current or voltage of the motor: A, V",
+            &[Torque, Force],
+            "a torque or force: N m, mN m, N, kN, the current or voltage of the motor: A, V, or a command: %, PWM, counts, 1",
         ),
         (Role::Measured(Quantity::Position | Quantity::LoadPosition), _) => (
             &[Angle, Length],
@@ -318,8 +375,15 @@ fn convert(
             name: name.to_owned(),
         });
     }
-    match unit::parse(unit) {
-        Some((measures, factor)) if expected.0.contains(&measures) => {
+    let input = role == Role::Measured(Quantity::Input);
+    let parsed = if input {
+        unit::parse_input(unit)
+    } else {
+        unit::parse(unit)
+    };
+    let fits = |m: Measures| expected.0.contains(&m) || (input && m.needs_torque_constant());
+    match parsed {
+        Some((measures, factor)) if fits(measures) => {
             Ok((measures, factor, measures.si().to_owned()))
         }
         Some(_) => Err(Problem::WrongUnit {
@@ -328,14 +392,14 @@ fn convert(
         }),
         None => Err(Problem::WrongUnit {
             unit: shorten(unit),
-            expected: format!("{} ({ACCEPTED})", expected.1),
+            expected: format!("{}; accepted: {ACCEPTED}", expected.1),
         }),
     }
 }
 
-/// Turns a current or voltage into torque or force: by the constant that is given, or by one.
+/// Turns a current, voltage or command into torque or force: by the constant that is given, or by one.
 fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Located> {
-    use Measures::{Current, Force, Length, Speed, Torque, Voltage};
+    use Measures::{Command, Force, Length, Speed, Torque, Voltage};
     let turns = !header
         .columns
         .iter()
@@ -345,7 +409,7 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
         return Ok(());
     };
     let before = column.measures;
-    let electric = matches!(before, Current | Voltage);
+    let turned = before.needs_torque_constant();
     let wrong = |given: Measures| {
         let problem = Problem::NeedlessTorqueConstant {
             unit: column.unit.clone(),
@@ -354,9 +418,9 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
         Err((Some((column.index + 1, column.name.clone())), problem))
     };
     let (factor, gives) = match options.torque_constant {
-        Some(constant) if !electric || constant.per != before => return wrong(constant.per),
+        Some(constant) if !turned || constant.per != before => return wrong(constant.per),
         Some(constant) => (constant.value(), constant.gives),
-        None if !electric => return Ok(()),
+        None if !turned => return Ok(()),
         None => (1.0, if turns { Torque } else { Force }),
     };
     column.factor *= factor;
@@ -371,18 +435,23 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
             per = before.si(),
         ));
     }
-    if before == Voltage {
-        header.notes.push(
+    let note = match before {
+        Voltage => {
             "The input is a voltage: the back-EMF acts as viscous friction and is part of it here."
-                .to_owned(),
-        );
-    }
+        }
+        Command(_) => {
+            "The input is a command: where it sets the voltage of the motor, the back-EMF acts as viscous \
+             friction and is part of it here."
+        }
+        _ => return Ok(()),
+    };
+    header.notes.push(note.to_owned());
     Ok(())
 }
 
-/// Checks that what a measurement needs is there, and that the units belong together.
-fn complete(header: &Header) -> Result<(), Located> {
-    let has = |role: Role| header.columns.iter().any(|c| c.role == role);
+/// Checks that what a measurement needs is there.
+fn present(roles: &[Option<Role>], kind: Kind) -> Result<(), Located> {
+    let has = |role: Role| roles.contains(&Some(role));
     let measured = |q: Quantity| has(Role::Measured(q));
     let missing = |wanted, hint| Err((None, Problem::NoColumn { wanted, hint }));
     if !has(Role::Time) {
@@ -394,18 +463,20 @@ fn complete(header: &Header) -> Result<(), Located> {
             "add the input, such as u [N m], u [N] or for a process u [1]",
         );
     }
-    match header.kind {
-        Kind::Drive if !measured(Quantity::Position) && !measured(Quantity::Velocity) => {
-            return missing(
-                "x1",
-                "a drive needs its position x1 [rad] or its velocity v1 [rad/s], or both; a process needs y [1]",
-            );
-        }
+    match kind {
+        Kind::Drive if !measured(Quantity::Position) && !measured(Quantity::Velocity) => missing(
+            "x1",
+            "a drive needs its position x1 [rad] or its velocity v1 [rad/s], or both; a process needs y [1]",
+        ),
         Kind::Process if !measured(Quantity::Output) => {
-            return missing("y", "a process needs its output, such as y [1]");
+            missing("y", "a process needs its output, such as y [1]")
         }
-        _ => {}
+        _ => Ok(()),
     }
+}
+
+/// Checks that the units belong together.
+fn agree(header: &Header) -> Result<(), Located> {
     let rotational = |m: Measures| match m {
         Measures::Torque | Measures::Angle | Measures::AngularVelocity => Some(true),
         Measures::Force | Measures::Length | Measures::Speed => Some(false),

@@ -13,7 +13,7 @@ pub struct ImportOptions {
     pub kind: Option<super::Kind>,
     /// Which column is what, in which unit.
     pub mapping: Mapping,
-    /// What a current or voltage as input of a drive becomes; see [`TorqueConstant`].
+    /// What a current, voltage or command as input of a drive becomes; see [`TorqueConstant`].
     pub torque_constant: Option<TorqueConstant>,
 }
 
@@ -54,19 +54,19 @@ pub(super) struct Entry {
     pub unit: Option<String>,
 }
 
-/// Torque or force by current or voltage, such as `0.05 N m/A`.
+/// Torque or force by current, voltage or command, such as `0.05 N m/A` or `0.002 N m/%`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorqueConstant {
     /// In SI units.
     value: f64,
     /// Torque or force.
     pub(super) gives: Measures,
-    /// Current or voltage.
+    /// Current, voltage or command.
     pub(super) per: Measures,
 }
 
 impl TorqueConstant {
-    /// N m/A, N/A, N m/V or N/V.
+    /// N m or N by A, V or the unit of a command.
     pub fn value(self) -> f64 {
         self.value
     }
@@ -93,7 +93,7 @@ pub enum MappingError {
         /// Which.
         name: String,
     },
-    /// Not a number with a unit of torque or force by current or voltage.
+    /// Not a number with a unit of torque or force by current, voltage or command.
     #[error(
         "'{text}' is not a torque constant; expected a number but zero and its unit, such as 0.05 N m/A, 2 N/A or 0.1 N m/V"
     )]
@@ -171,10 +171,10 @@ impl FromStr for TorqueConstant {
         let (gives, per) = unit.rsplit_once('/').ok_or_else(wrong)?;
         let number: f64 = number.parse().map_err(|_| wrong())?;
         let (gives, up) = unit::parse(gives).ok_or_else(wrong)?;
-        let (per, down) = unit::parse(per).ok_or_else(wrong)?;
+        let (per, down) = unit::parse_input(per).ok_or_else(wrong)?;
         let value = number * up / down;
-        let fits = matches!(gives, Measures::Torque | Measures::Force)
-            && matches!(per, Measures::Current | Measures::Voltage);
+        let fits =
+            matches!(gives, Measures::Torque | Measures::Force) && per.needs_torque_constant();
         if !fits || !value.is_finite() || value == 0.0 {
             return Err(wrong());
         }

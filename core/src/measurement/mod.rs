@@ -23,7 +23,7 @@ pub use guess::{Guess, guess};
 pub use header::Role;
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
 pub use table::import;
-pub use unit::{COUNTS, electric, usual_units};
+pub use unit::{COUNTS, needs_torque_constant, usual_units};
 
 /// What kind of system was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -15,10 +15,17 @@ pub(super) enum Measures {
     Speed,
     Current,
     Voltage,
+    /// What a drive is told, on a scale of its own, such as a share of the full voltage; as written on screen.
+    Command(&'static str),
     Other,
 }
 
 impl Measures {
+    /// Whether a torque constant makes a torque or a force of it.
+    pub fn needs_torque_constant(self) -> bool {
+        matches!(self, Self::Current | Self::Voltage | Self::Command(_))
+    }
+
     /// SI unit as written on screen.
     pub fn si(self) -> &'static str {
         match self {
@@ -31,13 +38,14 @@ impl Measures {
             Self::Speed => "m/s",
             Self::Current => "A",
             Self::Voltage => "V",
+            Self::Command(unit) => unit,
             Self::Other => "1",
         }
     }
 }
 
 /// What is accepted, for messages.
-pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage V, mV; angle rad, mrad, deg, rev; \
+pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage V, mV; command %, PWM, counts, 1; angle rad, mrad, deg, rev; \
     length m, mm, um; velocity rad/s, deg/s, rpm, m/s, mm/s; counts with their resolution, such as [counts, 4096/rev] \
     or [counts, 0.001 mm]";
 
@@ -46,7 +54,9 @@ pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force 
 pub fn usual_units(role: Role) -> &'static [&'static str] {
     match role {
         Role::Time => &["s", "ms", "us", "min"],
-        Role::Measured(Quantity::Input) => &["N m", "mN m", "N", "kN", "A", "mA", "V", "mV"],
+        Role::Measured(Quantity::Input) => &[
+            "N m", "mN m", "N", "kN", "A", "mA", "V", "mV", "%", "PWM", "1",
+        ],
         Role::Measured(Quantity::Position | Quantity::LoadPosition) => {
             &["rad", "mrad", "deg", "rev", "m", "mm", "um", COUNTS]
         }
@@ -60,10 +70,21 @@ pub fn usual_units(role: Role) -> &'static [&'static str] {
 /// What an encoder counts: a unit that needs its resolution.
 pub const COUNTS: &str = "counts";
 
-/// Whether this is a unit of a current or a voltage, which a torque constant makes a torque or a force.
-pub fn electric(unit: &str) -> bool {
-    let measures = parse(unit).map(|(measures, _)| measures);
-    matches!(measures, Some(Measures::Current | Measures::Voltage))
+/// Whether this is a unit of a current, a voltage or a command, which a torque constant makes a torque or a force.
+pub fn needs_torque_constant(unit: &str) -> bool {
+    parse_input(unit).is_some_and(|(measures, _)| measures.needs_torque_constant())
+}
+
+/// Quantity and factor of a unit that the input of a drive may have: also of a command, which is no physical one.
+pub(super) fn parse_input(text: &str) -> Option<(Measures, f64)> {
+    let command = match text.trim().to_lowercase().as_str() {
+        "%" | "percent" | "prozent" => "%",
+        "pwm" | "duty" | "duty cycle" => "PWM",
+        "1" | "-" => "1",
+        _ if is_bare_counts(text) => COUNTS,
+        _ => return parse(text),
+    };
+    Some((Measures::Command(command), 1.0))
 }
 
 /// Quantity and factor to SI of a unit, or of counts with a resolution.
@@ -128,11 +149,11 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         return exact;
     }
     Some(match compact.to_lowercase().as_str() {
-        "s" | "sec" | "second" | "seconds" => (Time, 1.0),
-        "ms" | "millisecond" | "milliseconds" => (Time, 1e-3),
-        "us" | "microseconds" => (Time, 1e-6),
-        "min" | "minutes" => (Time, 60.0),
-        "h" => (Time, 3600.0),
+        "s" | "sec" | "secs" | "second" | "seconds" | "sekunde" | "sekunden" => (Time, 1.0),
+        "ms" | "msec" | "millis" | "millisec" | "millisecond" | "milliseconds" => (Time, 1e-3),
+        "us" | "usec" | "micros" | "microsec" | "microsecond" | "microseconds" => (Time, 1e-6),
+        "min" | "mins" | "minute" | "minutes" | "minuten" => (Time, 60.0),
+        "h" | "hour" | "hours" => (Time, 3600.0),
         "nm" | "n.m" | "n-m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
         "knm" => (Torque, 1e3),
         "ncm" => (Torque, 1e-2),
@@ -182,12 +203,27 @@ mod tests {
                 assert!(role.takes(crate::measurement::Kind::Drive, &unit), "{unit}");
             }
         }
-        assert!(electric("mA") && electric("V") && !electric("N m") && !electric("1"));
+        for unit in ["mA", "V", "%", "PWM", "counts", "1"] {
+            assert!(needs_torque_constant(unit), "{unit}");
+        }
+        assert!(!needs_torque_constant("N m") && !needs_torque_constant("degC"));
     }
 
     #[test]
     fn common_spellings() {
-        check("ms", Measures::Time, 1e-3);
+        for second in ["s", "sec", "Second", "seconds"] {
+            check(second, Measures::Time, 1.0);
+        }
+        for milli in ["ms", "msec", "millis", "millisec", "milliseconds"] {
+            check(milli, Measures::Time, 1e-3);
+        }
+        for micro in ["us", "µs", "usec", "micros", "microsecond"] {
+            check(micro, Measures::Time, 1e-6);
+        }
+        for minute in ["min", "minute", "minutes"] {
+            check(minute, Measures::Time, 60.0);
+        }
+        check("hours", Measures::Time, 3600.0);
         check("N·m", Measures::Torque, 1.0);
         check("mN m", Measures::Torque, 1e-3);
         check("mN", Measures::Force, 1e-3);

@@ -1,7 +1,7 @@
 //! Which column is what, as someone chooses it: a plain value, and the mapping that it stands for.
 
 use hysteron_core::measurement::{
-    COUNTS, FoundColumn, Kind, Quantity, Role, electric, guess, usual_units,
+    COUNTS, FoundColumn, Kind, Quantity, Role, guess, needs_torque_constant, usual_units,
 };
 
 use crate::reading::Reading;
@@ -172,13 +172,13 @@ impl Choice {
         })
     }
 
-    /// Whether the input is a current or a voltage of a drive, which a torque constant makes a torque.
-    pub fn is_electric(&self) -> bool {
+    /// Whether the input of a drive is a current, a voltage or a command, which a torque constant makes a torque.
+    pub fn needs_torque_constant(&self) -> bool {
         let input = Role::Measured(Quantity::Input);
         self.kind == Kind::Drive
-            && self
-                .mapped()
-                .any(|(channel, chosen, _)| channel.role == input && electric(&chosen.unit))
+            && self.mapped().any(|(channel, chosen, _)| {
+                channel.role == input && needs_torque_constant(&chosen.unit)
+            })
     }
 
     /// What is still to be chosen, by its names in the form.
@@ -221,7 +221,7 @@ impl Choice {
                 map.push(out);
             }
         }
-        let torque_constant = if self.is_electric() {
+        let torque_constant = if self.needs_torque_constant() {
             self.torque_constant.trim().replace(',', ".")
         } else {
             String::new()

@@ -85,7 +85,7 @@ impl Form {
                 self.channel_ui(ui, channel, kind, &mut choice.chosen[i]);
             });
         }
-        if choice.is_electric() {
+        if choice.needs_torque_constant() {
             torque_constant_ui(ui, &mut choice.torque_constant);
         }
         if let Some(error) = &self.error {
