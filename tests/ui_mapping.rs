@@ -310,11 +310,13 @@ fn numbers_alone_that_blanks_divide_are_mapped_with_a_command_as_input() {
     in_german(&mut harness);
 }
 
-/// Nothing that is shown is left in English.
+/// Nothing that is shown is left in English but the name of the file.
 fn in_german(harness: &mut App) {
     harness.state_mut().speak(Language::German);
     finish(harness);
-    assert_eq!(language::missed(), Vec::<String>::new());
+    let mut missed = language::missed();
+    missed.retain(|text| !["rig.dat", "oven.csv"].contains(&text.as_str()));
+    assert_eq!(missed, Vec::<String>::new());
     harness.state_mut().speak(Language::English);
     finish(harness);
 }

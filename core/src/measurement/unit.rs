@@ -79,7 +79,7 @@ pub fn needs_torque_constant(unit: &str) -> bool {
 pub(super) fn parse_input(text: &str) -> Option<(Measures, f64)> {
     let command = match text.trim().to_lowercase().as_str() {
         "%" | "percent" | "prozent" => "%",
-        "pwm" | "duty" | "duty cycle" => "PWM",
+        "pwm" | "duty" => "PWM",
         "1" | "-" => "1",
         _ if is_bare_counts(text) => COUNTS,
         _ => return parse(text),
