@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::measurement::{Measurement, import_csv};
-use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Recorded, Stranger};
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Random, Recorded, Stranger};
 use support::diagnosis::{classes, finish};
 use support::sparse::thinned;
 
@@ -401,4 +401,65 @@ fn nothing_is_missing_where_nothing_is() {
         check(&d, &[], &[]);
         assert!(d.verdict.complete, "{rate} Hz: {}", d.verdict.text);
     }
+}
+
+#[test]
+fn stribeck_friction_is_known_from_the_position_under_a_relay_that_turns_every_few_samples() {
+    for gain in [0.5, 0.3] {
+        let rig = DriveRig {
+            recorded: Recorded::PositionOnly,
+            samples: 5000,
+            excitation: Excitation::Relay {
+                gain,
+                asymmetry: 0.05,
+                hysteresis: 0.2,
+                flip: None,
+            },
+            friction: Friction {
+                coulomb: 0.1,
+                standing: 0.17,
+                stribeck_velocity: 0.1,
+                displacement: 1e-7,
+            },
+            ..DriveRig::default()
+        };
+        let d = diagnose(&rig);
+        assert_eq!(classes(&d), [["stribeck_friction"]], "{}", d.verdict.text);
+        assert!(d.verdict.complete, "{}", d.verdict.text);
+        let last = d.steps.last().unwrap();
+        let inertia = last.parameters.iter().find(|p| p.name == "J1").unwrap();
+        assert!(
+            (inertia.value / rig.inertia - 1.0).abs() < 0.05,
+            "{}",
+            inertia.value
+        );
+    }
+}
+
+#[test]
+fn on_a_machine_that_never_turns_round_friction_and_a_load_are_the_same() {
+    // Exact steps of a body at held torque, less what rubs: it never stops.
+    let (inertia, viscous, friction, step) = (1.2e-4, 1.5e-4, 0.03, 1e-3);
+    let levels = [0.09, 0.06, 0.12, 0.07, 0.11, 0.05, 0.1, 0.08];
+    let decay = f64::exp(-viscous / inertia * step);
+    let mut noise = Random::new(7);
+    let mut text = "t [s],u [N m],v1 [rad/s]\n".to_owned();
+    let mut speed = 200.0;
+    for k in 0..8000 {
+        let push = levels[(k / 250) % levels.len()];
+        let read = speed + 0.5 * noise.normal();
+        let _ = writeln!(text, "{},{push},{read}", k as f64 * step);
+        let steady = (push - friction) / viscous;
+        speed = steady + (speed - steady) * decay;
+    }
+    let measurement = import_csv("one way", text.as_bytes(), None).unwrap();
+    let d = finish(DiagnosisJob::new(&measurement).unwrap());
+    let found = classes(&d);
+    assert_eq!(found.len(), 1, "{}", d.verdict.text);
+    for effect in ["coulomb_friction", "constant_load", "dead_zone"] {
+        assert!(found[0].contains(&effect), "{}", d.verdict.text);
+    }
+    let last = d.steps.last().unwrap();
+    let body = last.parameters.iter().find(|p| p.name == "J1").unwrap();
+    assert!((body.value / inertia - 1.0).abs() < 0.05, "{}", body.value);
 }

@@ -19,9 +19,11 @@ fn enough(whole: &Scored, part: &Scored, first: &Score) -> bool {
     alike(whole, part) || is_plain_noise(&part.score) || suffices(&part.score, &whole.score, first)
 }
 
-/// Whether a part does in place of the effect at this `place` of the whole, or of that effect nothing is seen beside it.
+/// Whether a part does in place of the effect at this `place` of the whole, or of that effect nothing is seen beside it and
+/// the held-back data do not want it.
 pub(super) fn part_does(whole: &Scored, part: &Scored, place: usize, first: &Score) -> bool {
-    enough(whole, part, first) || !is_seen(part, whole, place)
+    enough(whole, part, first)
+        || (!is_seen(part, whole, place) && !helps(&part.score, &whole.score))
 }
 
 /// Whether two models leave the same error within noise.

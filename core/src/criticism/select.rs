@@ -277,6 +277,27 @@ mod tests {
     }
 
     #[test]
+    fn what_takes_away_most_on_both_parts_helps_however_few_stretches_there_are() {
+        let few = |error: f64, error_fit: f64| Score {
+            held_count: 400.0,
+            correlation: 200.0,
+            ..noise(error, error_fit)
+        };
+        assert!(helps(&few(30.0, 32.0), &few(5.0, 5.5)));
+        assert!(!helps(&few(30.0, 32.0), &few(5.0, 25.0)));
+        assert!(!helps(&few(30.0, 32.0), &few(15.0, 16.0)));
+    }
+
+    #[test]
+    fn a_part_goes_first_where_even_the_whole_leaves_much() {
+        let goes =
+            |part, whole| goes_first(&noise(1000.0, 0.0), &noise(part, 0.0), &noise(whole, 0.0));
+        assert!(goes(100.0, 50.0));
+        assert!(!goes(800.0, 50.0));
+        assert!(!goes(100.0, 1.1));
+    }
+
+    #[test]
     fn what_the_held_back_part_happens_to_miss_is_no_noise() {
         assert!(is_plain_noise(&noise(1.09, 1.1)));
         for error in [1.0, 1.09] {

@@ -149,8 +149,12 @@ fn is_odd(rank: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
     use crate::criticism::baseline;
+    use crate::criticism::session::Session;
+    use crate::measurement::import_csv;
     use crate::rig::{DriveRig, Excitation, Stranger};
     use crate::user_model::UserModel;
 
@@ -186,5 +190,30 @@ mod tests {
                 "held back: {held}"
             );
         }
+    }
+
+    #[test]
+    fn both_parts_pass_the_one_start_of_a_motor() {
+        let (inertia, viscous, push, step) = (0.01, 0.1, 1.0, 5e-3);
+        let speed = |k: usize| {
+            let since = (k as f64 - 230.0).max(0.0) * step;
+            push / viscous * (1.0 - libm::exp(-viscous / inertia * since))
+        };
+        let mut text = "t [s],u [N m],v1 [rad/s]\n".to_owned();
+        for k in 0..900 {
+            let input = if k < 230 { 0.0 } else { push };
+            let noise = 0.02 * libm::sin(1e4 * libm::sin(1e3 * k as f64));
+            let _ = writeln!(text, "{},{input},{}", k as f64 * step, speed(k) + noise);
+        }
+        let measurement = import_csv("start", text.as_bytes(), None).unwrap();
+        let session = Session::new(&measurement, &UserModel::blank(measurement.kind)).unwrap();
+        let bends = bends(&session.data);
+        let of = |held: bool| -> f64 {
+            let blocks = session.data.blocks.iter().zip(&bends);
+            let part = blocks.filter(|(b, _)| b.held_back == held);
+            part.map(|(_, bend)| bend).sum()
+        };
+        assert!(of(false) > TOLD * (of(false) + of(true)), "{bends:?}");
+        assert!(of(true) > 0.0, "{bends:?}");
     }
 }
