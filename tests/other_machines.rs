@@ -463,3 +463,18 @@ fn on_a_machine_that_never_turns_round_friction_and_a_load_are_the_same() {
     let body = last.parameters.iter().find(|p| p.name == "J1").unwrap();
     assert!((body.value / inertia - 1.0).abs() < 0.05, "{}", body.value);
 }
+
+#[test]
+fn friction_is_found_where_a_machine_mostly_rests_and_its_tachometer_is_rough() {
+    for (velocity_noise, friction) in [(0.2, 0.06), (0.5, 0.02)] {
+        let rig = DriveRig {
+            recorded: Recorded::Both,
+            velocity_noise,
+            friction: Friction::dry(friction),
+            ..machine(200.0, 2500, servo(1.0, 1.0, 15.0))
+        };
+        let d = diagnose(&rig);
+        check(&d, &["coulomb_friction"], &[("c", friction)]);
+        assert!(d.verdict.complete, "{}", d.verdict.text);
+    }
+}

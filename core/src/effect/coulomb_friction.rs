@@ -76,7 +76,7 @@ impl Effect for CoulombFriction {
     }
 
     fn starts_with_body(&self, probe: &Probe, _share: f64) -> Vec<BodyStart> {
-        let Some(balance) = probe.balanced(|_, v| -v.signum()) else {
+        let Some(balance) = probe.balanced_in_motion(|_, v| -v.signum()) else {
             return Vec::new();
         };
         let level = balance.forces[0];

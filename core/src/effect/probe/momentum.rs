@@ -41,9 +41,15 @@ pub struct Balance {
     pub left: f64,
 }
 
+/// Standard deviations of its noise above which a velocity is one.
+const MOVES: f64 = 3.0;
+
 /// The record in stretches, one after the other.
 struct Stretches {
     samples: usize,
+    /// Velocity at the samples, and its noise.
+    velocity: Vec<f64>,
+    noise: f64,
     /// First samples.
     begins: Vec<usize>,
     /// Impulse of the input, gain of velocity, way, and duration.
@@ -60,6 +66,31 @@ impl Stretches {
             step * (inner + ends)
         };
         self.begins.iter().map(over).collect()
+    }
+
+    /// Those in which the body moves one way throughout, if there are enough: dry friction holds a body at rest with any
+    /// force up to its level.
+    fn in_motion(self) -> Self {
+        let still = MOVES * self.noise;
+        let moves = |from: &usize| {
+            let part = &self.velocity[*from..=from + self.samples];
+            part.iter().all(|v| *v > still) || part.iter().all(|v| *v < -still)
+        };
+        let kept: Vec<bool> = self.begins.iter().map(moves).collect();
+        if kept.iter().filter(|k| **k).count() < LEAST {
+            return self;
+        }
+        let of = |values: &[f64]| -> Vec<f64> {
+            let pairs = values.iter().zip(&kept);
+            pairs.filter(|(_, k)| **k).map(|(v, _)| *v).collect()
+        };
+        let begins = self.begins.iter().zip(&kept);
+        Self {
+            begins: begins.filter(|(_, k)| **k).map(|(b, _)| *b).collect(),
+            impulse: of(&self.impulse),
+            known: [of(&self.known[0]), of(&self.known[1]), of(&self.known[2])],
+            ..self
+        }
     }
 
     /// Body and forces of which these are the impulses per unit.
@@ -83,10 +114,8 @@ impl Probe {
     /// Stretches over which the change of velocity is more than noise, in the first samples.
     fn in_stretches(&self) -> Option<Stretches> {
         let n = self.velocity.len().min(self.acting.len()).min(LOOKED_AT);
-        let v = &self.velocity[..n];
-        // White noise of the velocity, as far as three samples in a row may be off a line.
-        let bends = v.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
-        let noise = (bends.sum::<f64>() / (6.0 * n as f64)).sqrt();
+        let (velocity, noise) = self.sharpest_velocity(n);
+        let v = &velocity[..];
         let change = |m: usize| {
             let squares: f64 = (m..n).map(|k| (v[k] - v[k - m]).powi(2)).sum();
             (squares / (n - m) as f64).sqrt()
@@ -114,8 +143,36 @@ impl Probe {
                 vec![samples as f64 * step; begins.len()],
             ],
             begins,
+            noise,
+            velocity,
         };
         Some(stretches)
+    }
+
+    /// The velocity of the first samples as it was measured or as the measured position says, whichever has less noise, and
+    /// its noise.
+    fn sharpest_velocity(&self, n: usize) -> (Vec<f64>, f64) {
+        // White noise, as far as three samples in a row may be off a line.
+        let noise = |v: &[f64]| {
+            let bends = v.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
+            (bends.sum::<f64>() / (6.0 * v.len() as f64)).sqrt()
+        };
+        let measured = self.velocity[..n].to_vec();
+        let own = noise(&measured);
+        if self.outputs.iter().all(|(is_velocity, _)| *is_velocity) {
+            return (measured, own);
+        }
+        let x = &self.position[..n];
+        let mut told = measured.clone();
+        for k in 1..n.saturating_sub(1) {
+            told[k] = (x[k + 1] - x[k - 1]) / (2.0 * self.scales.step);
+        }
+        let other = noise(&told);
+        if other < own {
+            (told, other)
+        } else {
+            (measured, own)
+        }
     }
 
     /// Inertia of the body if no force is missing.
@@ -123,10 +180,10 @@ impl Probe {
         Some(self.in_stretches()?.balance(&[])?.body[0])
     }
 
-    /// Body and a missing force of this signature, where that leaves clearly less than no force.
-    pub fn balanced(&self, force: impl Fn(f64, f64) -> f64) -> Option<Balance> {
-        let stretches = self.in_stretches()?;
-        let at = |k: usize| force(self.position[k], self.velocity[k]);
+    /// Body and a missing force of this signature while the body moves, where that leaves clearly less than no force.
+    pub fn balanced_in_motion(&self, force: impl Fn(f64, f64) -> f64) -> Option<Balance> {
+        let stretches = self.in_stretches()?.in_motion();
+        let at = |k: usize| force(self.position[k], stretches.velocity[k]);
         let alone = stretches.balance(&[])?;
         let sums = stretches.sums(self.scales.step, at);
         let found = stretches.balance(&[sums])?;
@@ -253,7 +310,9 @@ mod tests {
     #[test]
     fn so_is_dry_friction() {
         let probe = shown(|_, v| -0.3 * libm::tanh(v / 1e-4));
-        let balance = probe.balanced(|_, v| -v.signum()).expect("a balance");
+        let balance = probe
+            .balanced_in_motion(|_, v| -v.signum())
+            .expect("a balance");
         check("J", balance.body[0], BODY[0], 0.1);
         check("c", balance.forces[0], 0.3, 0.1);
     }
@@ -261,7 +320,7 @@ mod tests {
     #[test]
     fn a_body_alone_needs_no_force() {
         let probe = shown(|_, _| 0.0);
-        assert_eq!(probe.balanced(|_, v| -v.signum()), None);
+        assert_eq!(probe.balanced_in_motion(|_, v| -v.signum()), None);
         assert_eq!(probe.balanced_wave(), None);
         let inertia = probe.inertia_by_momentum().expect("an inertia");
         check("J", inertia, BODY[0], 0.05);
