@@ -6,6 +6,7 @@ mod support;
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::rig::process::{Excitation, ProcessRig, Stranger};
 use support::diagnosis::{classes, finish};
+use support::parameter::parameter;
 
 /// A process of two minutes that is watched for three, with a load that swings as slowly besides.
 fn diagnose(constant_load: f64, swing: f64, period: f64) -> Diagnosis {
@@ -28,8 +29,7 @@ fn what_takes_away_nearly_all_is_named_though_the_rest_hangs_together() {
     let d = diagnose(1.5, 0.3, 180.0);
     assert_eq!(classes(&d), [["constant_load"]], "{}", d.verdict.text);
     assert!(d.verdict.unknown, "the load swings as well");
-    let last = d.steps.last().unwrap();
-    let load = last.parameters.iter().find(|p| p.name == "F0").unwrap();
+    let load = parameter(&d, "F0");
     assert!(
         (load.value - 1.5).abs() < 2.0 * load.std_error,
         "{} +- {}",

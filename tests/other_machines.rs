@@ -10,6 +10,7 @@ use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Random, Recorded, Stranger};
 use support::diagnosis::{classes, finish};
+use support::parameter::parameter;
 use support::sparse::thinned;
 
 /// Friction and load of these machines, N m.
@@ -50,20 +51,24 @@ fn check(d: &Diagnosis, missing: &[&str], parameters: &[(&str, f64)]) {
     found.sort();
     let wanted: Vec<Vec<&str>> = missing.iter().map(|e| vec![*e]).collect();
     assert_eq!(found, wanted, "{}", d.verdict.text);
-    let last = d.steps.last().unwrap();
     let body = [
         ("J1", DriveRig::default().inertia),
         ("d1", DriveRig::default().viscous),
     ];
     for (symbol, truth) in body.iter().chain(parameters) {
-        let p = last.parameters.iter().find(|p| p.name == *symbol).unwrap();
-        assert!(
-            (p.value / truth - 1.0).abs() < 0.05,
-            "{symbol} = {} {}, truth {truth}",
-            p.value,
-            p.unit
-        );
+        check_value(d, symbol, *truth);
     }
+}
+
+/// A parameter is known to 5 %.
+fn check_value(d: &Diagnosis, symbol: &str, truth: f64) {
+    let p = parameter(d, symbol);
+    assert!(
+        (p.value / truth - 1.0).abs() < 0.05,
+        "{symbol} = {} {}, truth {truth}",
+        p.value,
+        p.unit
+    );
 }
 
 /// Friction and load are found and known to 5 %.
@@ -242,7 +247,7 @@ fn a_load_that_rubs_is_found_behind_its_shaft() {
         ("J2", load.inertia),
         ("c2", load.coulomb),
     ] {
-        let p = last.parameters.iter().find(|p| p.name == symbol).unwrap();
+        let p = parameter(&d, symbol);
         assert!(
             (p.value / truth - 1.0).abs() < 0.02,
             "{symbol} = {}",
@@ -301,12 +306,7 @@ fn a_load_that_is_soon_slow_is_found_behind_its_gap() {
     let d = diagnose(&rig);
     assert_eq!(classes(&d), [["backlash"]], "{}", d.verdict.text);
     let last = d.steps.last().unwrap();
-    let gap = last.parameters.iter().find(|p| p.name == "beta").unwrap();
-    assert!(
-        (gap.value / load.half_gap - 1.0).abs() < 0.05,
-        "{}",
-        gap.value
-    );
+    check_value(&d, "beta", load.half_gap);
     // How the contact gives way is hardly told; what it leaves must be said.
     assert_eq!(d.verdict.complete, last.error < 1.2, "{}", d.verdict.text);
 }
@@ -426,13 +426,7 @@ fn stribeck_friction_is_known_from_the_position_under_a_relay_that_turns_every_f
         let d = diagnose(&rig);
         assert_eq!(classes(&d), [["stribeck_friction"]], "{}", d.verdict.text);
         assert!(d.verdict.complete, "{}", d.verdict.text);
-        let last = d.steps.last().unwrap();
-        let inertia = last.parameters.iter().find(|p| p.name == "J1").unwrap();
-        assert!(
-            (inertia.value / rig.inertia - 1.0).abs() < 0.05,
-            "{}",
-            inertia.value
-        );
+        check_value(&d, "J1", rig.inertia);
     }
 }
 
@@ -459,9 +453,7 @@ fn on_a_machine_that_never_turns_round_friction_and_a_load_are_the_same() {
     for effect in ["coulomb_friction", "constant_load", "dead_zone"] {
         assert!(found[0].contains(&effect), "{}", d.verdict.text);
     }
-    let last = d.steps.last().unwrap();
-    let body = last.parameters.iter().find(|p| p.name == "J1").unwrap();
-    assert!((body.value / inertia - 1.0).abs() < 0.05, "{}", body.value);
+    check_value(&d, "J1", inertia);
 }
 
 #[test]

@@ -9,10 +9,13 @@
 
 #[path = "support/diagnosis.rs"]
 mod diagnosis;
+#[path = "support/parameter.rs"]
+mod parameter;
 
 use diagnosis::{classes, finish};
 use hysteron_core::criticism::DiagnosisJob;
 use hysteron_core::measurement::import_csv;
+use parameter::parameter;
 
 /// EMPS, a ball-screw drive of a prismatic joint in a closed position loop, position measured only:
 /// Janot, Gautier and Brunot, "Data set and reference models of EMPS", 2019. They identified, by least squares
@@ -39,7 +42,7 @@ fn the_positioning_system_has_dry_friction_and_an_offset() {
         ("c", 20.3935, 0.05),
         ("F0", 3.1648, 0.15),
     ] {
-        let p = last.parameters.iter().find(|p| p.name == symbol).unwrap();
+        let p = parameter(&d, symbol);
         println!("{symbol} {} +- {} {}", p.value, p.std_error, p.unit);
         assert!(
             (p.value / identified - 1.0).abs() < tolerance,

@@ -60,6 +60,13 @@ fn check(d: &Diagnosis, missing: &[&str]) {
     );
 }
 
+/// The effects are found, and the verdict says these words.
+fn check_said(record: &Measurement, missing: &[&str], words: &str) {
+    let d = diagnose(record);
+    check(&d, missing);
+    assert!(d.verdict.text.contains(words), "{}", d.verdict.text);
+}
+
 #[test]
 fn noise_that_remembers_is_no_missing_effect_and_hides_none() {
     for (friction, missing) in [(0.0, vec![]), (0.01, vec!["coulomb_friction"])] {
@@ -101,13 +108,7 @@ fn single_values_that_jump_are_left_out_and_said() {
         for (place, jump) in [(700, 40.0), (2900, -25.0), (2990, 300.0), (6100, 15.0)] {
             record.outputs[0].values[place] += jump * NOISE;
         }
-        let d = diagnose(&record);
-        check(&d, &missing);
-        assert!(
-            d.verdict.text.contains("4 values stood alone"),
-            "{}",
-            d.verdict.text
-        );
+        check_said(&record, &missing, "4 values stood alone");
     }
 }
 
@@ -120,13 +121,7 @@ fn of_a_channel_that_holds_its_readings_only_the_fresh_ones_count() {
             let fresh = readings[0];
             readings.fill(fresh);
         }
-        let d = diagnose(&record);
-        check(&d, &missing);
-        assert!(
-            d.verdict.text.contains("between 2000 readings"),
-            "{}",
-            d.verdict.text
-        );
+        check_said(&record, &missing, "between 2000 readings");
     }
 }
 
@@ -138,12 +133,6 @@ fn two_values_in_a_row_beyond_all_others_are_left_out_and_said() {
         let highest = values.iter().fold(0.0_f64, |high, v| high.max(*v));
         values[3100] = 2.0 * highest;
         values[3101] = 2.1 * highest;
-        let d = diagnose(&record);
-        check(&d, &missing);
-        assert!(
-            d.verdict.text.contains("2 values stood alone"),
-            "{}",
-            d.verdict.text
-        );
+        check_said(&record, &missing, "2 values stood alone");
     }
 }

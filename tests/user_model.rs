@@ -3,6 +3,8 @@
 
 #[path = "support/diagnosis.rs"]
 mod diagnosis;
+#[path = "support/parameter.rs"]
+mod parameter;
 
 use diagnosis::{classes, finish};
 use hysteron_core::criticism::{CriticismError, Diagnosis, DiagnosisJob};
@@ -22,8 +24,7 @@ fn diagnose(measurement: &Measurement, model: &str) -> Diagnosis {
 
 /// Value and standard error of a parameter of the last model.
 fn parameter(d: &Diagnosis, symbol: &str) -> (f64, f64) {
-    let all = &d.steps.last().unwrap().parameters;
-    let p = all.iter().find(|p| p.name == symbol).unwrap();
+    let p = parameter::parameter(d, symbol);
     (p.value, p.std_error)
 }
 

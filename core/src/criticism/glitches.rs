@@ -75,14 +75,20 @@ pub(super) fn mend(values: &mut [f64], noise: f64) -> Glitches {
 
 /// The values that are above (below, for a `side` of -1) all others by far, where they are glitches.
 fn beyond(values: &[f64], noise: f64, side: f64) -> Vec<usize> {
-    let most = (FEW * values.len() as f64) as usize;
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|a, b| (side * values[*b]).total_cmp(&(side * values[*a])));
-    let Some(lowest) = order.last().map(|i| side * values[*i]) else {
+    let most = ((FEW * values.len() as f64) as usize).min(LONGEST * MOST_ROWS);
+    if most == 0 {
         return Vec::new();
-    };
+    }
+    let highest_first = |a: &usize, b: &usize| (side * values[*b]).total_cmp(&(side * values[*a]));
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    // Only so many may be glitches: of the others the highest and the lowest are needed.
+    let (_, _, others) = order.select_nth_unstable_by(most, highest_first);
+    let lowest = others.iter().map(|i| side * values[*i]);
+    let lowest = lowest.fold(f64::INFINITY, f64::min);
+    order.truncate(most + 1);
+    order.sort_by(highest_first);
     // The gap between them and the others.
-    let gap = (1..=most.min(LONGEST * MOST_ROWS)).find(|count| {
+    let gap = (1..=most).find(|count| {
         let (above, highest) = (
             side * values[order[count - 1]],
             side * values[order[*count]],

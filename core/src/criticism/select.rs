@@ -13,9 +13,10 @@ const LEAST_STATISTIC: f64 = 30.0;
 
 /// Least relative fall of the held-back error: what changes the error by less may be real, but is
 /// not what the model is missing.
-const LEAST_FALL: f64 = 0.03;
+pub(super) const LEAST_FALL: f64 = 0.03;
 
-/// Relative fall of the error, on the held-back and on the fitted part, that counts whatever the statistic says.
+/// Relative fall of the error on both parts that counts whatever the statistic says: that is no chance however few
+/// independent stretches a record has, and what is left is correlated because something else is missing.
 const GREAT_FALL: f64 = 0.7;
 
 /// Of the held-back blocks in which a step changes the error, the least share in which it falls, and the least number
@@ -60,9 +61,10 @@ const SMALL_ERROR: f64 = 3.0;
 /// The same share where the input is known at its samples only, and what it did between them was found from the rest.
 pub(super) const SAMPLED_SHARE: f64 = 1e-2;
 
-/// Error, in noise units, above which much is left, and the part of the way to it (in logarithms) that speaks for a part
-/// of an effect there.
-const MUCH_LEFT: f64 = 3.0;
+/// Error, in noise units, up to which little is left.
+pub(super) const LITTLE_LEFT: f64 = 3.0;
+
+/// Part of the way (in logarithms) that speaks for a part of an effect where more is left.
 const PART_OF_THE_WAY: f64 = 0.5;
 
 /// Share of the held-back blocks that may be more than noise, and share of the error there that may be
@@ -81,7 +83,12 @@ pub(super) fn fall(before: &Score, after: &Score) -> f64 {
     1.0 - after.error / before.error
 }
 
-/// The same of the usual held-back block: where a few blocks show another effect besides, only these may stay as
+/// Relative fall of the error on the held-back or on the fitted part, whichever is less.
+pub(super) fn fall_on_both(before: &Score, after: &Score) -> f64 {
+    fall(before, after).min(1.0 - after.error_fit / before.error_fit)
+}
+
+/// The relative fall of the usual held-back block: where a few blocks show another effect besides, only these may stay as
 /// they were, or become worse.
 pub(super) fn usual_fall(before: &Score, after: &Score) -> f64 {
     let blocks = before.held_blocks.iter().zip(&after.held_blocks);
@@ -93,16 +100,9 @@ pub(super) fn usual_fall(before: &Score, after: &Score) -> f64 {
 
 /// Whether held-back data want the step from `before` to `after`.
 pub(super) fn helps(before: &Score, after: &Score) -> bool {
-    (statistic(before, after) > LEAST_STATISTIC || speaks_for_itself(before, after))
+    (statistic(before, after) > LEAST_STATISTIC || fall_on_both(before, after) > GREAT_FALL)
         && fall(before, after) > LEAST_FALL
         && helps_widely(&before.held_blocks, &after.held_blocks)
-}
-
-/// Whether the error falls so far, on both parts, that it is no chance however few independent stretches the record has: what
-/// is left then is correlated because something else is missing.
-fn speaks_for_itself(before: &Score, after: &Score) -> bool {
-    let fitted = 1.0 - after.error_fit / before.error_fit;
-    fall(before, after).min(fitted) > GREAT_FALL
 }
 
 /// Whether the error falls in most of the blocks in which it changes, and not only somewhat in one or two.
@@ -166,7 +166,7 @@ pub(super) fn suffices(part: &Score, whole: &Score, first: &Score) -> bool {
 /// bend to what another effect would explain, and the part takes most of the way.
 pub(super) fn goes_first(before: &Score, part: &Score, whole: &Score) -> bool {
     let way = |to: &Score| libm::log(before.error / to.error);
-    whole.error > MUCH_LEFT && way(part) > PART_OF_THE_WAY * way(whole)
+    whole.error > LITTLE_LEFT && way(part) > PART_OF_THE_WAY * way(whole)
 }
 
 /// Whether the step from `before` to `after` takes away more than a trifle of the error that there was at

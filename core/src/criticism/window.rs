@@ -41,7 +41,8 @@ pub(super) fn bend_between(output: &Output, from: usize, to: usize) -> f64 {
     let window = &output.values[from..to];
     let n = window.len() as f64;
     let middle = (n - 1.0) / 2.0;
-    let spread: f64 = (0..window.len()).map(|k| (k as f64 - middle).powi(2)).sum();
+    // Sum of the squared distances from the middle.
+    let spread = n * (n * n - 1.0) / 12.0;
     let mean = window.iter().sum::<f64>() / n;
     let tilt: f64 = window
         .iter()

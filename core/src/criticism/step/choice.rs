@@ -7,16 +7,16 @@ use crate::criticism::judge::{
 };
 use crate::criticism::knowledge::contradictions;
 use crate::criticism::score::Score;
-use crate::criticism::select::{fall, goes_first, helps, is_plain_noise, outweighs};
+use crate::criticism::select::{
+    LEAST_FALL, fall, fall_on_both, goes_first, helps, is_plain_noise, outweighs,
+};
 use crate::criticism::session::Scored;
 use crate::effect::{Effect, EffectId};
 
 /// The effect that is tried together with others where nothing helps by itself.
 const COMPANION: EffectId = EffectId::new("constant_load");
 
-/// Relative fall of the error from which an effect leaves a trace, and the one from which it is mentioned though chance is
-/// not ruled out.
-const SEEN_FALL: f64 = 0.03;
+/// Relative fall of the error on both parts from which an effect is mentioned though chance is not ruled out.
 const HINT_FALL: f64 = 0.3;
 
 impl StepJob {
@@ -91,16 +91,13 @@ impl StepJob {
     pub(super) fn lowers(&self, model: &Scored, id: EffectId) -> bool {
         let place = self.wanted.iter().position(|w| w.id() == id);
         let without = place.and_then(|place| self.without.get(place));
-        without.is_some_and(|without| fall(&without.score, &model.score) > SEEN_FALL)
+        without.is_some_and(|without| fall(&without.score, &model.score) > LEAST_FALL)
     }
 
     /// The effect that would lower the error most, and to what, where that is much and yet not beyond chance.
     pub(super) fn hint(&self, model: &Scored) -> Option<(EffectId, f64)> {
         let first = self.session.first(model);
-        let much = |s: &Scored| {
-            let fitted = 1.0 - s.score.error_fit / model.score.error_fit;
-            fall(&model.score, &s.score).min(fitted) > HINT_FALL
-        };
+        let much = |s: &Scored| fall_on_both(&model.score, &s.score) > HINT_FALL;
         let unsure = self.tried.iter().filter(|(e, s)| {
             !self.barred.contains(&e.id()) && much(s) && !helps_clearly(model, s, first)
         });

@@ -8,7 +8,7 @@ use super::judge::{HUGE_FALL, alike, nested, part_does, same_body};
 use super::next_experiment::{Design, Rival, TRYING, designs};
 use super::race::Race;
 use super::search::Search;
-use super::select::{fall, is_plain_noise, is_too_rich};
+use super::select::{LITTLE_LEFT, fall, is_plain_noise, is_too_rich};
 use super::session::{Rest, Scored, Session};
 use super::verdict::Class;
 use super::{Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport};
@@ -28,9 +28,6 @@ const BETTER: f64 = 0.9999;
 
 /// Times the cost of a model from which on an effect is needed, if the model without it is not hoped to come lower.
 const NEEDED: f64 = 30.0;
-
-/// Error, in noise units, up to which little is left.
-const LITTLE_LEFT: f64 = 3.0;
 
 /// What a step is doing.
 enum Stage {
@@ -347,12 +344,7 @@ impl StepJob {
     /// What a race came to.
     fn scored_all(&self, race: Race) -> Vec<(&'static dyn Effect, Scored)> {
         let scored = |(effect, fit)| (effect, self.session.scored(fit));
-        let finite = |(_, fit): &(_, Fit)| fit.cost.is_finite();
-        race.finish()
-            .into_iter()
-            .filter(finite)
-            .map(scored)
-            .collect()
+        race.finish().into_iter().map(scored).collect()
     }
 
     /// Where little is left, it may be for how the record was made; if so, no other effect is tried before that is in the

@@ -21,6 +21,9 @@ const LONGEST: usize = 64;
 const NOISE: f64 = 0.1;
 const LEAST: usize = 40;
 
+/// Standard deviations of its noise above which a velocity is one.
+const MOVES: f64 = 3.0;
+
 /// A force speaks for another body if it leaves less than this share of what none does.
 const CLEARLY: f64 = 0.7;
 
@@ -41,8 +44,11 @@ pub struct Balance {
     pub left: f64,
 }
 
-/// Standard deviations of its noise above which a velocity is one.
-const MOVES: f64 = 3.0;
+/// The values that are kept.
+fn only<T: Copy>(kept: &[bool], values: &[T]) -> Vec<T> {
+    let pairs = values.iter().zip(kept);
+    pairs.filter(|(_, kept)| **kept).map(|(v, _)| *v).collect()
+}
 
 /// The record in stretches, one after the other.
 struct Stretches {
@@ -80,15 +86,10 @@ impl Stretches {
         if kept.iter().filter(|k| **k).count() < LEAST {
             return self;
         }
-        let of = |values: &[f64]| -> Vec<f64> {
-            let pairs = values.iter().zip(&kept);
-            pairs.filter(|(_, k)| **k).map(|(v, _)| *v).collect()
-        };
-        let begins = self.begins.iter().zip(&kept);
         Self {
-            begins: begins.filter(|(_, k)| **k).map(|(b, _)| *b).collect(),
-            impulse: of(&self.impulse),
-            known: [of(&self.known[0]), of(&self.known[1]), of(&self.known[2])],
+            begins: only(&kept, &self.begins),
+            impulse: only(&kept, &self.impulse),
+            known: self.known.map(|column| only(&kept, &column)),
             ..self
         }
     }
