@@ -15,8 +15,8 @@ const LEAST_STATISTIC: f64 = 30.0;
 /// not what the model is missing.
 pub(super) const LEAST_FALL: f64 = 0.03;
 
-/// Relative fall of the error on both parts that counts whatever the statistic says: that is no chance however few
-/// independent stretches a record has, and what is left is correlated because something else is missing.
+/// Relative fall of the error on both parts that counts whatever the statistic says, and in however few blocks: that is no
+/// chance however few independent stretches a record has, and what is left is correlated because something else is missing.
 const GREAT_FALL: f64 = 0.7;
 
 /// Of the held-back blocks in which a step changes the error, the least share in which it falls, and the least number
@@ -100,9 +100,10 @@ pub(super) fn usual_fall(before: &Score, after: &Score) -> f64 {
 
 /// Whether held-back data want the step from `before` to `after`.
 pub(super) fn helps(before: &Score, after: &Score) -> bool {
-    (statistic(before, after) > LEAST_STATISTIC || fall_on_both(before, after) > GREAT_FALL)
-        && fall(before, after) > LEAST_FALL
-        && helps_widely(&before.held_blocks, &after.held_blocks)
+    fall_on_both(before, after) > GREAT_FALL
+        || (statistic(before, after) > LEAST_STATISTIC
+            && fall(before, after) > LEAST_FALL
+            && helps_widely(&before.held_blocks, &after.held_blocks))
 }
 
 /// Whether the error falls in most of the blocks in which it changes, and not only somewhat in one or two.
@@ -286,6 +287,13 @@ mod tests {
         assert!(helps(&few(30.0, 32.0), &few(5.0, 5.5)));
         assert!(!helps(&few(30.0, 32.0), &few(5.0, 25.0)));
         assert!(!helps(&few(30.0, 32.0), &few(15.0, 16.0)));
+        let in_one_block = |error: f64, error_fit: f64, most: f64, rest: f64| Score {
+            held_blocks: blocks(&[most], rest),
+            ..few(error, error_fit)
+        };
+        let before = in_one_block(300.0, 4000.0, 9e5, 1.0);
+        assert!(helps(&before, &in_one_block(6.0, 1.5, 300.0, 1.3)));
+        assert!(!helps(&before, &in_one_block(6.0, 3000.0, 300.0, 1.3)));
     }
 
     #[test]
