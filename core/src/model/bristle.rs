@@ -10,6 +10,10 @@ const TREMBLING: f64 = 2.0;
 /// Displacements of a friction contact after which the state before is forgotten to the last digit.
 const FORGOTTEN: f64 = 37.0;
 
+/// Displacements after which the state before hardly counts, and samples at most that they are looked for.
+const TOLD: f64 = 5.0;
+const MOST_TOLD: usize = 2_000;
+
 /// Displacement over which friction builds up, in standard deviations of the noise, from which on trembling hardly bends
 /// the contact, and less than the way would that is lost where it is taken out.
 const LONG: f64 = 500.0;
@@ -99,6 +103,15 @@ impl<'e> Bristle<'e> {
             deflection: 0.0,
             sample: 0,
         }
+    }
+
+    /// Sample from which on the motion tells the deflection at this one, whatever it was before, or so much of the record
+    /// before.
+    pub fn told_from(&self, sample: usize) -> usize {
+        let travelled = &self.way.travelled;
+        let since = travelled[sample] - TOLD * self.friction.presliding;
+        let told = travelled[..sample].partition_point(|way| *way < since);
+        told.max(sample.saturating_sub(MOST_TOLD))
     }
 
     /// Deflection at a sample, not before the last one asked for.

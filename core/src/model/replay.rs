@@ -81,7 +81,7 @@ pub struct Excitation {
     position: Vec<f64>,
     /// The noise of what it stands for.
     noise: Option<FollowedNoise>,
-    /// The same without its trembling, where it is measured.
+    /// The same without its trembling.
     steady: Option<Steady>,
     /// The load, where the motor felt its contacts.
     seen: Option<SeenLoad>,
@@ -122,10 +122,10 @@ impl Excitation {
             step: uniform.then_some(mean),
             slow_sensor,
             shown: Vec::new(),
-            steady: match noise {
-                Some(FollowedNoise::Position(level)) => Some(Steady::new(&position, level)),
-                _ => None,
-            },
+            steady: noise.map(|noise| match noise {
+                FollowedNoise::Position(level) => Steady::new(&position, level),
+                FollowedNoise::Velocity(level) => Steady::new(&position, level * mean),
+            }),
             position,
             noise,
             seen: None,
@@ -300,8 +300,9 @@ impl Excitation {
     ///
     /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
     /// given there. Of the hidden states the lagged input goes on from the window before; a load (`follow`)
-    /// and the deflection of a friction contact are where they must be if the body moved as measured. Returns the pieces
-    /// of motion that this took, one an interval at least unless nothing moves.
+    /// and the deflection of a friction contact are where they must be if the body moved as measured. Where the velocity
+    /// alone was measured, the contact goes on as well, and comes to the begin of a run by itself. Returns the pieces of
+    /// motion that this took, one an interval at least unless nothing moves.
     pub fn replay(
         &self,
         model: &Model,
@@ -321,14 +322,28 @@ impl Excitation {
             .contact()
             .zip(self.steady.as_ref())
             .map(|(contact, steady)| Bristle::new(contact, steady, &model.friction));
+        let measured = matches!(self.noise, Some(FollowedNoise::Position(_)));
+        // A load would have to be where it was, too.
+        let alone = !measured && model.load.is_none();
         let mut now = 0;
         for (from, end) in &self.runs {
             if now < *from {
-                now = now.max(self.remembered(*from, model));
+                // Noise of the velocity would loosen a contact that follows a body at rest: the model goes on alone.
+                let told = bristle.as_ref().filter(|_| alone);
+                let begin = told.map_or(*from, |b| b.told_from(*from).clamp(now, *from - 1));
+                now = now.max(self.remembered(*from, model).min(begin));
                 state = state.at_time(self.time[now] - self.time[0]);
                 for i in now..*from {
                     let load = self.early_load(model, i);
-                    path.pieces(i, |w, h| state.wait(model, w + load, h));
+                    if i < begin {
+                        path.pieces(i, |w, h| state.wait(model, w + load, h));
+                        continue;
+                    }
+                    if let Some(bristle) = bristle.as_mut().filter(|_| i == begin) {
+                        state = state.restarted(self.position[i], self.speed_after(i));
+                        state = state.with_deflection(bristle.at(i, &self.time));
+                    }
+                    path.pieces(i, |w, h| engine.advance(&mut state, w + load, h));
                 }
             }
             for i in *from..*end {
@@ -347,7 +362,7 @@ impl Excitation {
                         };
                         state = state.with_load(load, self.position[i], shift);
                     }
-                    if let Some(bristle) = &mut bristle {
+                    if let Some(bristle) = bristle.as_mut().filter(|_| measured) {
                         state = state.with_deflection(bristle.at(i, &self.time));
                     }
                 }
@@ -392,6 +407,11 @@ impl Excitation {
                 follower.place(x + v * (self.time[before] - begin), v, before);
             }
         }
+    }
+
+    /// Mean velocity from a sample to the next.
+    fn speed_after(&self, i: usize) -> f64 {
+        (self.position[i + 1] - self.position[i]) / self.step_after(i)
     }
 
     /// Load before the lag from sample `i` on, held at its value in the middle of the interval.
