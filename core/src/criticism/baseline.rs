@@ -19,9 +19,12 @@ pub(super) struct BaselineParameter {
 /// Place of the viscous friction in the baseline of a drive.
 pub(super) const DAMPING: usize = 1;
 
+/// Symbol of its inertia.
+pub(super) const INERTIA: &str = "J1";
+
 const DRIVE: [BaselineParameter; 2] = [
     BaselineParameter {
-        symbol: "J1",
+        symbol: INERTIA,
         label: "motor inertia",
         dimension: Some(Dimension::Inertia),
         effect: None,
@@ -81,7 +84,7 @@ pub(super) fn model(kind: Kind, values: &[f64]) -> Model {
 }
 
 /// Inertia and time constant stay within this factor of the first guess.
-const GUESS_FACTOR: f64 = 1e4;
+pub(super) const GUESS_FACTOR: f64 = 1e4;
 
 /// Longest time constant, in record lengths: a longer one cannot be told from an integrator.
 const LONGEST_SHARE: f64 = 10.0;
@@ -91,7 +94,8 @@ pub(super) fn clamp(kind: Kind, values: &mut [f64], scales: &Scales) {
     match kind {
         Kind::Drive => {
             let guess = scales.inertia.abs();
-            values[0] = values[0].clamp(guess / GUESS_FACTOR, guess * GUESS_FACTOR);
+            values[0] =
+                values[0].clamp(guess / scales.inertia_factor, guess * scales.inertia_factor);
             values[1] = values[1].max(0.0);
         }
         Kind::Process => {

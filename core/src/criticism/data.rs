@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::CriticismError;
+use super::baseline::GUESS_FACTOR;
 use super::cut::{self, Block, MIN_WINDOW};
 use super::fit::Motion;
 use super::noise::{Noise, noise};
@@ -446,6 +447,7 @@ impl Data {
             duration: step * (n - 1) as f64,
             force: spread(&self.input),
             inertia,
+            inertia_factor: GUESS_FACTOR,
             viscous: viscous.abs().max(inertia.abs() / (step * n as f64)),
             speed,
             travel: high - low,

@@ -18,8 +18,8 @@ use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::backlash::{Quality, sighted};
 use crate::crew::Crew;
 use crate::effect::{
-    self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Scales,
-    SeenGap,
+    self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Rubbing,
+    Scales, SeenGap,
 };
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::model::SeenLoad;
@@ -68,6 +68,12 @@ const LEAST_GAP_ERROR: f64 = 0.01;
 /// Iterations of a fit of the whole record from that of a part of it.
 const WHOLE_ITERATIONS: usize = 2;
 
+/// A guess of an inertia this many times the fitted one says nothing of the sizes of other things.
+const FAR_HEAVIER: f64 = 4.0;
+
+/// Factor within which a model keeps a body that the balance of momentum tells.
+const HELD_FACTOR: f64 = 4.0;
+
 pub(super) struct Session {
     /// What fits are compared on: all of the record, or windows spread over a long one.
     pub data: Data,
@@ -82,6 +88,8 @@ pub(super) struct Session {
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
+    /// The body that moves, where the baseline had run off from it.
+    pub held: Option<Rubbing>,
     /// What models that were met leave unexplained.
     probes: Probes,
     motion: Motion,
@@ -115,6 +123,7 @@ impl Session {
         let compared = data.thinned(COMPARED);
         Ok(Self {
             scales,
+            held: None,
             probes: Probes::default(),
             scout: compared.scout(),
             knowledge,
@@ -252,6 +261,36 @@ impl Session {
             gap: self.gap,
             crew: &data.crew,
         })
+    }
+
+    /// Takes the sizes from the fitted baseline where the guess had a far heavier body: a resonance turns that against its
+    /// input, and tells a regression nothing.
+    pub fn settle_scales(&mut self, fit: &Fit) {
+        let (inertia, viscous) = baseline::body(self.kind(), &fit.values);
+        let guessed = self.held.is_none() && fit.structure.effects.is_empty();
+        let far = self.scales.inertia > FAR_HEAVIER * inertia;
+        if self.kind() == Kind::Drive && guessed && far {
+            self.scales = self.whole().scales(inertia, viscous);
+        }
+    }
+
+    /// Holds the body near the one that the balance of momentum tells, where a fit without effects has run off from it: one
+    /// that rests for most of the record seems held by its own weight, nothing shows in the answers of that, and no
+    /// single effect does as much. True if so.
+    pub fn hold_body(&mut self, fit: &Fit) -> bool {
+        let said = self.knowledge.find(None, baseline::INERTIA).is_some();
+        let bare = fit.structure.effects.is_empty();
+        if self.kind() != Kind::Drive || said || !bare || self.held.is_some() {
+            return false;
+        }
+        self.held = self.probed(fit).probe.other_body(fit.values[0]);
+        if let Some(Rubbing { body, .. }) = self.held {
+            self.scales = Scales {
+                inertia_factor: HELD_FACTOR,
+                ..self.whole().scales(body[0], body[1])
+            };
+        }
+        self.held.is_some()
     }
 
     /// Score of the baseline, or of `scored` if there is none yet.

@@ -25,7 +25,7 @@ mod stribeck_friction;
 
 pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub use id::{EffectId, VISCOUS_FRICTION};
-pub use probe::{GapLoad, Place, SeenGap, StepPart, Steps};
+pub use probe::{GapLoad, Place, Rubbing, SeenGap, StepPart, Steps};
 pub use probe::{Probe, ProbeInput, ProbeOutput, Regression};
 pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales, shown_unit};
 

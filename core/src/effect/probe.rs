@@ -23,6 +23,7 @@ use crate::model::{Instant, Load, free_body, load_torque};
 use crate::order::range;
 use crate::sums::dot;
 pub(super) use bounces::Bounces;
+pub use momentum::Rubbing;
 pub use steps::{Place, StepPart, Steps};
 
 /// Samples at most that are looked at.

@@ -242,6 +242,8 @@ pub struct Scales {
     pub force: f64,
     /// Inertia of the baseline fit.
     pub inertia: f64,
+    /// Factor of it within which that of a model stays.
+    pub inertia_factor: f64,
     /// Viscous friction of the baseline fit.
     pub viscous: f64,
     /// Root mean square of the velocity, or of a process output, about its mean.
@@ -314,6 +316,7 @@ mod tests {
                 step,
                 duration: 2.0,
                 inertia: 1e-3,
+                inertia_factor: 1e4,
                 viscous: 1e-3,
                 force: 0.1,
                 speed: 1.0,

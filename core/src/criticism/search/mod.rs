@@ -1,5 +1,6 @@
 //! Finding the best fit of one structure from several starting points.
 
+mod pair;
 mod points;
 
 use std::collections::VecDeque;
@@ -98,6 +99,14 @@ impl Search {
             vec![(values, data.guessed_starts())],
             f64::INFINITY,
         )
+    }
+
+    /// Fits the baseline once more, from the body that `scales` hold.
+    pub fn held(data: &Data, fit: &Fit, scales: &Scales) -> Self {
+        let mut values = fit.values.clone();
+        (values[0], values[baseline::DAMPING]) = (scales.inertia, scales.viscous);
+        let point = (values, data.guessed_starts());
+        Self::from_points(fit.structure.clone(), vec![point], f64::INFINITY)
     }
 
     /// A search from these points.

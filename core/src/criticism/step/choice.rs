@@ -3,7 +3,7 @@
 use super::StepJob;
 use crate::criticism::Contradiction;
 use crate::criticism::judge::{
-    alike, helps_clearly, is_certain, may_hide, nested, part_does, tied,
+    HUGE_FALL, alike, helps_clearly, is_certain, may_hide, nested, part_does, tied,
 };
 use crate::criticism::knowledge::contradictions;
 use crate::criticism::score::Score;
@@ -58,6 +58,15 @@ impl StepJob {
             })
             .min_by_key(|(_, s)| s.fit.values.len())
             .or(Some(best))
+    }
+
+    /// The model with two more effects, where that leaves far less than `model` and than the best with one.
+    pub(super) fn together(&self, model: &Scored, best: Option<&Scored>) -> Option<&Scored> {
+        let less = |than: &Scored, pair: &&Scored| {
+            helps(&than.score, &pair.score) && fall(&than.score, &pair.score) > HUGE_FALL
+        };
+        let pair = self.pair.as_ref().filter(|pair| less(model, pair));
+        pair.filter(|pair| best.is_none_or(|best| less(best, pair)))
     }
 
     /// Effects without which the held-back error does not rise; those of the user's model stay.
@@ -147,8 +156,8 @@ impl StepJob {
         seen.into_iter().cloned().collect()
     }
 
-    /// Models with another effect that would help too, the best first: where the suggestion may turn
-    /// out to lead astray.
+    /// Models with two more effects that may hide each other, then with another effect that would help too, the best first:
+    /// where the suggestion may turn out to lead astray.
     pub(in crate::criticism) fn alternatives(&self, count: usize) -> Vec<Scored> {
         let Some(model) = &self.model else {
             return Vec::new();
@@ -164,6 +173,7 @@ impl StepJob {
             .map(|(_, s)| s)
             .collect();
         others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
-        others.into_iter().take(count).cloned().collect()
+        let pair = self.pair.iter().filter(|pair| may_hide(model, pair));
+        pair.chain(others).take(count).cloned().collect()
     }
 }

@@ -33,6 +33,8 @@ const NEEDED: f64 = 30.0;
 enum Stage {
     /// Fitting the model itself, effect by effect; `next` is the one to add then.
     Build { search: Search, next: usize },
+    /// Trying two effects that only show together.
+    Pair(Search),
     /// Trying what tells how the record was made, where little is left.
     Record(Race),
     /// Trying every effect on top.
@@ -56,6 +58,8 @@ pub struct StepJob {
     stage: Stage,
     model: Option<Scored>,
     tried: Vec<(&'static dyn Effect, Scored)>,
+    /// The model with two more effects, tried together.
+    pair: Option<Scored>,
     without: Vec<Scored>,
     classes: Vec<Class>,
     /// What could stand in the place of an effect.
@@ -139,6 +143,7 @@ impl StepJob {
             stage,
             model: None,
             tried: Vec::new(),
+            pair: None,
             without: Vec::new(),
             classes: Vec::new(),
             contradicted: Vec::new(),
@@ -232,7 +237,7 @@ impl StepJob {
                 || search.iterate(data, scales) && search.optimism() < enough
         };
         let over = match &mut self.stage {
-            Stage::Build { search, .. } => !works(search, f64::INFINITY),
+            Stage::Build { search, .. } | Stage::Pair(search) => !works(search, f64::INFINITY),
             Stage::Revisit(search) => !works(search, present),
             Stage::Remove { search, .. } => !works(search, NEEDED * present),
             Stage::Record(race) | Stage::Try(race) | Stage::Swap { race, .. } => {
@@ -261,6 +266,12 @@ impl StepJob {
                 let Some(scored) = self.finished(&search) else {
                     return Stage::Report;
                 };
+                if self.session.hold_body(&scored.fit) {
+                    let search =
+                        Search::held(&self.session.data, &scored.fit, &self.session.scales);
+                    return Stage::Build { search, next };
+                }
+                self.session.settle_scales(&scored.fit);
                 let search = self.wanted.get(next).map(|effect| {
                     let probed = self.session.probed(&scored.fit);
                     Search::adding(
@@ -285,8 +296,12 @@ impl StepJob {
                         search,
                         next: next + 1,
                     },
-                    None => self.try_stage(),
+                    None => self.pair_stage(),
                 }
+            }
+            Stage::Pair(search) => {
+                self.pair = self.finished(&search);
+                self.try_stage()
             }
             Stage::Record(race) => {
                 self.tried = self.scored_all(race);
@@ -345,6 +360,13 @@ impl StepJob {
     fn scored_all(&self, race: Race) -> Vec<(&'static dyn Effect, Scored)> {
         let scored = |(effect, fit)| (effect, self.session.scored(fit));
         race.finish().into_iter().map(scored).collect()
+    }
+
+    /// Two effects together, where the baseline would do what neither does alone.
+    fn pair_stage(&mut self) -> Stage {
+        let bare = self.model.as_ref().filter(|_| self.wanted.is_empty());
+        let search = bare.and_then(|model| Search::rubbing_under_load(&self.session, &model.fit));
+        search.map_or_else(|| self.try_stage(), Stage::Pair)
     }
 
     /// Where little is left, it may be for how the record was made; if so, no other effect is tried before that is in the
@@ -494,7 +516,9 @@ impl StepJob {
     fn progress(&self) -> (f64, String) {
         let wanted = self.wanted.len().max(1) as f64;
         match &self.stage {
-            Stage::Build { search, .. } => (0.1 * search.scanned(), "Fitting the model".to_owned()),
+            Stage::Build { search, .. } | Stage::Pair(search) => {
+                (0.1 * search.scanned(), "Fitting the model".to_owned())
+            }
             Stage::Record(race) | Stage::Try(race) => {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))
@@ -523,7 +547,8 @@ impl StepJob {
     /// with another suggestion, or with a part of an effect; and the session.
     pub(super) fn successor(self) -> (Session, Option<Scored>) {
         let next = self.model.as_ref().and_then(|model| {
-            let suggested = self.suggestion(model).map(|(_, scored)| scored.clone());
+            let suggested = self.suggestion(model).map(|(_, scored)| scored);
+            let suggested = self.together(model, suggested).or(suggested).cloned();
             // What is needed shows only where little is left.
             if let Some(suggested) = &suggested
                 && fall(&model.score, &suggested.score) > HUGE_FALL

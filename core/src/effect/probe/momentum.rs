@@ -13,19 +13,31 @@ use super::{Probe, solved};
 use crate::effect::spec::SEEN_TURN;
 use crate::sums::dot;
 
-/// Samples at most that are looked at.
-const LOOKED_AT: usize = 6_000;
+/// Samples at most that are looked at, and for waves along the way, of which many are tried.
+const LOOKED_AT: usize = 60_000;
+const LOOKED_AT_FOR_WAVES: usize = 6_000;
 
 /// Samples of a stretch at most, the share of the change of velocity over it that may be noise, and stretches at least.
-const LONGEST: usize = 64;
+const LONGEST: usize = 512;
 const NOISE: f64 = 0.1;
 const LEAST: usize = 40;
 
 /// Standard deviations of its noise above which a velocity is one.
 const MOVES: f64 = 3.0;
 
+/// Standard errors by which an inertia must differ from none to contradict another one, and the share of the impulse of the
+/// input that the other one must miss it by.
+const CERTAIN: f64 = 20.0;
+const IMPOSSIBLE: f64 = 10.0;
+
 /// A force speaks for another body if it leaves less than this share of what none does.
 const CLEARLY: f64 = 0.7;
+
+/// Displacements over which friction may build up that are tried, from a part of the travel on, and the share of what it
+/// leaves when it builds up at once that the best must leave.
+const DISPLACEMENTS: u32 = 16;
+const DISPLACEMENTS_PER_DECADE: u32 = 5;
+const GRADUAL: f64 = 0.9;
 
 /// Waves along the way that are tried at most; parts of their distance in which the best of them is looked for, and how
 /// often among ever closer ones.
@@ -42,6 +54,15 @@ pub struct Balance {
     pub forces: Vec<f64>,
     /// Share of the impulse of the input that is left.
     pub left: f64,
+}
+
+/// A body that rubs under a constant force, as the balance of momentum tells while it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rubbing {
+    /// Inertia and viscous friction.
+    pub body: [f64; 2],
+    /// Force beside the input.
+    pub load: f64,
 }
 
 /// The values that are kept.
@@ -76,45 +97,56 @@ impl Stretches {
 
     /// Those in which the body moves one way throughout, if there are enough: dry friction holds a body at rest with any
     /// force up to its level.
-    fn in_motion(self) -> Self {
+    fn in_motion(&self) -> Option<Self> {
         let still = MOVES * self.noise;
         let moves = |from: &usize| {
             let part = &self.velocity[*from..=from + self.samples];
             part.iter().all(|v| *v > still) || part.iter().all(|v| *v < -still)
         };
         let kept: Vec<bool> = self.begins.iter().map(moves).collect();
-        if kept.iter().filter(|k| **k).count() < LEAST {
-            return self;
-        }
-        Self {
+        let enough = kept.iter().filter(|k| **k).count() >= LEAST;
+        enough.then(|| Self {
             begins: only(&kept, &self.begins),
             impulse: only(&kept, &self.impulse),
-            known: self.known.map(|column| only(&kept, &column)),
-            ..self
-        }
+            known: self.known.each_ref().map(|column| only(&kept, column)),
+            velocity: self.velocity.clone(),
+            ..*self
+        })
     }
 
-    /// Body and forces of which these are the impulses per unit.
-    fn balance(&self, forces: &[Vec<f64>]) -> Option<Balance> {
-        let columns: Vec<&[f64]> = self.known.iter().chain(forces).map(Vec::as_slice).collect();
+    /// What each of these takes, as the impulse of the input tells, and the share of that which is left.
+    fn shared_among(&self, columns: &[&[f64]]) -> Option<(DVector<f64>, f64)> {
         let p = columns.len();
         let normal = DMatrix::from_fn(p, p, |a, b| dot(columns[a], columns[b]));
         let right = DVector::from_fn(p, |a, _| dot(columns[a], &self.impulse));
         let power = dot(&self.impulse, &self.impulse);
         let (solution, explained) = solved(normal, right)?;
+        Some((solution, (1.0 - explained / power).max(0.0)))
+    }
+
+    /// Share of the impulse of the input that a body by itself leaves.
+    fn left_alone(&self) -> Option<f64> {
+        let [gain, way, duration] = &self.known;
+        Some(self.shared_among(&[gain, way, duration])?.1)
+    }
+
+    /// Body and forces of which these are the impulses per unit.
+    fn balance(&self, forces: &[Vec<f64>]) -> Option<Balance> {
+        let columns: Vec<&[f64]> = self.known.iter().chain(forces).map(Vec::as_slice).collect();
+        let (solution, left) = self.shared_among(&columns)?;
         let (inertia, viscous) = (solution[0], solution[1].max(0.0));
         (inertia > 0.0).then(|| Balance {
             body: [inertia, viscous],
             forces: solution.iter().skip(3).map(|f| -f).collect(),
-            left: (1.0 - explained / power).max(0.0),
+            left,
         })
     }
 }
 
 impl Probe {
-    /// Stretches over which the change of velocity is more than noise, in the first samples.
-    fn in_stretches(&self) -> Option<Stretches> {
-        let n = self.velocity.len().min(self.acting.len()).min(LOOKED_AT);
+    /// Stretches over which the change of velocity is more than noise, in so many first samples.
+    fn in_stretches(&self, most: usize) -> Option<Stretches> {
+        let n = self.velocity.len().min(self.acting.len()).min(most);
         let (velocity, noise) = self.sharpest_velocity(n);
         let v = &velocity[..];
         let change = |m: usize| {
@@ -178,12 +210,31 @@ impl Probe {
 
     /// Inertia of the body if no force is missing.
     pub(super) fn inertia_by_momentum(&self) -> Option<f64> {
-        Some(self.in_stretches()?.balance(&[])?.body[0])
+        Some(self.in_stretches(LOOKED_AT)?.balance(&[])?.body[0])
+    }
+
+    /// The body as it moves, whatever dry friction there is beside, where that contradicts an inertia of `present`: all that
+    /// the input gave could not have moved it so.
+    pub fn other_body(&self, present: f64) -> Option<Rubbing> {
+        let moving = self.in_stretches(LOOKED_AT)?.in_motion()?;
+        let dry = moving.sums(self.scales.step, |k| moving.velocity[k].signum());
+        let [gain, way, duration] = &moving.known;
+        let (told, left) = moving.shared_among(&[gain, way, duration, &dry])?;
+        let (_, weightless) = moving.shared_among(&[way, duration, &dry])?;
+        let due = weightless - left;
+        let certain = due * moving.begins.len() as f64 > CERTAIN * CERTAIN * left;
+        let off = present / told[0] - 1.0;
+        let found = Rubbing {
+            body: [told[0], told[1].max(0.0)],
+            load: -told[2],
+        };
+        (told[0] > 0.0 && certain && left + due * off * off > IMPOSSIBLE).then_some(found)
     }
 
     /// Body and a missing force of this signature while the body moves, where that leaves clearly less than no force.
     pub fn balanced_in_motion(&self, force: impl Fn(f64, f64) -> f64) -> Option<Balance> {
-        let stretches = self.in_stretches()?.in_motion();
+        let all = self.in_stretches(LOOKED_AT)?;
+        let stretches = all.in_motion().unwrap_or(all);
         let at = |k: usize| force(self.position[k], stretches.velocity[k]);
         let alone = stretches.balance(&[])?;
         let sums = stretches.sums(self.scales.step, at);
@@ -191,16 +242,37 @@ impl Probe {
         (found.left < CLEARLY * alone.left).then_some(found)
     }
 
+    /// Body and dry friction that builds up over a displacement, with that, where it leaves clearly less than no friction and
+    /// less than one that builds up at once; a contact that gives way tells of itself at rest, too.
+    pub fn balanced_bristle(&self) -> Option<(f64, Balance)> {
+        let stretches = self.in_stretches(LOOKED_AT)?;
+        let bent = |displacement: f64| -> Option<(f64, Balance)> {
+            let deflection = self.deflection(displacement);
+            let sums = stretches.sums(self.scales.step, |k| -deflection[k]);
+            Some((displacement, stretches.balance(&[sums])?))
+        };
+        let finer = libm::pow(10.0, -1.0 / f64::from(DISPLACEMENTS_PER_DECADE));
+        let tried = self.crew.gather(DISPLACEMENTS as usize, |i| {
+            bent(self.scales.travel * libm::pow(finer, i as f64 + 1.0))
+        });
+        let at_once = tried.last()?.as_ref().map_or(1.0, |t| t.1.left);
+        let best = tried.into_iter().flatten();
+        let best = best.min_by(|a, b| a.1.left.total_cmp(&b.1.left))?;
+        let alone = stretches.left_alone()?;
+        let clearly = best.1.left < CLEARLY * alone && best.1.left < GRADUAL * at_once;
+        (clearly && best.1.forces[0] > 0.0).then_some(best)
+    }
+
     /// Body and the force that repeats along the way, with its spatial frequency (rad per unit of position); its parts are
     /// those with the sine and the cosine.
     pub fn balanced_wave(&self) -> Option<(f64, Balance)> {
-        let stretches = self.in_stretches()?;
+        let stretches = self.in_stretches(LOOKED_AT_FOR_WAVES)?;
         let travel = self.scales.travel;
         let spacing = APART / travel;
         let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
         let waves = |n: f64| -> Option<(f64, Balance)> {
             let step = self.scales.step;
-            let along = self.position.iter().take(LOOKED_AT);
+            let along = self.position.iter().take(LOOKED_AT_FOR_WAVES);
             let (sine, cosine): (Vec<f64>, Vec<f64>) = along.map(|x| libm::sincos(n * x)).unzip();
             let forces = [
                 stretches.sums(step, |k| sine[k]),
@@ -265,6 +337,7 @@ mod tests {
                 duration: STEP * SAMPLES as f64,
                 force: 0.7,
                 inertia: 40.0,
+                inertia_factor: 1e4,
                 viscous: 50.0,
                 speed: 0.03,
                 travel: 2.0 * travel,
@@ -319,8 +392,37 @@ mod tests {
     }
 
     #[test]
+    fn a_body_far_too_heavy_is_contradicted_and_the_load_beside_its_friction_told() {
+        let probe = shown(|_, v| 0.1 - 0.3 * libm::tanh(v / 1e-4));
+        let other = probe.other_body(40.0).expect("another body");
+        check("J", other.body[0], BODY[0], 0.1);
+        check("F0", other.load, 0.1, 0.1);
+        assert_eq!(probe.other_body(1.5 * BODY[0]), None);
+    }
+
+    #[test]
+    fn friction_that_builds_up_slowly_is_told_with_its_displacement() {
+        let (level, displacement) = (0.3, 0.02);
+        let bent = std::cell::Cell::new((0.0, 0.0));
+        let probe = shown(|x, _| {
+            let (last, before) = bent.get();
+            let now = crate::model::dahl(before, (x - last) / displacement, 1.0);
+            bent.set((x, now));
+            -level * now
+        });
+        let (told, balance) = probe.balanced_bristle().expect("a bristle");
+        check("J", balance.body[0], BODY[0], 0.1);
+        check("c", balance.forces[0], level, 0.1);
+        check("s", told, displacement, 0.3);
+        let at_once = shown(|_, v| -0.3 * libm::tanh(v / 1e-4));
+        assert_eq!(at_once.balanced_bristle(), None);
+    }
+
+    #[test]
     fn a_body_alone_needs_no_force() {
         let probe = shown(|_, _| 0.0);
+        assert_eq!(probe.other_body(BODY[0]), None);
+        assert_eq!(probe.balanced_bristle(), None);
         assert_eq!(probe.balanced_in_motion(|_, v| -v.signum()), None);
         assert_eq!(probe.balanced_wave(), None);
         let inertia = probe.inertia_by_momentum().expect("an inertia");
