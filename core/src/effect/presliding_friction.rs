@@ -112,6 +112,9 @@ impl Effect for PreslidingFriction {
     fn starts_with_body(&self, probe: &Probe, share: f64) -> Vec<BodyStart> {
         let mut found = long_starts(probe, share);
         found.retain(|(body, _)| body[1] >= 0.0);
+        let told = probe.balanced_bristle();
+        let told = told.map(|(s, balance)| (balance.body, vec![balance.forces[0], s, 0.1]));
+        found.extend(told);
         found
     }
 
