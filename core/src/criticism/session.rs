@@ -18,8 +18,8 @@ use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::backlash::{Quality, sighted};
 use crate::crew::Crew;
 use crate::effect::{
-    self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Rubbing,
-    Scales, SeenGap,
+    self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Range,
+    Rubbing, Scales, SeenGap,
 };
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::model::SeenLoad;
@@ -67,6 +67,9 @@ const LEAST_GAP_ERROR: f64 = 0.01;
 
 /// Iterations of a fit of the whole record from that of a part of it.
 const WHOLE_ITERATIONS: usize = 2;
+
+/// Share of the typical input below which a force, or an asymmetry, is no effect.
+const TRIFLE: f64 = 1e-3;
 
 /// A guess of an inertia this many times the fitted one says nothing of the sizes of other things.
 const FAR_HEAVIER: f64 = 4.0;
@@ -361,6 +364,24 @@ impl Session {
             let model = fit.structure.model(&fit.values);
             let step = self.data.excitation.mean_step();
             effect.is_of_record() || effect.is_between_samples(values, &model, step)
+        })
+    }
+
+    /// Whether the newest effect of a fit is more than a trifle of the input: where a motion is unstable, its least
+    /// disturbance grows until it is seen, and an asymmetry of the last digits of a record seems to explain it.
+    pub fn is_sizeable(&self, fit: &Fit) -> bool {
+        let structure = &fit.structure;
+        let Some((place, newest)) = structure.effects.iter().enumerate().next_back() else {
+            return true;
+        };
+        let leading = newest.parameters().first();
+        let size = fit.values[structure.range(place)].first();
+        leading.zip(size).is_none_or(|(spec, size)| {
+            let least = match (spec.dimension, spec.range) {
+                (Dimension::Force, _) | (Dimension::Ratio, Range::Fraction) => TRIFLE,
+                _ => 0.0,
+            };
+            size.abs() >= least * self.scales.of(spec.dimension)
         })
     }
 

@@ -42,6 +42,7 @@ impl StepJob {
             self.tried
                 .iter()
                 .filter(|(e, _)| !self.barred.contains(&e.id()))
+                .filter(|(_, s)| self.session.is_sizeable(&s.fit))
                 .filter(|(_, s)| helps_clearly(model, s, first))
         };
         let best = helping().min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error))?;
