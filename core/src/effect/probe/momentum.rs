@@ -25,10 +25,12 @@ const LEAST: usize = 40;
 /// Standard deviations of its noise above which a velocity is one.
 const MOVES: f64 = 3.0;
 
-/// Standard errors by which an inertia must differ from none to contradict another one, and the share of the impulse of the
-/// input that the other one must miss it by.
+/// Standard errors by which an inertia must differ from none to contradict another one, the share of the impulse of the input
+/// that its balance may leave, since a load that is met or swings has impulses of its own, and the one by which the other
+/// inertia must miss it.
 const CERTAIN: f64 = 20.0;
-const IMPOSSIBLE: f64 = 10.0;
+const BALANCED: f64 = 0.2;
+const IMPOSSIBLE: f64 = 50.0;
 
 /// A force speaks for another body if it leaves less than this share of what none does.
 const CLEARLY: f64 = 0.7;
@@ -222,7 +224,8 @@ impl Probe {
         let (told, left) = moving.shared_among(&[gain, way, duration, &dry])?;
         let (_, weightless) = moving.shared_among(&[way, duration, &dry])?;
         let due = weightless - left;
-        let certain = due * moving.begins.len() as f64 > CERTAIN * CERTAIN * left;
+        let certain =
+            left < BALANCED && due * moving.begins.len() as f64 > CERTAIN * CERTAIN * left;
         let off = present / told[0] - 1.0;
         let found = Rubbing {
             body: [told[0], told[1].max(0.0)],
