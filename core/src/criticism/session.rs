@@ -374,15 +374,17 @@ impl Session {
         let Some((place, newest)) = structure.effects.iter().enumerate().next_back() else {
             return true;
         };
-        let leading = newest.parameters().first();
-        let size = fit.values[structure.range(place)].first();
-        leading.zip(size).is_none_or(|(spec, size)| {
-            let least = match (spec.dimension, spec.range) {
-                (Dimension::Force, _) | (Dimension::Ratio, Range::Fraction) => TRIFLE,
-                _ => 0.0,
-            };
-            size.abs() >= least * self.scales.of(spec.dimension)
-        })
+        let own = newest.parameters().iter();
+        let sized = own.zip(&fit.values[structure.range(place)]);
+        let mut shares = sized
+            .filter(|(spec, _)| {
+                let asymmetry = (spec.dimension, spec.range) == (Dimension::Ratio, Range::Fraction);
+                asymmetry || spec.dimension == Dimension::Force
+            })
+            .map(|(spec, size)| size.abs() / self.scales.of(spec.dimension))
+            .peekable();
+        // Friction may be all in what it takes to start.
+        shares.peek().is_none() || shares.any(|share| share >= TRIFLE)
     }
 
     /// Effects of a fit, those of the baseline first.
