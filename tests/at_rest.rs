@@ -7,18 +7,13 @@ use std::f64::consts::TAU;
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Recorded};
 use support::diagnosis::{classes, finish};
-use support::parameter::parameter;
+use support::servo::servo;
+use support::value::check_value;
 
-/// A position loop of this bandwidth (rad/s) that makes a move in each `period` s, seen by a fine encoder.
-fn servo(rate: f64, samples: usize, reach: f64, period: f64, bandwidth: f64) -> DriveRig {
-    let inertia = DriveRig::default().inertia;
+/// A fine encoder, and nothing else.
+fn machine(rate: f64, samples: usize, excitation: Excitation) -> DriveRig {
     DriveRig {
-        excitation: Excitation::Servo {
-            reach,
-            period,
-            stiffness: inertia * bandwidth * bandwidth,
-            damping: 1.4 * inertia * bandwidth,
-        },
+        excitation,
         sampling: 1.0 / rate,
         samples,
         encoder: TAU / 1e6,
@@ -36,14 +31,7 @@ fn check(d: &Diagnosis, missing: &[&str], parameters: &[(&str, f64)]) {
     assert_eq!(found, wanted, "{}", d.verdict.text);
     assert!(d.verdict.complete, "{}", d.verdict.text);
     for (symbol, truth) in parameters {
-        let p = parameter(d, symbol);
-        let off = (p.value / truth - 1.0).abs();
-        assert!(
-            off < 0.05,
-            "{symbol} = {} {}, truth {truth}",
-            p.value,
-            p.unit
-        );
+        check_value(d, symbol, *truth);
     }
 }
 
@@ -58,7 +46,7 @@ fn what_is_held_against_a_load_shows_friction_and_load_at_once() {
         let rig = DriveRig {
             friction: Friction::dry(friction),
             constant_load: load,
-            ..servo(2e3, 8000, 0.5, 1.0, 40.0)
+            ..machine(2e3, 8000, servo(0.5, 1.0, 40.0))
         };
         let truth = [("J1", rig.inertia), ("c", friction), ("F0", load)];
         check(
@@ -74,7 +62,7 @@ fn what_is_held_against_a_load_shows_friction_and_load_at_once() {
 fn a_load_that_a_loop_holds_is_found() {
     let rig = DriveRig {
         constant_load: 0.05,
-        ..servo(1e3, 6000, 0.1, 1.5, 40.0)
+        ..machine(1e3, 6000, servo(0.1, 1.5, 40.0))
     };
     check(
         &diagnose(&rig),
@@ -95,7 +83,7 @@ fn a_tachometer_gives_away_friction_that_builds_up_slowly_in_a_long_record() {
                 ..Friction::dry(level)
             },
             recorded: Recorded::VelocityOnly,
-            ..servo(2e3, 26_000, 0.5, 1.3, bandwidth)
+            ..machine(2e3, 26_000, servo(0.5, 1.3, bandwidth))
         };
         let truth = [("J1", rig.inertia), ("c", level), ("s", displacement)];
         check(&diagnose(&rig), &["presliding_friction"], &truth);
@@ -111,7 +99,7 @@ fn nothing_is_missing_where_nothing_rubs_and_nothing_pulls() {
     ] {
         let rig = DriveRig {
             recorded,
-            ..servo(1e3, 6000, 0.5, 1.5, 40.0)
+            ..machine(1e3, 6000, servo(0.5, 1.5, 40.0))
         };
         check(&diagnose(&rig), &[], &[("J1", rig.inertia)]);
     }

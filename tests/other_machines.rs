@@ -11,22 +11,13 @@ use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Random, Recorded, Stranger};
 use support::diagnosis::{classes, finish};
 use support::parameter::parameter;
+use support::servo::servo;
 use support::sparse::thinned;
+use support::value::check_value;
 
 /// Friction and load of these machines, N m.
 const FRICTION: f64 = 0.02;
 const LOAD: f64 = 0.01;
-
-/// A position loop of this bandwidth (rad/s) that makes a move in each `period` s.
-fn servo(reach: f64, period: f64, bandwidth: f64) -> Excitation {
-    let inertia = DriveRig::default().inertia;
-    Excitation::Servo {
-        reach,
-        period,
-        stiffness: inertia * bandwidth * bandwidth,
-        damping: 1.4 * inertia * bandwidth,
-    }
-}
 
 /// An encoder of 5000 lines, and nothing else.
 fn machine(rate: f64, samples: usize, excitation: Excitation) -> DriveRig {
@@ -58,17 +49,6 @@ fn check(d: &Diagnosis, missing: &[&str], parameters: &[(&str, f64)]) {
     for (symbol, truth) in body.iter().chain(parameters) {
         check_value(d, symbol, *truth);
     }
-}
-
-/// A parameter is known to 5 %.
-fn check_value(d: &Diagnosis, symbol: &str, truth: f64) {
-    let p = parameter(d, symbol);
-    assert!(
-        (p.value / truth - 1.0).abs() < 0.05,
-        "{symbol} = {} {}, truth {truth}",
-        p.value,
-        p.unit
-    );
 }
 
 /// Friction and load are found and known to 5 %.

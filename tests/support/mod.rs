@@ -18,4 +18,6 @@ pub mod parameter;
 pub mod process_cases;
 pub mod proposed;
 pub mod score;
+pub mod servo;
 pub mod sparse;
+pub mod value;
