@@ -266,32 +266,28 @@ impl Session {
         })
     }
 
-    /// Takes the sizes from the fitted baseline where the guess had a far heavier body: a resonance turns that against its
-    /// input, and tells a regression nothing.
-    pub fn settle_scales(&mut self, fit: &Fit) {
-        let (inertia, viscous) = baseline::body(self.kind(), &fit.values);
-        let guessed = self.held.is_none() && fit.structure.effects.is_empty();
-        let far = self.scales.inertia > FAR_HEAVIER * inertia;
-        if self.kind() == Kind::Drive && guessed && far {
-            self.scales = self.whole().scales(inertia, viscous);
-        }
-    }
-
-    /// Holds the body near the one that the balance of momentum tells, where a fit without effects has run off from it: one
-    /// that rests for most of the record seems held by its own weight, nothing shows in the answers of that, and no
-    /// single effect does as much. True if so.
-    pub fn hold_body(&mut self, fit: &Fit) -> bool {
-        let said = self.knowledge.find(None, baseline::INERTIA).is_some();
+    /// Settles sizes by the fitted baseline; true if its body is held, so that it is to be fitted again.
+    ///
+    /// A body that rests for most of the record seems held by its own weight, nothing shows in the answers of that, and no
+    /// single effect does as much: where the balance of momentum tells another one, models keep near that. Where the guess
+    /// had a far heavier body, sizes are those of the fit: a resonance turns a body against its input, and tells a regression
+    /// nothing.
+    pub fn settle_body(&mut self, fit: &Fit) -> bool {
         let bare = fit.structure.effects.is_empty();
-        if self.kind() != Kind::Drive || said || !bare || self.held.is_some() {
+        if self.kind() != Kind::Drive || !bare || self.held.is_some() {
             return false;
         }
-        self.held = self.probed(fit).probe.other_body(fit.values[0]);
+        if self.knowledge.find(None, baseline::INERTIA).is_none() {
+            self.held = self.probed(fit).probe.other_body(fit.values[0]);
+        }
+        let (inertia, viscous) = baseline::body(self.kind(), &fit.values);
         if let Some(Rubbing { body, .. }) = self.held {
             self.scales = Scales {
                 inertia_factor: HELD_FACTOR,
                 ..self.whole().scales(body[0], body[1])
             };
+        } else if self.scales.inertia > FAR_HEAVIER * inertia {
+            self.scales = self.whole().scales(inertia, viscous);
         }
         self.held.is_some()
     }

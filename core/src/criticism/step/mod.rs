@@ -266,12 +266,11 @@ impl StepJob {
                 let Some(scored) = self.finished(&search) else {
                     return Stage::Report;
                 };
-                if self.session.hold_body(&scored.fit) {
+                if self.session.settle_body(&scored.fit) {
                     let search =
                         Search::held(&self.session.data, &scored.fit, &self.session.scales);
                     return Stage::Build { search, next };
                 }
-                self.session.settle_scales(&scored.fit);
                 let search = self.wanted.get(next).map(|effect| {
                     let probed = self.session.probed(&scored.fit);
                     Search::adding(
