@@ -8,7 +8,7 @@ use std::f64::consts::SQRT_2;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::spatial::{APART, FASTEST_SPATIAL};
+use super::spatial::{APART, FASTEST_SPATIAL, Row, rows};
 use super::{Probe, solved};
 use crate::effect::spec::SEEN_TURN;
 use crate::sums::dot;
@@ -273,32 +273,30 @@ impl Probe {
         let travel = self.scales.travel;
         let spacing = APART / travel;
         let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
-        let waves = |n: f64| -> Option<(f64, Balance)> {
-            let step = self.scales.step;
-            let along = self.position.iter().take(LOOKED_AT_FOR_WAVES);
-            let (sine, cosine): (Vec<f64>, Vec<f64>) = along.map(|x| libm::sincos(n * x)).unzip();
-            let forces = [
-                stretches.sums(step, |k| sine[k]),
-                stretches.sums(step, |k| cosine[k]),
-            ];
-            Some((n, stretches.balance(&forces)?))
+        let along = &self.position[..self.position.len().min(LOOKED_AT_FOR_WAVES)];
+        let waves = |row: &Row| -> Vec<(f64, Balance)> {
+            row.waves(along, |n, sine, cosine| {
+                let forces = [sine, cosine].map(|f| stretches.sums(self.scales.step, |k| f[k]));
+                Some((n, stretches.balance(&forces)?))
+            })
         };
-        let least = |found: Vec<Option<(f64, Balance)>>| {
+        let least = |rows: &[Row]| {
+            let found = self.crew.gather(rows.len(), |i| waves(&rows[i]));
             let found = found.into_iter().flatten();
             found.min_by(|a, b| a.1.left.total_cmp(&b.1.left))
         };
-        let first = (SEEN_TURN / APART).ceil() as usize;
-        let scanned = self.crew.gather(WAVES, |i| {
-            let n = (first + i) as f64 * spacing;
-            if n <= fastest { waves(n) } else { None }
-        });
-        let mut found = least(scanned)?;
+        let first = (SEEN_TURN / APART).ceil();
+        let count = ((fastest / spacing).floor() + 1.0 - first).min(WAVES as f64) as usize;
+        let rows: Vec<Row> = rows((first - 1.0) * spacing, spacing, count).collect();
+        let mut found = least(&rows)?;
         let mut apart = spacing;
         for _ in 0..FINER {
-            let finer = self.crew.gather(2 * PARTS as usize + 1, |i| {
-                waves(found.0 + (i as f64 / f64::from(PARTS) - 1.0) * apart)
-            });
-            found = least(finer)?;
+            let finer = Row {
+                before: found.0 - apart * (1.0 + 1.0 / f64::from(PARTS)),
+                spacing: apart / f64::from(PARTS),
+                count: 2 * PARTS as usize + 1,
+            };
+            found = least(&[finer])?;
             apart /= f64::from(PARTS);
         }
         let alone = stretches.balance(&[])?;

@@ -184,40 +184,30 @@ impl Probe {
         self.scan_row(&only, 1).pop()
     }
 
-    /// The same for a row of frequencies on one window in `stride`. Sine and cosine are turned on from each to the next.
+    /// The same for a row of frequencies on one window in `stride`.
     fn scan_row(&self, row: &Row, stride: usize) -> Vec<Wave> {
-        let spans = self.spans.iter().step_by(stride);
-        let places = spans.flat_map(|(from, to)| *from..to - 1);
-        let mut waves = vec![(0.0, 0.0); self.position.len()];
-        let turns: Vec<(usize, (f64, f64))> = places
-            .map(|k| {
-                let middle = 0.5 * (self.position[k] + self.position[k + 1]);
-                waves[k] = libm::sincos(row.before * middle);
-                (k, libm::sincos(row.spacing * middle))
-            })
-            .collect();
-        let mut found = Vec::with_capacity(row.count);
         let Some(without) = self.left_without(stride) else {
-            return found;
+            return Vec::new();
         };
-        for k in 1..=row.count {
-            for (k, (sine, cosine)) in &turns {
-                let (s, c) = waves[*k];
-                waves[*k] = (s * cosine + c * sine, c * cosine - s * sine);
-            }
-            let waves = &waves;
-            let forces: [Box<dyn Fn(usize) -> f64>; 2] =
-                [Box::new(|k| waves[k].0), Box::new(|k| waves[k].1)];
-            let n = row.before + k as f64 * row.spacing;
-            let fit = self.regress_beside(without, &forces, stride);
-            found.extend(fit.map(|f| Wave {
-                n,
-                sine: f.coefficients[0],
-                cosine: f.coefficients[1],
-                left: f.left,
-            }));
+        let spans = self.spans.iter().step_by(stride);
+        let intervals: Vec<usize> = spans.flat_map(|(from, to)| *from..to - 1).collect();
+        let middle = |k: &usize| 0.5 * (self.position[*k] + self.position[k + 1]);
+        let along: Vec<f64> = intervals.iter().map(middle).collect();
+        let mut place = vec![0; self.position.len()];
+        for (i, k) in intervals.iter().enumerate() {
+            place[*k] = i;
         }
-        found
+        row.waves(&along, |n, sine, cosine| {
+            let forces: [Box<dyn Fn(usize) -> f64>; 2] =
+                [Box::new(|k| sine[place[k]]), Box::new(|k| cosine[place[k]])];
+            let fit = self.regress_beside(without, &forces, stride)?;
+            Some(Wave {
+                n,
+                sine: fit.coefficients[0],
+                cosine: fit.coefficients[1],
+                left: fit.left,
+            })
+        })
     }
 }
 
@@ -233,13 +223,36 @@ struct Wave {
 }
 
 /// Equally spaced spatial frequencies, rad per unit of position: those after `before`.
-struct Row {
-    before: f64,
-    spacing: f64,
-    count: usize,
+pub(super) struct Row {
+    pub before: f64,
+    pub spacing: f64,
+    pub count: usize,
 }
 
 impl Row {
+    /// What `found` makes of each frequency and of its sine and cosine at the places `along` the way; these are turned on
+    /// from each frequency to the next.
+    pub fn waves<T>(
+        &self,
+        along: &[f64],
+        mut found: impl FnMut(f64, &[f64], &[f64]) -> Option<T>,
+    ) -> Vec<T> {
+        let at =
+            |n: f64| -> (Vec<f64>, Vec<f64>) { along.iter().map(|x| libm::sincos(n * x)).unzip() };
+        let (mut sines, mut cosines) = at(self.before);
+        let (turn_sines, turn_cosines) = at(self.spacing);
+        let mut all = Vec::with_capacity(self.count);
+        for k in 1..=self.count {
+            let turns = turn_sines.iter().zip(&turn_cosines);
+            for ((s, c), (sine, cosine)) in sines.iter_mut().zip(&mut cosines).zip(turns) {
+                (*s, *c) = (*s * cosine + *c * sine, *c * cosine - *s * sine);
+            }
+            let n = self.before + k as f64 * self.spacing;
+            all.extend(found(n, &sines, &cosines));
+        }
+        all
+    }
+
     fn first(&self) -> f64 {
         self.before + self.spacing
     }
@@ -250,7 +263,7 @@ impl Row {
 }
 
 /// `count` frequencies after `before`, in rows of [`ROW`] at most.
-fn rows(before: f64, spacing: f64, count: usize) -> impl Iterator<Item = Row> {
+pub(super) fn rows(before: f64, spacing: f64, count: usize) -> impl Iterator<Item = Row> {
     (0..count).step_by(ROW).map(move |done| Row {
         before: before + done as f64 * spacing,
         spacing,
