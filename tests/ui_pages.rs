@@ -161,6 +161,43 @@ fn an_effect_of_ones_own_is_typed_and_added() {
 }
 
 #[test]
+fn an_effect_of_ones_own_can_be_undone_and_done_again() {
+    let mut harness = app("compare");
+    harness.get_by_label("Open process-02").click();
+    harness.step();
+    finish(&mut harness);
+    harness.get_by_label("Add Input delay").click();
+    harness.step();
+    finish(&mut harness);
+    harness
+        .get_by_label("An effect of your own")
+        .click_accesskit();
+    harness.run();
+    harness.get_by_label("F =").focus();
+    harness.step();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.step();
+    harness.get_by_label("F =").type_text("a*t");
+    harness.run();
+    harness.get_by_label("Add your effect").click_accesskit();
+    harness.step();
+    finish(&mut harness);
+    harness.get_by_label_contains("with bump or without");
+    for (button, effects) in [
+        ("Undo", vec!["input_delay"]),
+        ("Redo", vec!["input_delay", "bump"]),
+    ] {
+        harness.get_by_label(button).click();
+        harness.step();
+        finish(&mut harness);
+        let state = state(&harness)["compare"].clone();
+        assert_eq!(state["message"], serde_json::Value::Null, "{button}");
+        assert_eq!(state["effects"], serde_json::json!(effects), "{button}");
+        assert_eq!(state["undone"], serde_json::json!([]), "{button}");
+    }
+}
+
+#[test]
 fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
     let rig = rig::DriveRig {
         excitation: rig::Excitation::Multisine { amplitude: 0.08 },

@@ -130,9 +130,15 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
                 .collect();
             format!("The data contradict the known {}.", names.join(" and "))
         }
-        _ => format!(
-            "The model misses by {} times the noise.",
-            times_noise(step.error)
-        ),
+        _ => {
+            let error = times_noise(step.error);
+            match report.needless.first() {
+                Some(idle) if report.suggestion.is_none() => format!(
+                    "The model misses by {error} times the noise, with {} or without.",
+                    name_of(*idle)
+                ),
+                _ => format!("The model misses by {error} times the noise."),
+            }
+        }
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn ui(
         ui.label(tr("Effect:"));
         for print in &report.fingerprints {
             let id = print.effect;
-            let likeness = tr_number(format!("{:.2}", print.likeness));
+            let likeness = tr_number(two_digits(print.likeness));
             let label = format!("{} {likeness}", tr(name_of(id)));
             let button = ui.selectable_label(id == chosen, label);
             targets.note(format!("print:{id}"), ui, &button);
@@ -71,20 +71,21 @@ pub(super) fn ui(
     });
 }
 
+/// A likeness with two digits; what is next to none has no sign.
+fn two_digits(likeness: f64) -> String {
+    format!("{:.2}", (100.0 * likeness).round() / 100.0 + 0.0)
+}
+
 /// How alike, in words.
 fn sentence(print: &Fingerprint) -> String {
     let name = name_of(print.effect);
-    let likeness = print.likeness;
-    if likeness >= SAME {
-        format!("What is left looks like {name}: likeness {likeness:.2}, where 1 is the same.")
-    } else if likeness >= ALIKE {
-        format!(
-            "{name} explains a part of what is left: likeness {likeness:.2}, where 1 is the same."
-        )
+    let alike = two_digits(print.likeness);
+    if print.likeness >= SAME {
+        format!("What is left looks like {name}: likeness {alike}, where 1 is the same.")
+    } else if print.likeness >= ALIKE {
+        format!("{name} explains a part of what is left: likeness {alike}, where 1 is the same.")
     } else {
-        format!(
-            "What is left does not look like {name}: likeness {likeness:.2}, where 1 is the same."
-        )
+        format!("What is left does not look like {name}: likeness {alike}, where 1 is the same.")
     }
 }
 

@@ -208,6 +208,11 @@ impl Compare {
         if meant.effects != self.effects {
             self.go_to(ctx, meant.effects);
         }
+        // An effect of the user's own that is not there any more cannot come again, nor what came after it.
+        let model = self.model.as_ref();
+        let gone = |e: &EffectId| effect_of(e.as_str(), model).is_err();
+        let there = self.undone.iter().position(gone);
+        self.undone.truncate(there.unwrap_or(self.undone.len()));
         self.finding = settings.finding;
         self.fingerprint = meant.fingerprint;
         self.look = match settings.look {
