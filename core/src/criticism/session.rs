@@ -13,16 +13,15 @@ use super::memory::is_noise_with_memory;
 use super::probes::{Probed, Probes};
 use super::score::{Score, score};
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
+use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
-use crate::backlash::{Quality, sighted};
 use crate::crew::Crew;
 use crate::effect::{
-    self, Dimension, Effect, EffectId, GapLoad, Motion, Probe, ProbeInput, ProbeOutput, Range,
-    Rubbing, Scales, SeenGap,
+    self, Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Range, Rubbing,
+    Scales, SeenGap,
 };
 use crate::measurement::{Kind, Measurement, Quantity};
-use crate::model::SeenLoad;
 use crate::user_model::{Status, UserModel};
 
 /// A fit with its score.
@@ -61,10 +60,6 @@ const COMPARED: usize = 20_000;
 /// Standard error, in times of what a value may be, at which the record tells nothing of it: no larger one is given.
 const UNTOLD: f64 = 1e3;
 
-/// Tolerance of a half gap that was felt in its standard errors, and the least of these as a share of it.
-const GAP_TOLERANCE: f64 = 3.0;
-const LEAST_GAP_ERROR: f64 = 0.01;
-
 /// Iterations of a fit of the whole record from that of a part of it.
 const WHOLE_ITERATIONS: usize = 2;
 
@@ -95,10 +90,10 @@ pub(super) struct Session {
     pub held: Option<Rubbing>,
     /// What models that were met leave unexplained.
     probes: Probes,
-    motion: Motion,
+    pub motion: Motion,
     /// The gap that a drifting test shows.
     gap: Option<SeenGap>,
-    input_unit: String,
+    pub input_unit: String,
     /// Quantity, name and unit of each output.
     pub outputs: Vec<(Quantity, String, String)>,
 }
@@ -173,57 +168,6 @@ impl Session {
     /// One of them.
     pub fn find(&self, id: EffectId) -> Option<&'static dyn Effect> {
         self.library().find(|e| e.id() == id)
-    }
-
-    /// Checks the units that the user's model says, its effects being among `effects`.
-    pub fn check_units(&self, effects: &[&'static dyn Effect]) -> Result<(), CriticismError> {
-        let baseline = baseline::parameters(self.kind())
-            .iter()
-            .map(|p| (None, p.symbol, self.unit_of(p.dimension)));
-        let own = effects.iter().flat_map(|e| {
-            e.parameters().iter().map(|spec| {
-                (
-                    Some(e.id()),
-                    spec.symbol,
-                    self.unit_of(Some(spec.dimension)),
-                )
-            })
-        });
-        for (owner, symbol, unit) in baseline.chain(own) {
-            let said = self.knowledge.find(owner, symbol);
-            if let Some(said) = said.and_then(|k| k.unit.as_ref()).filter(|u| **u != unit) {
-                return Err(CriticismError::WrongUnit {
-                    symbol: symbol.to_owned(),
-                    said: said.clone(),
-                    unit,
-                });
-            }
-        }
-        Ok(())
-    }
-
-    /// Unit of a parameter; without a dimension that of a process gain.
-    pub fn unit_of(&self, dimension: Option<Dimension>) -> String {
-        let output = self.outputs.first().map_or("1", |o| o.2.as_str());
-        if let Some(Dimension::Compound {
-            force,
-            position,
-            output: power,
-            time,
-        }) = dimension
-        {
-            let unit = |d: Dimension| baseline::unit(d, self.motion, &self.input_unit);
-            return compound(&[
-                (unit(Dimension::Force), force),
-                (unit(Dimension::Position), position),
-                (output.to_owned(), power),
-                ("s".to_owned(), time),
-            ]);
-        }
-        dimension.map_or_else(
-            || baseline::gain_unit(&self.input_unit, output),
-            |d| baseline::unit(d, self.motion, &self.input_unit),
-        )
     }
 
     /// What `fit` leaves unexplained, as a force.
@@ -465,34 +409,6 @@ impl Session {
         atlas(self.whole(), &fit.motion, self.output_unit())
     }
 
-    /// Unit of the input.
-    pub fn input_unit(&self) -> &str {
-        &self.input_unit
-    }
-
-    /// Unit of the velocity, or of the output of a process.
-    pub fn output_unit(&self) -> &str {
-        self.outputs
-            .iter()
-            .find(|o| o.0 != Quantity::Position)
-            .map_or_else(|| self.velocity_unit(), |o| o.2.as_str())
-    }
-
-    /// Name and unit of an output.
-    pub fn output_name(&self, index: usize) -> (&str, &str) {
-        self.outputs
-            .get(index)
-            .map_or(("output", "1"), |(_, name, unit)| (name, unit))
-    }
-
-    fn velocity_unit(&self) -> &'static str {
-        match self.motion {
-            Motion::Rotational => "rad/s",
-            Motion::Translational => "m/s",
-            Motion::None => "1",
-        }
-    }
-
     /// Curves for the plots.
     pub fn replay(&self, fit: &Fit) -> Replay {
         Replay {
@@ -510,78 +426,5 @@ impl Session {
                 .collect(),
             window_starts: self.whole().windows.clone(),
         }
-    }
-}
-
-/// The half gap that contacts tell, with a tolerance wide enough to add little to what a fit sees of it, so that
-/// it only keeps a trial from losing the contacts.
-fn felt_gap(gap: SeenGap) -> (f64, f64) {
-    let error = gap.error.max(LEAST_GAP_ERROR * gap.half_gap);
-    (gap.half_gap, GAP_TOLERANCE * error)
-}
-
-/// What the motor's columns give away of a load behind a gap, if they are those of a drifting test.
-#[derive(Default)]
-struct Sighted {
-    gap: Option<SeenGap>,
-    /// The load behind it.
-    seen: Option<SeenLoad>,
-    /// When the motor met the load where it met one end only, s, in order.
-    contacts: Vec<f64>,
-}
-
-fn sight(measurement: &Measurement) -> Sighted {
-    if measurement.kind != Kind::Drive {
-        return Sighted::default();
-    }
-    let Ok((estimate, seen)) = sighted(measurement) else {
-        return Sighted::default();
-    };
-    let load = seen.as_ref().map(|seen| GapLoad {
-        inertia_ratio: 1.0 / seen.play().ratio,
-        viscous: seen.play().slowing.viscous,
-        dry: seen.play().slowing.dry,
-        push: seen.usual_push(),
-        errors: seen.errors(),
-    });
-    let gap = estimate.gap.map(|gap| SeenGap {
-        half_gap: 0.5 * gap,
-        error: 0.5 * estimate.std_error.unwrap_or(0.0),
-        load,
-    });
-    // Where something else disturbs the cycle, what was felt need not be a load.
-    let is_load = !matches!(
-        estimate.quality,
-        Quality::Disturbed | Quality::NoEngagement | Quality::NoDriftingTest
-    );
-    let contacts = estimate.contacts.iter().filter(|_| is_load);
-    Sighted {
-        gap,
-        seen: seen.filter(|_| gap.is_some()),
-        contacts: contacts.map(|c| c.time).collect(),
-    }
-}
-
-/// A product of powers of units, such as `N m s^2/rad`.
-fn compound(parts: &[(String, i8)]) -> String {
-    let side = |sign: i8| -> Vec<String> {
-        let own = parts
-            .iter()
-            .filter(|(unit, power)| power * sign > 0 && unit != "1");
-        own.map(|(unit, power)| match power.abs() {
-            1 => unit.clone(),
-            n if unit.contains(' ') => format!("({unit})^{n}"),
-            n => format!("{unit}^{n}"),
-        })
-        .collect()
-    };
-    let (above, below) = (side(1).join(" "), side(-1));
-    match (above.as_str(), below.as_slice()) {
-        ("", []) => "1".to_owned(),
-        (above, []) => above.to_owned(),
-        ("", [one]) => format!("1/{one}"),
-        ("", many) => format!("1/({})", many.join(" ")),
-        (above, [one]) => format!("{above}/{one}"),
-        (above, many) => format!("{above}/({})", many.join(" ")),
     }
 }

@@ -1,0 +1,171 @@
+//! Regressions of what a model leaves unexplained on the answers to forces.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{BASE, Probe};
+use crate::model::Instant;
+use crate::sums::dot;
+
+/// Samples at most that enter a scan over very many forces.
+const SCANNED: usize = 6_000;
+
+/// Outcome of a regression on force signatures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regression {
+    /// Force per unit of each signature.
+    pub coefficients: Vec<f64>,
+    /// Inertia and viscous friction that go with them.
+    pub body: [f64; 2],
+    /// Share of the squared error that is left, 0 to 1.
+    pub left: f64,
+}
+
+impl Probe {
+    /// Regresses the error on the answers to `signatures`, each with a value for every sample; `None`
+    /// where they leave no trace or cannot be told from the baseline.
+    pub fn regress(&self, signatures: &[&[f64]]) -> Option<Regression> {
+        let forces: Vec<Box<dyn Fn(usize) -> f64 + '_>> = signatures
+            .iter()
+            .map(|s| -> Box<dyn Fn(usize) -> f64> { Box::new(|k| 0.5 * (s[k] + s[k + 1])) })
+            .collect();
+        self.regress_forces(&forces, 1)
+    }
+
+    /// The same for forces by position, velocity, acting input and time, on a part of a long record.
+    pub(in crate::effect) fn regress_instants(
+        &self,
+        forces: &[&dyn Fn(&Instant) -> f64],
+    ) -> Option<Regression> {
+        let middle = |values: &[f64], k: usize| 0.5 * (values[k] + values[k + 1]);
+        let at = |k: usize| Instant {
+            position: middle(&self.position, k),
+            velocity: middle(&self.velocity, k),
+            input: self.acting.get(k).copied().unwrap_or(self.input[k]),
+            time: self.scales.step * (k as f64 + 0.5),
+        };
+        let stride = spans_stride(&self.spans, SCANNED);
+        let own: Vec<Box<dyn Fn(usize) -> f64 + '_>> = forces
+            .iter()
+            .map(|f| -> Box<dyn Fn(usize) -> f64> { Box::new(move |k| f(&at(k))) })
+            .collect();
+        self.regress_forces(&own, stride)
+    }
+
+    /// The same for forces as functions of the interval, on one window in `stride`.
+    pub(super) fn regress_forces(
+        &self,
+        forces: &[Box<dyn Fn(usize) -> f64 + '_>],
+        stride: usize,
+    ) -> Option<Regression> {
+        self.regress_beside(self.left_without(stride)?, forces, stride)
+    }
+
+    /// Squared remainder of the base forces alone, on one window in `stride`.
+    pub(super) fn left_without(&self, stride: usize) -> Option<f64> {
+        if stride == 1 {
+            return Some(self.base_left);
+        }
+        self.solve(&[], stride).map(|(_, left)| left)
+    }
+
+    /// The same where the base forces alone leave so much.
+    pub(super) fn regress_beside(
+        &self,
+        without: f64,
+        forces: &[Box<dyn Fn(usize) -> f64 + '_>],
+        stride: usize,
+    ) -> Option<Regression> {
+        let (solution, left) = self.solve(forces, stride)?;
+        let b = self.inverse_inertia + solution[0];
+        let own = solution.iter().skip(self.explained());
+        let coefficients: Vec<f64> = own.map(|c| c / b).collect();
+        (b * self.inverse_inertia > 0.0 && coefficients.iter().all(|c| c.is_finite())).then(|| {
+            Regression {
+                coefficients,
+                body: [
+                    1.0 / b,
+                    (self.viscous * self.inverse_inertia + solution[1]) / b,
+                ],
+                left: left / without,
+            }
+        })
+    }
+
+    /// Forces that are explained in any case.
+    pub(super) fn explained(&self) -> usize {
+        self.base.first().map_or(BASE, Vec::len)
+    }
+
+    /// Least squares on what is explained in any case and `forces`: coefficients and squared remainder.
+    pub(super) fn solve(
+        &self,
+        forces: &[Box<dyn Fn(usize) -> f64 + '_>],
+        stride: usize,
+    ) -> Option<(DVector<f64>, f64)> {
+        let given = self.explained();
+        let p = given + forces.len();
+        let mut normal = DMatrix::zeros(p, p);
+        let mut right = DVector::zeros(p);
+        let (mut power, mut count) = (0.0, 0);
+        for index in (0..self.spans.len()).step_by(stride) {
+            let (target, base, known) =
+                (&self.target[index], &self.base[index], &self.known[index]);
+            let span = self.spans[index];
+            let own: Vec<Vec<f64>> = forces.iter().map(|f| self.answer(span, f)).collect();
+            let columns: Vec<&[f64]> = base.iter().chain(&own).map(Vec::as_slice).collect();
+            for a in 0..p {
+                for b in 0..=a {
+                    normal[(a, b)] += if a < given {
+                        known.normal[a][b]
+                    } else {
+                        dot(columns[a], columns[b])
+                    };
+                }
+                right[a] += if a < given {
+                    known.right[a]
+                } else {
+                    dot(columns[a], target)
+                };
+            }
+            power += known.power;
+            count += target.len();
+        }
+        if count <= 4 * p {
+            return None;
+        }
+        let (solution, explained) = solved(normal, right)?;
+        Some((solution, (power - explained).max(0.0)))
+    }
+}
+
+/// Solution of normal equations, of which the lower triangle is given, and what it explains; `None` where an unknown leaves
+/// no trace.
+pub(super) fn solved(
+    mut normal: DMatrix<f64>,
+    mut right: DVector<f64>,
+) -> Option<(DVector<f64>, f64)> {
+    let p = right.len();
+    let sizes: Vec<f64> = (0..p).map(|j| f64::sqrt(normal[(j, j)])).collect();
+    if sizes.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+        return None;
+    }
+    for a in 0..p {
+        for b in 0..a {
+            normal[(a, b)] /= sizes[a] * sizes[b];
+            normal[(b, a)] = normal[(a, b)];
+        }
+        normal[(a, a)] = 1.0 + 1e-9;
+        right[a] /= sizes[a];
+    }
+    let scaled = normal.cholesky()?.solve(&right);
+    let explained = scaled.dot(&right);
+    let solution = DVector::from_fn(p, |j, _| scaled[j] / sizes[j]);
+    let finite = solution.iter().all(|v| v.is_finite());
+    finite.then_some((solution, explained))
+}
+
+/// One window in how many makes at most `samples`.
+pub(super) fn spans_stride(spans: &[(usize, usize)], samples: usize) -> usize {
+    let total: usize = spans.iter().map(|(from, to)| to - from).sum();
+    total.div_ceil(samples).clamp(1, spans.len().max(1))
+}
