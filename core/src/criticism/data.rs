@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::CriticismError;
 use super::baseline::GUESS_FACTOR;
+use super::before::input_before;
 use super::cut::{self, Block, MIN_WINDOW};
 use super::fit::Motion;
 use super::noise::{Noise, noise};
@@ -115,11 +116,7 @@ impl Data {
                 (windows, blocks)
             }
         };
-        let before = if starts_at_rest(&outputs) {
-            0.0
-        } else {
-            input[0]
-        };
+        let before = input_before(measurement.kind, input, &outputs);
         let sensor = if outputs.iter().any(|o| o.is_velocity) {
             Sensor::Velocity
         } else {
@@ -508,14 +505,6 @@ fn position_estimate(time: &[f64], outputs: &[Output]) -> Vec<f64> {
             })
             .collect()
     })
-}
-
-/// Whether nothing moves at the first sample, so that the input was off before.
-fn starts_at_rest(outputs: &[Output]) -> bool {
-    outputs
-        .iter()
-        .filter(|o| o.is_velocity)
-        .all(|o| o.values[0].abs() < 5.0 * o.noise)
 }
 
 /// Standard deviation about the mean.

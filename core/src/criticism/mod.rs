@@ -3,6 +3,7 @@
 mod atlas;
 mod axes;
 mod baseline;
+mod before;
 mod correlation;
 mod cost;
 mod cut;

@@ -314,7 +314,7 @@ impl Excitation {
         let mut engine = Engine::new(model);
         let mut path = DelayedInput::new(self, model);
         path.prepare(&mut engine);
-        let mut state = State::at_rest(path.before);
+        let mut state = State::at_rest(path.before + model.early_load(0.0));
         let mut next = starts.iter().enumerate().peekable();
         let tracker = self.tracker(model);
         let doubt = self.doubt(model).unwrap_or_default();

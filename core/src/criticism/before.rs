@@ -1,0 +1,54 @@
+//! What acted before the record began.
+
+use super::output::Output;
+use crate::measurement::Kind;
+
+/// Noise within which an output is at rest at zero.
+const AT_REST: f64 = 5.0;
+
+/// Samples that tell where an output lay at first, at most, and of how many that it is watched for one is.
+const FIRST: usize = 5;
+const ONE_OF: usize = 20;
+
+/// Noise by which an output must move while the input stays as it was at first, to tell when it began to.
+const MOVES: f64 = 20.0;
+
+/// Share of that way at which it has begun, and up to which it is watched; of the time until then, the share before it has
+/// begun. What moves on at a steady rate or ever slower, as a process that was on its way, has begun in a fifth of it.
+const BEGUN: f64 = 0.1;
+const HALFWAY: f64 = 0.5;
+const LATE: f64 = 0.3;
+
+/// Input before the record: none, where nothing moved before it came, else as at first.
+pub(super) fn input_before(kind: Kind, input: &[f64], outputs: &[Output]) -> f64 {
+    let mut moving = outputs.iter().filter(|o| o.is_velocity);
+    let at_zero = moving.all(|o| o.values[0].abs() < AT_REST * o.noise);
+    let came_on = || outputs.iter().any(|y| began_late(input, y));
+    if at_zero || kind == Kind::Process && came_on() {
+        0.0
+    } else {
+        input[0]
+    }
+}
+
+/// Whether an output lay still at first, wherever that was, and went its way later though the input stayed as it was: so
+/// that came on with the record, and the process is late.
+fn began_late(input: &[f64], output: &Output) -> bool {
+    let held = input.iter().take_while(|u| **u == input[0]).count();
+    let values = &output.values[..held.min(output.values.len())];
+    let first = &values[..values.len().div_ceil(ONE_OF).min(FIRST)];
+    let rest = first.iter().sum::<f64>() / first.len() as f64;
+    let way = values.last().map_or(0.0, |last| last - rest);
+    if way.abs() < MOVES * output.noise {
+        return false;
+    }
+    let shares = values.iter().map(|y| (y - rest) / way);
+    let coming: Vec<f64> = shares.take_while(|share| *share < HALFWAY).collect();
+    let still = coming.iter().filter(|share| **share < BEGUN).count();
+    // One that still goes the other way was not at rest.
+    let back = coming
+        .iter()
+        .any(|share| *share < -BEGUN - AT_REST * output.noise / way.abs());
+    // The first is still in any case.
+    !back && still as f64 > 1.0 + LATE * coming.len() as f64
+}
