@@ -5,6 +5,7 @@
 //! when it breaks loose) and not inside a contact with a load.
 
 use super::data::spread;
+use crate::order::median;
 
 /// Fewest samples in a window.
 pub(super) const MIN_WINDOW: usize = 10;
@@ -17,6 +18,10 @@ const SWINGS_BEFORE: usize = 4;
 
 /// Swings of the motor in a window without a contact that was felt.
 const MOST_SWINGS: usize = 6;
+
+/// A step in time this many times the usual one is a gap, if there is no more than one in so many.
+const PAUSE: f64 = 1.6;
+const RARE: usize = 50;
 
 /// A run of samples that is used as a whole, either for fitting or for judging.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +54,41 @@ pub(super) fn in_motion(velocity: &[f64], length: usize) -> Vec<usize> {
     let cuts = evenly(n, length).into_iter();
     cuts.map(|cut| if cut == 0 { 0 } else { put_off(cut) })
         .collect()
+}
+
+/// First samples after gaps in `time`, where rows are missing: what the input did there is not known. A record whose
+/// samples come at all distances has none.
+pub(super) fn pauses(time: &[f64]) -> Vec<usize> {
+    let step = |k: usize| time[k] - time[k - 1];
+    let usual = median(&mut (1..time.len()).map(step).collect::<Vec<_>>());
+    let mut found: Vec<usize> = (1..time.len())
+        .filter(|k| step(*k) > PAUSE * usual)
+        .collect();
+    if found.len() * RARE > time.len() {
+        return Vec::new();
+    }
+    // What stands between two of them may be too short for a window.
+    let mut from = 0;
+    found.retain(|k| {
+        let long = *k >= from + MIN_WINDOW && *k + MIN_WINDOW <= time.len();
+        if long {
+            from = *k;
+        }
+        long
+    });
+    found
+}
+
+/// Windows as [`in_motion`], and each of these samples begins one.
+pub(super) fn between(pauses: &[usize], velocity: &[f64], length: usize) -> Vec<usize> {
+    let from = [&[0], pauses].concat();
+    let to = pauses.iter().copied().chain([velocity.len()]);
+    let runs = from.iter().zip(to);
+    runs.flat_map(|(from, to)| {
+        let windows = in_motion(&velocity[*from..to], length).into_iter();
+        windows.map(move |cut| from + cut)
+    })
+    .collect()
 }
 
 /// Windows each with one of the contacts that were `felt`, samples in order: every contact multiplies what was wrong

@@ -58,6 +58,8 @@ pub(super) struct Data {
     pub outputs: Vec<Output>,
     /// Values of the outputs that stood alone and were put where their neighbours are.
     pub glitches: usize,
+    /// Gaps in the time of a drive, over which the model does not run.
+    pub pauses: usize,
     /// Sample before each contact with a load that the motor felt.
     pub felt: Vec<usize>,
     /// First sample of each window.
@@ -100,12 +102,14 @@ impl Data {
                 name: c.name.clone(),
             });
         }
+        let mut pauses = Vec::new();
         let (windows, blocks) = match measurement.kind {
             Kind::Drive => {
                 let longest = (n / MIN_BLOCKS).max(MIN_WINDOW);
                 let length = drive_window(&outputs, longest);
                 let velocity = velocity_estimate(&measurement.time, &outputs);
-                let windows = cut::in_motion(&velocity, length);
+                pauses = cut::pauses(&measurement.time);
+                let windows = cut::between(&pauses, &velocity, length);
                 let blocks = cut::one_each(&windows, n);
                 (windows, blocks)
             }
@@ -161,6 +165,7 @@ impl Data {
             has_position: outputs.iter().any(|o| !o.is_velocity),
             outputs,
             glitches,
+            pauses: pauses.len(),
             felt: Vec::new(),
             windows,
             blocks,
