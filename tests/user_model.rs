@@ -9,6 +9,7 @@ mod parameter;
 use diagnosis::{classes, finish};
 use hysteron_core::criticism::{CriticismError, Diagnosis, DiagnosisJob};
 use hysteron_core::measurement::{Kind, Measurement, import_csv};
+use hysteron_core::rig::{DriveRig, Excitation, Friction};
 use hysteron_core::user_model::{MAX_BYTES, Status, UserModel};
 use proptest::prelude::*;
 
@@ -77,6 +78,53 @@ fn a_value_fixed_wrongly_is_kept_and_said() {
     assert!((c.wanted / 8.8e-4 - 1.0).abs() < 1e-3, "{c:?}");
     assert!(c.error < 1.2 && d.steps[0].error > 10.0);
     assert!(d.verdict.text.contains("holds J1"), "{}", d.verdict.text);
+}
+
+/// What takes the place of the user's effect, with a level of its own, is no way round the level that is held.
+#[test]
+fn a_level_held_wrongly_is_said_though_another_friction_would_do() {
+    let rig = DriveRig {
+        friction: Friction::dry(0.06),
+        inertia: 2e-3,
+        viscous: 5e-3,
+        excitation: Excitation::Multisine { amplitude: 0.4 },
+        ..DriveRig::default()
+    };
+    let held = "kind = \"drive\"\n[[effects]]\nid = \"coulomb_friction\"\n[effects.parameters]\nc = 0.03\n";
+    let d = diagnose(&rig.measure(), held);
+    let [c] = d.verdict.contradicted.as_slice() else {
+        panic!("one contradiction: {}", d.verdict.text);
+    };
+    assert_eq!((c.name.as_str(), c.held), ("c", 0.03));
+    assert!((c.wanted / 0.06 - 1.0).abs() < 0.1, "{c:?}");
+    assert!(
+        !d.verdict.text.contains("without a trace"),
+        "{}",
+        d.verdict.text
+    );
+}
+
+#[test]
+fn a_value_that_the_data_overrule_is_said_though_all_is_explained() {
+    let d = diagnose(
+        &measured("drive-01"),
+        "kind = \"drive\"\n[parameters]\nJ1 = { value = 1.1e-3, tolerance = 1e-6 }\n",
+    );
+    assert!(d.verdict.complete && classes(&d).is_empty());
+    let [c] = d.verdict.contradicted.as_slice() else {
+        panic!("one contradiction: {}", d.verdict.text);
+    };
+    assert!((c.wanted / 8.8e-4 - 1.0).abs() < 1e-3, "{c:?}");
+    assert!(d.verdict.text.contains("holds J1"), "{}", d.verdict.text);
+    let usual = diagnose(
+        &measured("drive-01"),
+        "kind = \"drive\"\n[parameters]\nJ1 = { value = 8.9e-4, tolerance = 1e-5 }\n",
+    );
+    assert!(
+        usual.verdict.contradicted.is_empty(),
+        "{}",
+        usual.verdict.text
+    );
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::fit::Fit;
 use super::score::score;
-use super::select::helps;
+use super::select::{helps, is_plain_noise};
 use super::session::{Scored, Session};
 use super::structure::Structure;
 use super::{Contradiction, CriticismError};
@@ -165,7 +165,8 @@ impl Structure {
 }
 
 /// Known values that the data contradict: with all of them released the error falls beyond chance, further
-/// than by any effect (which would leave `best`), and these end elsewhere.
+/// than by any effect (which would leave `best`), and these end elsewhere; or nothing but noise is left since the data were
+/// too strong for them.
 pub(super) fn contradictions(session: &Session, model: &Scored, best: f64) -> Vec<Contradiction> {
     let held = &model.fit.structure;
     if held.knowledge.is_free() {
@@ -183,10 +184,15 @@ pub(super) fn contradictions(session: &Session, model: &Scored, best: f64) -> Ve
         score: score(&session.data, &fit),
         fit,
     };
-    if !helps(&model.score, &released.score) || released.score.error > best {
+    let overruled = is_plain_noise(&model.score);
+    let released = if helps(&model.score, &released.score) && released.score.error <= best {
+        &released
+    } else if overruled {
+        model
+    } else {
         return Vec::new();
-    }
-    let wanted = session.parameters(&released);
+    };
+    let wanted = session.parameters(released);
     held.known()
         .into_iter()
         .zip(wanted)

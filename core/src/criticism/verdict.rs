@@ -38,10 +38,13 @@ pub(super) fn verdict(
     let ambiguous = missing.iter().any(|class| class.len() > 1);
     let mut text = listed("Of the record, not of the machine", &of_record, parameters);
     text.push_str(&listed("Missing", &missing, parameters));
-    if !contradicted.is_empty() {
-        return contradiction(missing, contradicted, text, model.score.error);
-    }
     let complete = rest != Rest::More;
+    if !contradicted.is_empty() {
+        return Verdict {
+            complete,
+            ..contradiction(missing, contradicted, text, model.score.error)
+        };
+    }
     text.push_str(match (missing.is_empty(), complete) {
         (true, true) => "Nothing is missing: what the model leaves is measurement noise.",
         (false, true) => "With that, what is left is measurement noise.",
@@ -90,11 +93,15 @@ fn contradiction(
         );
     }
     let released = contradicted.first().map_or(error, |c| c.error);
-    let _ = write!(
-        text,
-        "With the known values released the error falls from {error:.2} to {released:.2} times the noise: correct or \
-         free them before looking for effects."
-    );
+    if released < error {
+        let _ = write!(
+            text,
+            "With the known values released the error falls from {error:.2} to {released:.2} times the noise: correct or \
+             free them before looking for effects."
+        );
+    } else {
+        text.push_str("Correct or free what is known before looking for effects.");
+    }
     Verdict {
         missing,
         complete: false,
@@ -158,6 +165,21 @@ pub(super) fn add_glitches(verdict: &mut Verdict, glitches: usize) {
         many => write!(
             verdict.text,
             " {many} values stood alone, far off their neighbours, and were left out: glitches of the sensor."
+        ),
+    };
+}
+
+/// Says over how many gaps in the time the model does not run.
+pub(super) fn add_pauses(verdict: &mut Verdict, pauses: usize) {
+    let _ = match pauses {
+        0 => return,
+        1 => write!(
+            verdict.text,
+            " Rows are missing in one place: the model begins anew after it."
+        ),
+        many => write!(
+            verdict.text,
+            " Rows are missing in {many} places: the model begins anew after each."
         ),
     };
 }
