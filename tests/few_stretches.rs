@@ -51,4 +51,6 @@ fn what_may_be_chance_is_said_as_that() {
         "{}",
         d.verdict.text
     );
+    let candidates = &d.steps.last().unwrap().candidates;
+    assert!(candidates.iter().any(|c| c.promising && !c.significant));
 }

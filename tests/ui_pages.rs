@@ -230,6 +230,37 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
     assert!(harness.query_by_label("Try it").is_none());
 }
 
+/// Where two effects hide each other, either alone may be chance: it is offered as that, and the way goes on from there.
+#[test]
+fn what_may_help_is_offered_though_chance_is_not_ruled_out() {
+    let rig = rig::process::ProcessRig {
+        time_constant: 120.0,
+        samples: 1000,
+        excitation: rig::process::Excitation::Staircase { top: 1.0 },
+        stranger: Some(rig::process::Stranger::Swing {
+            amplitude: 0.4,
+            period: 120.0,
+        }),
+        ..rig::process::ProcessRig::default()
+    };
+    let mut harness = app("compare");
+    let ctx = harness.ctx.clone();
+    let csv = rig.measure().to_csv();
+    harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
+    finish(&mut harness);
+    harness.get_by_label("Perhaps, though it may be chance");
+    let state = state(&harness);
+    let hint = state["hint"].as_str().expect("a hint");
+    assert!(hint.starts_with("Perhaps "), "{hint}");
+    harness.get_by_label("Try it").click();
+    finish(&mut harness);
+    let after = ui::state(&harness)["compare"].clone();
+    assert!(
+        !after["effects"].as_array().expect("effects").is_empty(),
+        "{after}"
+    );
+}
+
 #[test]
 fn explore_opens_on_an_oscillating_loop() {
     let mut harness = app("explore");

@@ -183,6 +183,8 @@ fn candidates(out: &mut String, list: &[Candidate]) {
             format!("same as {}", ids.join(", "))
         } else if candidate.significant {
             "helps".to_owned()
+        } else if candidate.promising {
+            "perhaps: chance is not ruled out".to_owned()
         } else {
             "too little to add it".to_owned()
         };

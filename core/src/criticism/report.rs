@@ -77,6 +77,9 @@ pub struct Candidate {
     pub delta_bic: f64,
     /// Whether held-back data say that it helps, beyond chance over all candidates tried.
     pub significant: bool,
+    /// Whether it lowers the error of both parts of the record much, though chance is not ruled out.
+    #[serde(default)]
+    pub promising: bool,
     /// The parameters of the added effect after the refit.
     pub parameters: Vec<Parameter>,
     /// Other candidates that leave the same error within noise.

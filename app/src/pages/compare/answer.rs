@@ -101,6 +101,14 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
         })
         .collect();
     match (&report.verdict, added.is_empty()) {
+        (Some(verdict), _) if !verdict.contradicted.is_empty() => {
+            let names: Vec<&str> = verdict
+                .contradicted
+                .iter()
+                .map(|c| c.name.as_str())
+                .collect();
+            format!("The data contradict the known {}.", names.join(" and "))
+        }
         (Some(verdict), false) if verdict.complete => {
             if verdict.missing.iter().all(|class| class.len() < 2) {
                 let added = added.join(" and ");
@@ -121,14 +129,6 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
         }
         (Some(verdict), true) if verdict.complete => {
             "Nothing is missing: what the model leaves is measurement noise.".to_owned()
-        }
-        (Some(verdict), _) if !verdict.contradicted.is_empty() => {
-            let names: Vec<&str> = verdict
-                .contradicted
-                .iter()
-                .map(|c| c.name.as_str())
-                .collect();
-            format!("The data contradict the known {}.", names.join(" and "))
         }
         _ => {
             let error = times_noise(step.error);

@@ -55,6 +55,16 @@ impl Compare {
             };
         }
         if !verdict.complete {
+            // Two effects may hide each other: the second shows when the first is in the model.
+            let perhaps = report.step.candidates.iter().find(|c| c.promising);
+            if let Some(effect) = perhaps.and_then(|c| c.effects.first()) {
+                let with = [self.effects.as_slice(), &[*effect]].concat();
+                let name = name_of(*effect);
+                return set_effects(
+                    format!("Perhaps {name}: add it and see what is left."),
+                    &with,
+                );
+            }
             return self.where_it_fails();
         }
         if self.sealed.as_ref().is_some_and(|s| !s.is_revealed()) {

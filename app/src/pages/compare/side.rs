@@ -145,6 +145,8 @@ fn candidates_ui(
 ) {
     let (helping, others): (Vec<&Candidate>, Vec<&Candidate>) =
         report.step.candidates.iter().partition(|c| c.significant);
+    let (perhaps, others): (Vec<&Candidate>, Vec<&Candidate>) =
+        others.into_iter().partition(|c| c.promising);
     if helping.is_empty() {
         ui.label(tr(
             "No effect in the library would lower the error beyond chance.",
@@ -153,6 +155,12 @@ fn candidates_ui(
         ui.strong(tr("What could be missing"));
     }
     for candidate in helping {
+        card_ui(page, report, candidate, ui, targets, commands);
+    }
+    if !perhaps.is_empty() {
+        ui.strong(tr("Perhaps, though it may be chance"));
+    }
+    for candidate in perhaps {
         card_ui(page, report, candidate, ui, targets, commands);
     }
     if !others.is_empty() {

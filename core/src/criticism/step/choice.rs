@@ -25,9 +25,13 @@ impl StepJob {
         let Some(model) = &self.model else {
             return Vec::new();
         };
-        let best = self
-            .suggestion(model)
-            .map_or(f64::INFINITY, |(_, s)| s.score.error);
+        // What takes the place of an effect of the user's model lets go of what was known of it.
+        let keeps = |e: &dyn Effect| {
+            let mut parts = e.contains().iter();
+            !parts.any(|part| self.session.knowledge.has(*part))
+        };
+        let best = self.suggestion(model).filter(|(e, _)| keeps(*e));
+        let best = best.map_or(f64::INFINITY, |(_, s)| s.score.error);
         contradictions(&self.session, model, best)
     }
 
@@ -104,13 +108,19 @@ impl StepJob {
         without.is_some_and(|without| fall(&without.score, &model.score) > LEAST_FALL)
     }
 
+    /// Whether a model with this effect leaves much less on both parts of the record, though chance is not ruled out.
+    pub(super) fn is_promising(&self, model: &Scored, effect: &dyn Effect, with: &Scored) -> bool {
+        let much = fall_on_both(&model.score, &with.score) > HINT_FALL;
+        let clearly = helps_clearly(model, with, self.session.first(model));
+        much && !clearly && !self.barred.contains(&effect.id())
+    }
+
     /// The effect that would lower the error most, and to what, where that is much and yet not beyond chance.
     pub(super) fn hint(&self, model: &Scored) -> Option<(EffectId, f64)> {
-        let first = self.session.first(model);
-        let much = |s: &Scored| fall_on_both(&model.score, &s.score) > HINT_FALL;
-        let unsure = self.tried.iter().filter(|(e, s)| {
-            !self.barred.contains(&e.id()) && much(s) && !helps_clearly(model, s, first)
-        });
+        let unsure = self
+            .tried
+            .iter()
+            .filter(|(e, s)| self.is_promising(model, *e, s));
         let best = unsure.min_by(|a, b| a.1.score.error.total_cmp(&b.1.score.error));
         best.map(|(e, s)| (e.id(), self.session.completed(s).score.error))
     }

@@ -9,7 +9,8 @@ use crate::criticism::score::Score;
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
-    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_rest, verdict,
+    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_pauses,
+    add_rest, verdict,
 };
 use crate::criticism::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
@@ -52,11 +53,18 @@ impl StepJob {
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
             add_imitations(&mut verdict, &self.barred);
             add_hint(&mut verdict, self.hint(model));
-            let present = self.idle(model).0.into_iter();
+            // What is held wrongly says nothing of what is needed.
+            let present = if self.contradicted.is_empty() {
+                self.idle(model).0
+            } else {
+                Vec::new()
+            };
+            let present = present.into_iter();
             let (unsure, idle): (Vec<_>, Vec<_>) = present.partition(|id| self.lowers(model, *id));
             add_idle(&mut verdict, &idle, &unsure);
             add_experiments(&mut verdict, &self.experiments);
             add_glitches(&mut verdict, self.session.whole().glitches);
+            add_pauses(&mut verdict, self.session.whole().pauses);
             add_held(&mut verdict, self.session.whole());
             verdict
         });
@@ -131,6 +139,7 @@ impl StepJob {
                         delta_bic(&model.score, length, &scored.score, scored.fit.values.len())
                     },
                     significant: helps_clearly(model, scored, first),
+                    promising: self.is_promising(model, *effect, scored),
                     parameters: self
                         .session
                         .parameters(scored)
@@ -192,6 +201,7 @@ fn as_its_best_part(
         error: part.map_or(model.score.error, |p| p.error),
         delta_bic: part.map_or(more(0), |p| p.delta_bic + more(p.parameters.len())),
         significant: part.is_some_and(|p| p.significant),
+        promising: part.is_some_and(|p| p.promising),
         parameters: Vec::new(),
         equivalent_to: Vec::new(),
     }
