@@ -2,6 +2,8 @@
 
 mod support;
 
+use std::fmt::Write as _;
+
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepJob};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::import_csv;
@@ -35,7 +37,7 @@ fn heater(seed: u64, wall: f64, dead_time: f64, off: usize) -> String {
         let shown = outer + NOISE * random.normal();
         on = if on { shown < 55.0 } else { shown < 45.0 };
         let heat = if on && k >= off { 60.0 } else { 0.0 };
-        csv += &format!("{k},{heat},{shown:.4}\n");
+        writeln!(csv, "{k},{heat},{shown:.4}").unwrap();
         for i in 0..STEPS {
             let place = (k * STEPS + i) % late.len();
             late[place] = heat;
