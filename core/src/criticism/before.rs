@@ -19,16 +19,12 @@ const BEGUN: f64 = 0.1;
 const HALFWAY: f64 = 0.5;
 const LATE: f64 = 0.3;
 
-/// Input before the record: none, where nothing moved before it came, else as at first.
-pub(super) fn input_before(kind: Kind, input: &[f64], outputs: &[Output]) -> f64 {
+/// Whether nothing moved before the input came on with the record.
+pub(super) fn begins_at_rest(kind: Kind, input: &[f64], outputs: &[Output]) -> bool {
     let mut moving = outputs.iter().filter(|o| o.is_velocity);
     let at_zero = moving.all(|o| o.values[0].abs() < AT_REST * o.noise);
     let came_on = || outputs.iter().any(|y| began_late(input, y));
-    if at_zero || kind == Kind::Process && came_on() {
-        0.0
-    } else {
-        input[0]
-    }
+    at_zero || kind == Kind::Process && came_on()
 }
 
 /// Whether an output lay still at first, wherever that was, and went its way later though the input stayed as it was: so

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::CriticismError;
 use super::baseline::GUESS_FACTOR;
-use super::before::input_before;
+use super::before::begins_at_rest;
 use super::cut::{self, Block, MIN_WINDOW};
 use super::fit::Motion;
 use super::noise::{Noise, noise};
@@ -120,7 +120,8 @@ impl Data {
                 (windows, blocks)
             }
         };
-        let before = input_before(measurement.kind, input, &outputs);
+        let at_rest = begins_at_rest(measurement.kind, input, &outputs);
+        let before = if at_rest { 0.0 } else { input[0] };
         let sensor = if outputs.iter().any(|o| o.is_velocity) {
             Sensor::Velocity
         } else {
@@ -159,7 +160,8 @@ impl Data {
                 position,
                 followed,
             )
-            .with_shown(shown),
+            .with_shown(shown)
+            .at_rest_at_first(at_rest),
             input: input.clone(),
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),

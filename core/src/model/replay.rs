@@ -72,6 +72,8 @@ pub struct Excitation {
     input: Vec<f64>,
     /// Input before the record starts.
     before: f64,
+    /// Nothing moves at first, wherever it is.
+    at_rest: bool,
     /// Sampling time in s, if equal throughout.
     step: Option<f64>,
     slow_sensor: Sensor,
@@ -119,6 +121,7 @@ impl Excitation {
             time: time.to_vec(),
             input: input.to_vec(),
             before,
+            at_rest: false,
             step: uniform.then_some(mean),
             slow_sensor,
             shown: Vec::new(),
@@ -137,6 +140,12 @@ impl Excitation {
     #[must_use]
     pub(crate) fn with_shown(self, shown: Vec<f64>) -> Self {
         Self { shown, ..self }
+    }
+
+    /// The same where nothing moves at first, or something does.
+    #[must_use]
+    pub(crate) fn at_rest_at_first(self, at_rest: bool) -> Self {
+        Self { at_rest, ..self }
     }
 
     /// The same with a load that the motor felt.
@@ -314,7 +323,7 @@ impl Excitation {
         let mut engine = Engine::new(model);
         let mut path = DelayedInput::new(self, model);
         path.prepare(&mut engine);
-        let mut state = State::at_rest(path.before + model.early_load(0.0));
+        let mut state = State::at_rest(self.stored(model, starts, path.before));
         let mut next = starts.iter().enumerate().peekable();
         let tracker = self.tracker(model);
         let doubt = self.doubt(model).unwrap_or_default();
@@ -412,6 +421,14 @@ impl Excitation {
     /// Mean velocity from a sample to the next.
     fn speed_after(&self, i: usize) -> f64 {
         (self.position[i + 1] - self.position[i]) / self.step_after(i)
+    }
+
+    /// What is stored before the body at first, under an input that was `before`: where the body rests, what keeps it there.
+    fn stored(&self, model: &Model, starts: &[Start], before: f64) -> f64 {
+        match starts.first().filter(|_| model.load_before_lag) {
+            Some(start) if self.at_rest => model.viscous * start.velocity,
+            _ => before + model.early_load(0.0),
+        }
     }
 
     /// Load before the lag from sample `i` on, held at its value in the middle of the interval.
