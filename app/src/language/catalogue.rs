@@ -40,6 +40,9 @@ const JOINTS: [Joint; 6] = [
     (" or ", " oder "),
 ];
 
+/// Between two sentences.
+const SENTENCE: &str = ". ";
+
 /// A text in another language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Translated {
@@ -183,16 +186,23 @@ impl Catalogue {
             return unknown;
         }
         let mut partly = None;
+        let mut swallowed = None;
         for pattern in &self.patterns {
             if let Some(parts) = pattern.matches(text) {
                 let found = self.fill(pattern, &parts, depth);
-                if found.complete {
+                if found.complete && !pattern.swallows(&parts) {
                     return found;
                 }
-                partly.get_or_insert(found);
+                let kept = if found.complete {
+                    &mut swallowed
+                } else {
+                    &mut partly
+                };
+                kept.get_or_insert(found);
             }
         }
-        self.halves(text, ". ", depth)
+        self.halves(text, SENTENCE, depth)
+            .or(swallowed)
             .or_else(|| self.halves(text, ": ", depth))
             .or_else(|| JOINTS.iter().find_map(|j| self.joined(text, *j, depth)))
             .or(partly)
@@ -270,6 +280,12 @@ impl Pattern {
         }
         parts.push(rest);
         parts.iter().all(|p| !p.is_empty()).then_some(parts)
+    }
+
+    /// Whether a slot that begins the pattern holds the sentences before its own: they would be put in its middle.
+    fn swallows(&self, parts: &[&str]) -> bool {
+        let begins = self.texts.first().is_some_and(String::is_empty);
+        begins && parts.first().is_some_and(|p| p.contains(SENTENCE))
     }
 }
 
@@ -350,6 +366,9 @@ Last
 It drifts by {} because of {}.
 Wegen {2} driftet sie um {1}.
 
+{} s are enough for {}.
+Für {2} genügen {1} s.
+
 The file {*} is read.
 Die Datei {*} wird gelesen.
 
@@ -380,6 +399,10 @@ e^{-0.5s} ist eine Totzeit
         check(
             "The file a. b is read. It drifts by 1 because of load.",
             "Die Datei a. b wird gelesen. Wegen Last driftet sie um 1.",
+        );
+        check(
+            "It drifts by 1 because of load. 0.5 s are enough for friction.",
+            "Wegen Last driftet sie um 1. Für Reibung genügen 0,5 s.",
         );
         check("e^{-0.5s} is a dead time", "e^{-0.5s} ist eine Totzeit");
     }
