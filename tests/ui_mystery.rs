@@ -3,11 +3,14 @@
 #[path = "support/ui.rs"]
 mod ui;
 
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use hysteron_core::effect::EffectId;
 use hysteron_core::mystery::{Choice, Experiment, Mystery, Pick, Request, make};
 use serde_json::Value;
-use ui::{App, NARROW, WIDE, app, click, finish, picture, show, state, texts, type_over};
+use ui::{
+    App, NARROW, TALL, WIDE, app, click, controls, finish, picture, show, state, texts, type_over,
+};
 
 const WORD: &str = "blue whale";
 
@@ -73,6 +76,32 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     type_over(&mut student, "Word", WORD);
     click(&mut student, "Reveal the truth");
     student.get_by_label("Input delay: missed");
+}
+
+#[test]
+fn what_is_hidden_on_one_machine_is_not_changed_by_the_other() {
+    let mut teacher = app("mystery", TALL);
+    click(&mut teacher, "I choose");
+    click(&mut teacher, "A process");
+    click(&mut teacher, "Staircase");
+    click(&mut teacher, "Input delay");
+    let strength = |teacher: &App| {
+        let chosen = controls(teacher, &[Role::SpinButton]);
+        let [(name, _)] = &chosen[..] else {
+            panic!("one strength: {chosen:?}");
+        };
+        let field = teacher.get_by_label(name);
+        field.value().expect("a strength")
+    };
+    let chosen = strength(&teacher);
+    for (key, times) in [(Key::Z, 6), (Key::Y, 6)] {
+        for _ in 0..times {
+            teacher.key_press_modifiers(Modifiers::COMMAND, key);
+            finish(&mut teacher);
+        }
+    }
+    assert_eq!(state(&teacher)["link"], "v1;mystery;mystery.by_hand=true;mystery.experiment=process_stairs");
+    assert_eq!(strength(&teacher), chosen);
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
 }
 
 /// Name of what can be measured, and its name for tests.
-const MACHINES: [(Kind, &str, &str); 2] = [
+pub(super) const MACHINES: [(Kind, &str, &str); 2] = [
     (Kind::Drive, "drive", "A drive"),
     (Kind::Process, "process", "A process"),
 ];
@@ -113,7 +113,6 @@ impl Bench {
         let first = Experiment::of(kind).first().copied();
         if let Some(first) = first.filter(|_| self.experiment.kind() != kind) {
             self.experiment = first;
-            self.picks.clear();
         }
     }
 
@@ -156,7 +155,7 @@ impl Bench {
                     self.effect_ui(ui, effect, desk);
                 }
             });
-        if self.picks.is_empty() {
+        if self.picks().is_empty() {
             ui.label(tr("Nothing is chosen: then nothing is missing, which is for your students to find out."));
         }
     }
@@ -169,7 +168,7 @@ impl Bench {
             .iter()
             .find(|o| o.id != effect.id && !o.goes_with(effect) && self.pick(o.id).is_some());
         ui.horizontal_wrapped(|ui| {
-            let full = self.picks.len() >= MOST && !chosen;
+            let full = self.picks().len() >= MOST && !chosen;
             let tick = ui.add_enabled(
                 other.is_none() && !full,
                 egui::Checkbox::new(&mut chosen, tr(name)),
@@ -179,15 +178,15 @@ impl Bench {
             if let Some(other) = other {
                 tick.on_disabled_hover_text(tr(format!("Not together with {}", other.name())));
             } else if tick.changed() {
-                self.picks.retain(|p| p.effect != effect.id);
+                self.picks_mut().retain(|p| p.effect != effect.id);
                 if chosen {
-                    self.picks.push(Pick {
+                    self.picks_mut().push(Pick {
                         effect: effect.id,
                         value: effect.value(Strength::default()),
                     });
                 }
             }
-            if let Some(pick) = self.picks.iter_mut().find(|p| p.effect == effect.id) {
+            if let Some(pick) = self.picks_mut().iter_mut().find(|p| p.effect == effect.id) {
                 strength_ui(ui, effect, &mut pick.value);
             }
         });

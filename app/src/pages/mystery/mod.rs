@@ -19,6 +19,7 @@ use crate::layout;
 use crate::motion;
 use crate::tasks::MysteryTask;
 use crate::theme;
+use choices::MACHINES;
 use made::Product;
 
 /// The page. What is chosen and the word are no settings: a link of this page tells neither.
@@ -27,8 +28,9 @@ pub struct Bench {
     experiment: Experiment,
     /// Whether the page chooses what to hide, or the teacher.
     by_hand: bool,
-    /// What the teacher chose, in the order of the menu.
-    picks: Vec<Pick>,
+    /// What the teacher chose on each machine, in the order of the menu. Undo goes from one machine to the other,
+    /// and an effect of both has another range on each.
+    picks: [Vec<Pick>; MACHINES.len()],
     word: String,
     /// Whether the word can be read: a class may look on.
     legible: bool,
@@ -60,7 +62,7 @@ impl Bench {
         self.message = None;
         self.count += 1;
         let choice = if self.by_hand {
-            Choice::Chosen(self.picks.clone())
+            Choice::Chosen(self.picks().clone())
         } else {
             Choice::Surprise
         };
@@ -74,7 +76,22 @@ impl Bench {
     }
 
     fn pick(&self, effect: EffectId) -> Option<&Pick> {
-        self.picks.iter().find(|p| p.effect == effect)
+        self.picks().iter().find(|p| p.effect == effect)
+    }
+
+    /// Place of what is measured among the machines.
+    fn machine(&self) -> usize {
+        let kind = self.experiment.kind();
+        MACHINES.iter().position(|m| m.0 == kind).unwrap_or(0)
+    }
+
+    fn picks(&self) -> &Vec<Pick> {
+        &self.picks[self.machine()]
+    }
+
+    fn picks_mut(&mut self) -> &mut Vec<Pick> {
+        let machine = self.machine();
+        &mut self.picks[machine]
     }
 
     fn page_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
