@@ -39,6 +39,13 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     click(&mut teacher, "Make the mystery");
     let page = state(&teacher)["link"].as_str().expect("a link").to_owned();
     assert!(!page.contains("delay") && !page.contains("whale"), "{page}");
+    // What is chosen afterwards is not in it.
+    let remark = "It is still as it was made: what is chosen has changed since.";
+    assert!(teacher.query_by_label(remark).is_none());
+    click(&mut teacher, "large");
+    teacher.get_by_label(remark);
+    click(&mut teacher, "medium");
+    assert!(teacher.query_by_label(remark).is_none());
     teacher.get_by_label("Copy the mystery's link").click();
     let link = copied(&mut teacher).expect("a link on the clipboard");
     assert!(link.len() <= 16_384, "{} characters", link.len());

@@ -4,6 +4,7 @@ use egui_plot::Line;
 use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Mystery, columns};
 
+use super::Asked;
 use crate::export::Table;
 use crate::language::tr;
 use crate::link::VERSION;
@@ -25,6 +26,8 @@ pub(super) struct Product {
     /// Whether it was brought into view.
     seen: std::cell::Cell<bool>,
     pub name: String,
+    /// What it was asked to be.
+    pub asked: Option<Asked>,
     /// The text of a link that opens it.
     link: String,
     samples: usize,
@@ -35,7 +38,7 @@ pub(super) struct Product {
 }
 
 impl Product {
-    pub fn of(made: Made) -> Self {
+    pub fn of(made: Made, asked: Option<Asked>) -> Self {
         let Made { mystery, link } = made;
         let step = f64::from(mystery.step) * 1e-6;
         let samples = mystery.len();
@@ -50,6 +53,7 @@ impl Product {
         });
         Self {
             name: mystery.name(),
+            asked,
             link: format!("{VERSION};compare;compare.mystery={link}"),
             samples,
             duration: samples as f64 * step,
@@ -60,7 +64,8 @@ impl Product {
     }
 }
 
-pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
+/// The mystery; `changed`: what is chosen now is not what it was asked to be.
+pub(super) fn ui(product: &Product, changed: bool, ui: &mut egui::Ui, desk: &mut Desk) {
     let Product {
         mystery,
         name,
@@ -69,6 +74,7 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
         duration,
         curve: points,
         seen,
+        ..
     } = product;
     // The button that made it stands below a long list.
     if !seen.replace(true) {
@@ -80,6 +86,10 @@ pub(super) fn ui(product: &Product, ui: &mut egui::Ui, desk: &mut Desk) {
         ui.set_width(ui.available_width());
         ui.strong(tr(format!("{name} is made.")));
         ui.label(tr(format!("{samples} samples in {duration:.1} s. What is hidden stands in it, sealed.")));
+        if changed {
+            let color = ui.visuals().warn_fg_color;
+            theme::tell(&ui.colored_label(color, tr("It is still as it was made: what is chosen has changed since.")));
+        }
         ui.horizontal_wrapped(|ui| {
             let save = ui.button(tr("Save the file"));
             desk.targets.note("mystery:save", ui, &save);

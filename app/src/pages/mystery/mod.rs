@@ -35,11 +35,16 @@ pub struct Bench {
     /// Whether the word can be read: a class may look on.
     legible: bool,
     job: Option<Job<MysteryTask>>,
+    /// What the mystery that is being made was asked to be.
+    asked: Option<Asked>,
     message: Option<String>,
     made: Option<Product>,
     /// Mysteries that were made since the app started.
     count: u32,
 }
+
+/// What is measured and what is hidden in it.
+type Asked = (Experiment, Choice);
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -61,18 +66,25 @@ impl Bench {
     fn make(&mut self, ctx: &egui::Context) {
         self.message = None;
         self.count += 1;
-        let choice = if self.by_hand {
-            Choice::Chosen(self.picks().clone())
-        } else {
-            Choice::Surprise
-        };
+        let (experiment, choice) = self.chosen();
+        self.asked = Some((experiment, choice.clone()));
         let request = Request {
-            experiment: self.experiment,
+            experiment,
             choice,
             word: self.word.clone(),
             salt: salt(self.count),
         };
         self.job = Some(Job::run(ctx, MysteryTask(request)));
+    }
+
+    /// What a mystery that is made now is asked to be.
+    fn chosen(&self) -> Asked {
+        let choice = if self.by_hand {
+            Choice::Chosen(self.picks().clone())
+        } else {
+            Choice::Surprise
+        };
+        (self.experiment, choice)
     }
 
     fn pick(&self, effect: EffectId) -> Option<&Pick> {
@@ -124,7 +136,8 @@ impl Bench {
     /// What came of it, and what a student does with it.
     fn record_ui(&self, ui: &mut egui::Ui, desk: &mut Desk) {
         if let Some(made) = &self.made {
-            made::ui(made, ui, desk);
+            let changed = made.asked.as_ref() != Some(&self.chosen());
+            made::ui(made, changed, ui, desk);
             ui.add_space(6.0);
         }
         student_ui(ui, desk);
@@ -206,7 +219,7 @@ impl View for Bench {
         for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
             match news {
                 News::Progress(..) => continue,
-                News::Report(made) => self.made = Some(Product::of(*made)),
+                News::Report(made) => self.made = Some(Product::of(*made, self.asked.take())),
                 News::Failed(text) => self.message = Some(text),
             }
             self.job = None;
