@@ -107,7 +107,10 @@ fn what_is_hidden_on_one_machine_is_not_changed_by_the_other() {
             finish(&mut teacher);
         }
     }
-    assert_eq!(state(&teacher)["link"], "v1;mystery;mystery.by_hand=true;mystery.experiment=process_stairs");
+    assert_eq!(
+        state(&teacher)["link"],
+        "v1;mystery;mystery.by_hand=true;mystery.experiment=process_stairs"
+    );
     assert_eq!(strength(&teacher), chosen);
 }
 

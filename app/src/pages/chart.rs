@@ -10,7 +10,7 @@ use egui_plot::{
 };
 
 pub use super::chart_axes::round_step;
-use super::chart_axes::{LABELS, grid, label, power_label, powers, shown_from, unit_of};
+use super::chart_axes::{LABELS, grid, grid_x, label, power_label, powers, shown_from, unit_of};
 pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
 use super::chart_keys::Worked;
@@ -116,6 +116,7 @@ impl<'a> Chart<'a> {
                 .label_spacing(shown_from(LABELS[i][1]))
                 .formatter(move |mark, range| label(mark, range, &unit))
         };
+        let unit = unit_of(&axes[0]).to_owned();
         let [x, y] = [0, 1].map(|i| tr(&axes[i]));
         let read = reading([x.clone(), y.clone()], |p| [p.x, p.y]);
         let plot = Plot::new(salt)
@@ -126,7 +127,7 @@ impl<'a> Chart<'a> {
                 AxisHints::new_y().label(y).min_thickness(width),
                 1,
             )])
-            .x_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[0])))
+            .x_grid_spacer(uniform_grid_spacer(move |input| grid_x(&input, &unit)))
             .y_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[1])));
         Self {
             plot,

@@ -14,13 +14,20 @@ pub(super) const LABELS: [[f32; 2]; 2] = [[40.0, 40.0], [24.0, 16.0]];
 const FEWEST_LABELS: f64 = 2.0;
 
 /// The labels of an axis that ends below this have a smaller unit, or an exponent, so that they need no more room.
+/// A unit is easier to read than an exponent.
 const LEAST_PLAIN: f64 = 1e-3;
+const LEAST_OF_UNIT: f64 = 1e-2;
+
+/// Width of the smallest step that `egui_plot` wants, of a letter of a label, and between two labels of x, points.
+const FINEST: f64 = 8.0;
+const LETTER: f64 = 7.5;
+const APART: f64 = 6.0;
 
 /// Units that take a prefix, and the prefixes by their powers of ten.
 const PREFIXED: [&str; 10] = [
     "rad", "rad/s", "rad/s²", "m", "m/s", "m/s²", "s", "N", "N m", "V",
 ];
-const PREFIXES: [(i32, &str); 3] = [(-6, "µ"), (-9, "n"), (-12, "p")];
+const PREFIXES: [(i32, &str); 4] = [(-3, "m"), (-6, "µ"), (-9, "n"), (-12, "p")];
 
 /// Labels that far apart are drawn, and in full.
 pub(super) fn shown_from(points: f32) -> egui::Rangef {
@@ -45,12 +52,13 @@ pub(super) fn label(mark: GridMark, range: &RangeInclusive<f64>, unit: &str) -> 
     }
     // Of the range: all labels of an axis have the same.
     let largest = range.start().abs().max(range.end().abs());
-    if largest < LEAST_PLAIN {
+    let prefixed = PREFIXED.contains(&unit);
+    if largest < if prefixed { LEAST_OF_UNIT } else { LEAST_PLAIN } {
         let exponent = 3 * (largest.max(step).log10() / 3.0).floor() as i32;
         let decimals = (more - first + f64::from(exponent)).max(0.0) as usize;
         let value = value / 10_f64.powi(exponent);
         let prefix = PREFIXES.iter().find(|(power, _)| *power == exponent);
-        return match prefix.filter(|_| PREFIXED.contains(&unit)) {
+        return match prefix.filter(|_| prefixed) {
             Some((_, prefix)) => {
                 let number = tr_number(format!("{value:.decimals$}"));
                 format!("{number} {prefix}{unit}")
@@ -67,20 +75,56 @@ pub(super) fn unit_of(axis: &str) -> &str {
     inner.map_or("", |(_, unit)| unit)
 }
 
+/// Grid lines of x, whose labels stand beside each other: so far apart that none touches the next.
+pub(super) fn grid_x(input: &GridInput, unit: &str) -> [f64; 3] {
+    let steps = grid(input, LABELS[0]);
+    let least = f64::from(LABELS[0][1]) * input.base_step_size / FINEST;
+    let labelled = steps.into_iter().find(|s| *s >= least);
+    let Some(first) = labelled.filter(|s| touch(input, *s, unit)) else {
+        return steps;
+    };
+    let wider = std::iter::successors(Some(first), |s| Some(round_step(1.01 * s)));
+    let readable = |s: &f64| labels(input, *s) >= FEWEST_LABELS;
+    let wider = wider.take_while(readable).collect::<Vec<_>>();
+    let apart = wider.iter().find(|s| !touch(input, **s, unit));
+    let step = *apart.or(wider.last()).unwrap_or(&first);
+    if 0.5 * step >= least {
+        return [step, 10.0 * step, 100.0 * step];
+    }
+    [0.5 * step, step, 10.0 * step]
+}
+
+/// Whether labels of x that are one step apart touch each other.
+fn touch(input: &GridInput, step_size: f64, unit: &str) -> bool {
+    let (low, high) = input.bounds;
+    let letters = |value: f64| {
+        let mark = GridMark { value, step_size };
+        label(mark, &(low..=high), unit).chars().count()
+    };
+    let ends = [(low / step_size).ceil(), (high / step_size).floor()];
+    let [first, last] = ends.map(|end| letters(end * step_size));
+    let width = LETTER * first.max(last) as f64 + APART;
+    step_size * FINEST / input.base_step_size < width
+}
+
+/// Labels at a step that are in view.
+fn labels(input: &GridInput, step: f64) -> f64 {
+    let (low, high) = input.bounds;
+    (high / step).ceil() - (low / step).ceil()
+}
+
 /// Grid lines at 1, 2 or 5 times a power of ten, some seven across or as many as have room for a label, with
 /// a finer and a coarser set.
 pub(super) fn grid(input: &GridInput, [apart, least_apart]: [f32; 2]) -> [f64; 3] {
     let (low, high) = input.bounds;
-    // The smallest step that egui_plot wants is 8 points wide; a label needs more.
-    let point = input.base_step_size / 8.0;
+    let point = input.base_step_size / FINEST;
     let wanted = ((high - low) / 7.0).max(f64::from(apart) * point);
     let step = round_step(wanted.max(f64::MIN_POSITIVE));
-    let labels = |step: f64| (high / step).ceil() - (low / step).ceil();
     let closer = [0.5, 0.4, 0.2].map(|share| round_step(0.99 * share * step));
     let step = [step]
         .into_iter()
         .chain(closer)
-        .find(|s| labels(*s) >= FEWEST_LABELS && *s >= f64::from(least_apart) * point)
+        .find(|s| labels(input, *s) >= FEWEST_LABELS && *s >= f64::from(least_apart) * point)
         .unwrap_or(step);
     // A finer line that is far enough from the next would have a label too.
     let half = 0.5 * step / point;
@@ -168,6 +212,24 @@ mod tests {
     }
 
     #[test]
+    fn the_labels_of_x_do_not_touch() {
+        let steps = |bounds: (f64, f64), points: f64, unit| {
+            let base_step_size = FINEST * (bounds.1 - bounds.0) / points;
+            let input = GridInput {
+                bounds,
+                base_step_size,
+            };
+            grid_x(&input, unit)
+        };
+        assert_eq!(steps((0.0, 7.0), 280.0, "s")[1], 1.0, "0, 1, 2: as before");
+        // 0.0005, 0.0010 and so on would need 50 points each.
+        let [step, ..] = steps((0.0, 3e-3), 280.0, "");
+        assert_eq!(step, 1e-3);
+        let [step, ..] = steps((-4.2e-3, 1.2e-3), 240.0, "rad");
+        assert_eq!(step, 2e-3, "-4 mrad, -2 mrad, 0");
+    }
+
+    #[test]
     fn a_small_value_has_a_smaller_unit_where_there_is_one() {
         let small = |unit: &str| {
             let mark = GridMark {
@@ -179,5 +241,10 @@ mod tests {
         assert_eq!(small(unit_of("x1 - model [rad]")), "500 µrad");
         assert_eq!(small(unit_of("inertia [kg m²]")), "500e-6");
         assert_eq!(small(unit_of("output")), "500e-6");
+        let mark = GridMark {
+            value: 0.0015,
+            step_size: 0.0005,
+        };
+        assert_eq!(label(mark, &(0.0..=0.003), "s"), "1.5 ms");
     }
 }
