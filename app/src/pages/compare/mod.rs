@@ -72,7 +72,7 @@ pub struct Compare {
     /// Effects of the user's own that were added here, as the command line takes them.
     own: Vec<String>,
     /// The formula in the editor.
-    typed: own::Typed,
+    typed: Option<own::Typed>,
     /// Effects on top of the baseline, in the order in which they were added.
     effects: Vec<EffectId>,
     /// Finished steps by their effects, so that undo is instant.
@@ -119,7 +119,7 @@ impl Default for Compare {
             model: None,
             model_file: None,
             own: Vec::new(),
-            typed: own::Typed::default(),
+            typed: None,
             effects: Vec::new(),
             reports: HashMap::new(),
             shown: None,
@@ -379,7 +379,7 @@ impl Compare {
             Command::Reopen(recent) => self.files.reopen(ctx, &recent),
             Command::OpenDialog => self.files.open_dialog(ctx, MEASUREMENT),
             Command::OpenModel => self.files.open_dialog(ctx, MODEL),
-            Command::Type(typed) => self.typed = typed,
+            Command::Type(typed) => self.typed = Some(typed),
             Command::AddOwn(typed) => self.add_own(ctx, &typed),
             Command::DropModel => {
                 self.forget_model();

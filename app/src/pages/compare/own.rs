@@ -11,27 +11,33 @@ use crate::theme;
 /// What is typed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Typed {
+    /// What it is typed for: a formula of a drive is none of a process.
+    kind: Kind,
     pub name: String,
     pub formula: String,
 }
 
-impl Default for Typed {
-    fn default() -> Self {
+impl Typed {
+    /// What stands there before anything is typed.
+    fn example(kind: Kind) -> Self {
+        let formula = match kind {
+            Kind::Drive => "-a*exp(-((x-b)/c)^2)",
+            Kind::Process => "-a*exp(-((y-b)/c)^2)",
+        };
         Self {
+            kind,
             name: "bump".to_owned(),
-            formula: "-a*exp(-((x-b)/c)^2)".to_owned(),
+            formula: formula.to_owned(),
         }
     }
-}
 
-impl Typed {
     /// As the command line takes it.
     pub fn line(&self) -> String {
         format!("{}: {}", self.name.trim(), self.formula.trim())
     }
 
     /// Names of the parameters, or what is wrong.
-    fn check(&self, kind: Kind) -> Result<Vec<String>, String> {
+    fn check(&self) -> Result<Vec<String>, String> {
         if EffectId::own(self.name.trim()).is_none() {
             return Err(format!("name: {}", EffectId::OWN_NAMES));
         }
@@ -39,7 +45,7 @@ impl Typed {
             name: self.name.trim().to_owned(),
             text: self.formula.trim().to_owned(),
         };
-        formula.parameters(kind).map_err(|e| e.to_string())
+        formula.parameters(self.kind).map_err(|e| e.to_string())
     }
 }
 
@@ -52,11 +58,20 @@ pub(super) fn ui(
     let Some(measurement) = &page.measurement else {
         return;
     };
-    let mut typed = page.typed.clone();
+    let kind = measurement.kind;
+    let before = page.typed.clone().filter(|t| t.kind == kind);
+    let before = before.unwrap_or_else(|| Typed::example(kind));
+    let mut typed = before.clone();
     egui::CollapsingHeader::new(tr("An effect of your own")).show(ui, |ui| {
-        let variables = match measurement.kind {
-            Kind::Drive => "A force as a formula of x, v, u, t; every other name is fitted.",
-            Kind::Process => "An input as a formula of y, u, t; every other name is fitted.",
+        let (variables, symbol) = match kind {
+            Kind::Drive => (
+                "A force as a formula of x, v, u, t; every other name is fitted.",
+                "F =",
+            ),
+            Kind::Process => (
+                "An input as a formula of y, u, t; every other name is fitted.",
+                "Input =",
+            ),
         };
         ui.label(tr(variables));
         egui::Grid::new("own effect").num_columns(2).show(ui, |ui| {
@@ -64,7 +79,7 @@ pub(super) fn ui(
             ui.add(theme::line(&mut typed.name).desired_width(120.0))
                 .labelled_by(label.id);
             ui.end_row();
-            let label = ui.label(tr("F ="));
+            let label = ui.label(tr(symbol));
             ui.add(
                 theme::line(&mut typed.formula)
                     .desired_width(240.0)
@@ -73,7 +88,7 @@ pub(super) fn ui(
             .labelled_by(label.id);
             ui.end_row();
         });
-        let checked = typed.check(measurement.kind);
+        let checked = typed.check();
         match &checked {
             Ok(names) => ui.label(tr(format!("To be fitted: {}", names.join(", ")))),
             Err(error) => ui.colored_label(ui.visuals().warn_fg_color, tr(error)),
@@ -85,7 +100,7 @@ pub(super) fn ui(
             commands.push(Command::AddOwn(typed.clone()));
         }
     });
-    if typed != page.typed {
+    if typed != before {
         commands.push(Command::Type(typed));
     }
 }

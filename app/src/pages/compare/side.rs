@@ -4,6 +4,7 @@ use egui::RichText;
 use hysteron_core::criticism::{Candidate, StepReport, with_error};
 use hysteron_core::effect;
 use hysteron_core::effect::name_of;
+use hysteron_core::measurement::Kind;
 
 use super::parts::Part;
 use super::waterfall::{BAR_WIDTH, bar_ui};
@@ -188,7 +189,10 @@ fn card_ui(
         (Some(e), _) => (e.sentence(), e.equation().to_owned(), e.source()),
         (None, Some(f)) => (
             "An effect of your own.",
-            format!("F = {f}"),
+            match page.measurement.as_ref().map(|m| m.kind) {
+                Some(Kind::Process) => format!("Input = {f}"),
+                _ => format!("F = {f}"),
+            },
             "your own formula",
         ),
         (None, None) => return,

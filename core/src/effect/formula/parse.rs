@@ -131,7 +131,10 @@ pub(super) fn parse(text: &str, kind: Kind) -> Result<(Expr, Vec<String>), Formu
     }
     parser.skip();
     if parser.at == all.len() {
-        return parser.fail("the formula is empty: write a force such as -a*exp(-((x-b)/c)^2)");
+        return parser.fail(match kind {
+            Kind::Drive => "the formula is empty: write a force such as -a*exp(-((x-b)/c)^2)",
+            Kind::Process => "the formula is empty: write an input such as -a*exp(-((y-b)/c)^2)",
+        });
     }
     let tree = parser.sum()?;
     if let Some(c) = parser.peek() {
@@ -147,7 +150,12 @@ pub(super) fn parse(text: &str, kind: Kind) -> Result<(Expr, Vec<String>), Formu
     if parser.parameters.is_empty() {
         return parser.fail_at(
             0,
-            "there is no parameter to fit: give one a name, such as a in -a*v^3",
+            match kind {
+                Kind::Drive => "there is no parameter to fit: give one a name, such as a in -a*v^3",
+                Kind::Process => {
+                    "there is no parameter to fit: give one a name, such as a in -a*y^3"
+                }
+            },
         );
     }
     Ok((tree, parser.parameters))
