@@ -14,8 +14,8 @@ const BINS: usize = 20;
 /// Least excess of the share of error over the share of samples for a region to be worth a sentence.
 const LEAST_EXCESS: f64 = 0.1;
 
-/// Most spans that are given for shading.
-const MAX_SPANS: usize = 400;
+/// Most spans that are given for shading: all of a fast relay's record, or what is behind them looks free of error.
+const MAX_SPANS: usize = 10_000;
 
 /// Findings that are reported.
 const MAX_FINDINGS: usize = 4;

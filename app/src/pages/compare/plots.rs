@@ -265,14 +265,23 @@ fn shade(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>) {
         return;
     };
     let bounds = plot.plot_bounds();
-    let visible = finding
-        .spans
-        .iter()
-        .filter(|s| s.1 >= bounds.min()[0] && s.0 <= bounds.max()[0]);
-    for span in visible.take(60) {
+    let point = 1.0 / plot.transform().dpos_dvalue_x().abs();
+    for (from, to) in seen(&finding.spans, (bounds.min()[0], bounds.max()[0]), point) {
         let color = theme::SHADE.gamma_multiply(0.16);
-        plot.add(Span::new("", span.0..=span.1).fill(color).border_width(0.0));
+        plot.add(Span::new("", from..=to).fill(color).border_width(0.0));
     }
+}
+
+/// The spans in view; those that are less than a `point` of the screen apart are one.
+fn seen(spans: &[(f64, f64)], view: (f64, f64), point: f64) -> Vec<(f64, f64)> {
+    let mut seen: Vec<(f64, f64)> = Vec::new();
+    for (from, to) in spans.iter().filter(|s| s.1 >= view.0 && s.0 <= view.1) {
+        match seen.last_mut() {
+            Some(last) if from - last.1 < point => last.1 = *to,
+            _ => seen.push((*from, *to)),
+        }
+    }
+    seen
 }
 
 /// Whether a finding is about this output.
@@ -344,7 +353,22 @@ fn draw_more(ui: &egui::Ui, time: &[f64], shown: &PlotResponse<Range<usize>>) {
 
 #[cfg(test)]
 mod tests {
-    use super::with_span;
+    use super::{seen, with_span};
+
+    #[test]
+    fn all_of_a_finding_that_is_in_view_is_shaded() {
+        let spans: Vec<(f64, f64)> = (0..300)
+            .map(|i| f64::from(i) * 0.1)
+            .map(|t| (t, t + 0.05))
+            .collect();
+        assert_eq!(seen(&spans, (0.0, 30.0), 0.01), spans);
+        assert_eq!(seen(&spans, (9.96, 20.02), 0.01).len(), 101);
+        // From afar they are one.
+        let [(from, to)] = seen(&spans, (0.0, 30.0), 0.06)[..] else {
+            panic!("more than one");
+        };
+        assert_eq!((from, to), (spans[0].0, spans[299].1));
+    }
 
     #[test]
     fn a_finding_is_in_view() {
