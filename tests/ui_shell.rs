@@ -165,8 +165,17 @@ fn keys_do_what_the_sheet_says() {
     press(&mut harness, Modifiers::NONE, Key::P);
     let paused = state(&harness)["link"].as_str().expect("a link").to_owned();
     assert!(paused.contains("explore.paused="), "{paused}");
+    // With Shift a key is another sign.
+    press(&mut harness, Modifiers::SHIFT, Key::R);
+    press(&mut harness, Modifiers::SHIFT, Key::Num8);
+    assert_eq!(state(&harness)["link"].as_str(), Some(paused.as_str()));
     press(&mut harness, Modifiers::NONE, Key::R);
     assert_eq!(state(&harness)["link"], "v1;explore");
+    let said = "This page is as it was at first. Undo brings back what was set.";
+    assert_eq!(state(&harness)["notice"], said);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(state(&harness)["link"].as_str(), Some(paused.as_str()));
+    press(&mut harness, Modifiers::NONE, Key::R);
     press(&mut harness, Modifiers::NONE, Key::L);
     assert!(state(&harness)["notice"].is_string());
     press(&mut harness, Modifiers::NONE, Key::F1);

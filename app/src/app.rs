@@ -254,8 +254,13 @@ impl HysteronApp {
             }
             Command::Reset => {
                 // The link of an untouched page is its name.
-                let untouched = format!("{};{}", link::VERSION, self.document().page);
-                let _ = self.open_link(ctx, &untouched);
+                let before = self.document();
+                let untouched = format!("{};{}", link::VERSION, before.page);
+                // A key does it, which may be hit by mistake.
+                if self.open_link(ctx, &untouched).is_ok() && self.document() != before {
+                    let saying = "This page is as it was at first. Undo brings back what was set.";
+                    self.notice = Some(Notice::done(ctx, saying));
+                }
             }
             Command::Lesson(Some(id)) => {
                 // It begins with what its first button shows.

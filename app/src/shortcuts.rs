@@ -1,6 +1,6 @@
 //! Keys: one table for what they do and for the sheet that says so.
 
-use egui::{Key, KeyboardShortcut, Modifiers};
+use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
 use crate::language::tr;
 use crate::pages::{Command, chart_cursor};
@@ -93,30 +93,45 @@ pub fn pressed(ctx: &egui::Context, pages: &[&'static str], commands: &mut Vec<C
     }
     // A menu or a list lies over everything else; egui closes it. A plot takes its cursor away.
     let kept = egui::Popup::is_any_open(ctx) || chart_cursor::live(ctx).is_some();
-    // Longer combinations first: Ctrl+Z would take Ctrl+Shift+Z too.
-    let mut longest_first: Vec<&Shortcut> = SHORTCUTS.iter().collect();
-    longest_first.sort_by_key(|s| !s.keys.iter().any(|k| k.modifiers.shift));
     ctx.input_mut(|input| {
-        for shortcut in longest_first {
+        for shortcut in &SHORTCUTS {
             if kept && shortcut.command == Command::Close {
                 continue;
             }
-            // Where a keyboard needs Shift for the question mark, its modifier must not count.
-            let asked = shortcut.keys.iter().any(|k| {
-                input.consume_shortcut(k)
-                    || (k.logical_key == Key::Questionmark
-                        && input.consume_key(Modifiers::SHIFT, Key::Questionmark))
-            });
-            if asked {
+            if shortcut.keys.iter().any(|k| consume(input, *k)) {
                 commands.push(shortcut.command.clone());
             }
         }
         for (key, page) in PAGES.iter().zip(pages) {
-            if input.consume_key(PLAIN, *key) {
+            if consume(input, KeyboardShortcut::new(PLAIN, *key)) {
                 commands.push(Command::Go(page));
             }
         }
     });
+}
+
+/// Takes a key where it is pressed with just these modifiers: a digit with Shift is another sign. Where a keyboard needs
+/// Shift for the question mark, it must not count.
+fn consume(input: &mut egui::InputState, wanted: KeyboardShortcut) -> bool {
+    let KeyboardShortcut {
+        modifiers: wished,
+        logical_key,
+    } = wanted;
+    let before = input.events.len();
+    input.events.retain(|event| {
+        let Event::Key {
+            key,
+            modifiers,
+            pressed: true,
+            ..
+        } = event
+        else {
+            return true;
+        };
+        let shifted = logical_key == Key::Questionmark || modifiers.shift == wished.shift;
+        *key != logical_key || !shifted || !modifiers.matches_logically(wished)
+    });
+    input.events.len() < before
 }
 
 /// The sheet; false when it was closed.
@@ -148,7 +163,8 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
                                 _ => ctx.format_shortcut(k),
                             })
                             .collect();
-                        ui.strong(tr(names.join("  or  ")));
+                        let names: Vec<String> = names.iter().map(tr).collect();
+                        ui.strong(names.join(&format!("  {}  ", tr("or"))));
                         ui.label(tr(shortcut.sentence));
                         ui.end_row();
                     }
