@@ -221,6 +221,16 @@ fn no_page_leaves_a_text_in_english() {
 }
 
 #[test]
+fn the_keys_are_named_in_german() {
+    let mut english = English::default();
+    let mut harness = app("lessons", WIDE);
+    click(&mut harness, "Keys");
+    english.look(&mut harness);
+    english.assert_none();
+    harness.get_by_label("Strg+Umschalt+Z  oder  Strg+Y");
+}
+
+#[test]
 fn what_a_record_cannot_decide_is_said_in_german() {
     let mut english = English::default();
     let mut harness = app("compare", TALL);
