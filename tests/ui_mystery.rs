@@ -81,7 +81,8 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     );
     // Revealed too early, the model has missed it.
     type_over(&mut student, "Word", WORD);
-    click(&mut student, "Reveal the truth");
+    student.key_press(Key::Enter);
+    finish(&mut student);
     student.get_by_label("Input delay: missed");
 }
 

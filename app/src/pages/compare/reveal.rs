@@ -125,7 +125,7 @@ pub(super) fn ui(
     ui.add_space(6.0);
     ui.label(tr("The truth about this record lies in it, sealed. Add what is missing until only noise is left; then say the word."));
     let (mut word, mut legible) = (sealed.word.clone(), sealed.legible);
-    ui.horizontal_wrapped(|ui| {
+    let asked = ui.horizontal_wrapped(|ui| {
         let label = ui.label(tr("Word"));
         let field = theme::line(&mut word)
             .password(!legible)
@@ -136,15 +136,18 @@ pub(super) fn ui(
         let ready = !word.trim().is_empty() && sealed.job.is_none() && page.report().is_some();
         let reveal = ui.add_enabled(ready, egui::Button::new(tr("Reveal the truth")));
         targets.note("reveal", ui, &reveal);
-        if reveal.clicked() {
-            commands.push(Command::Reveal);
-        }
+        let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if sealed.job.is_some() {
             motion::busy_ui(ui);
         }
+        reveal.clicked() || ready && entered
     });
     if word != sealed.word || legible != sealed.legible {
         commands.push(Command::Word(word, legible));
+    }
+    // With the word as it is now.
+    if asked.inner {
+        commands.push(Command::Reveal);
     }
     if let Some(message) = &sealed.message {
         ui.colored_label(ui.visuals().warn_fg_color, tr(message));

@@ -161,7 +161,8 @@ impl Bench {
             let ready = obstacle.is_none() && self.job.is_none();
             let make = ui.add_enabled(ready, egui::Button::new(tr("Make the mystery")));
             desk.targets.note("mystery:make", ui, &make);
-            if make.clicked() {
+            let entered = word.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            if make.clicked() || ready && entered {
                 self.make(ui.ctx());
             }
             if self.job.is_some() {
