@@ -120,8 +120,9 @@ const NOT_DRAWN: [&str; 28] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 27] = [
+const NO_TEXTS: [&str; 28] = [
     "Crew",
+    "Downloads",
     "hysteron files",
     "hysteron address",
     "hysteron motion",

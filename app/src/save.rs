@@ -1,6 +1,21 @@
 //! Hands a file to the user: a dialog natively, a download on the web.
 
+#[cfg(not(target_arch = "wasm32"))]
+use std::{
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
 use std::sync::mpsc::Sender;
+
+/// A dialog that ends within this time was never shown: nobody closes one so fast.
+#[cfg(not(target_arch = "wasm32"))]
+const AT_ONCE: Duration = Duration::from_millis(300);
+
+/// Files of one name that are kept beside each other, at most.
+#[cfg(not(target_arch = "wasm32"))]
+const MOST_OF_A_NAME: usize = 1000;
 
 /// A file to be saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,19 +81,54 @@ fn save_file(ctx: &egui::Context, document: File, said: &Sender<String>) {
         .set_file_name(&document.name);
     std::thread::spawn(move || {
         pollster::block_on(async {
-            let Some(file) = dialog.save_file().await else {
-                return;
-            };
-            let name = file.file_name();
-            let text = match file.write(&document.bytes).await {
-                Ok(()) => format!("Saved as {name}."),
-                Err(error) => format!("{name} cannot be written: {error}"),
+            let asked = Instant::now();
+            let text = match dialog.save_file().await {
+                Some(file) => {
+                    let name = file.file_name();
+                    match file.write(&document.bytes).await {
+                        Ok(()) => format!("Saved as {name}."),
+                        Err(error) => format!("{name} cannot be written: {error}"),
+                    }
+                }
+                None if asked.elapsed() < AT_ONCE => unasked(&document),
+                None => return,
             };
             // Where the page is gone there is nobody to tell.
             let _ = said.send(text);
             ctx.request_repaint();
         });
     });
+}
+
+/// Saves a file where no dialog can be shown; a sentence says where, or why not.
+#[cfg(not(target_arch = "wasm32"))]
+fn unasked(document: &File) -> String {
+    let home = std::env::home_dir().map(|home| home.join("Downloads"));
+    let folder = home.filter(|folder| folder.is_dir());
+    let folder = folder.or_else(|| std::env::current_dir().ok());
+    match keep(&folder.unwrap_or_default(), &document.name, &document.bytes) {
+        Ok(path) => format!("No dialog can be shown here: saved as {}.", path.display()),
+        Err(error) => format!(
+            "No dialog can be shown here, and {} cannot be written: {error}",
+            document.name
+        ),
+    }
+}
+
+/// Writes a file under this name, or with a number behind it where there is one already.
+#[cfg(not(target_arch = "wasm32"))]
+fn keep(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
+    let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
+    let numbered = (2..MOST_OF_A_NAME).map(|n| format!("{stem}-{n}.{ending}"));
+    for name in std::iter::once(name.to_owned()).chain(numbered) {
+        let path = folder.join(name);
+        match std::fs::File::create_new(&path) {
+            Ok(mut file) => return file.write_all(bytes).map(|()| path),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
 }
 
 #[cfg(target_arch = "wasm32")]
@@ -111,4 +161,23 @@ fn download(document: &File) -> Result<(), wasm_bindgen::JsValue> {
     link.set_download(&document.name);
     link.click();
     web_sys::Url::revoke_object_url(&address)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::keep;
+
+    #[test]
+    fn a_file_that_is_there_stays_as_it_is() {
+        let folder = std::env::temp_dir().join(format!("hysteron-keep-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let names = ["first", "second"].map(|text| {
+            let path = keep(&folder, "loop.csv", text.as_bytes()).unwrap();
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+            path.file_name().unwrap().to_owned()
+        });
+        assert_eq!(names, ["loop.csv", "loop-2.csv"]);
+        assert!(keep(&folder.join("nowhere"), "loop.csv", b"").is_err());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }
