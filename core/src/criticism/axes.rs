@@ -81,7 +81,8 @@ impl Parts {
 /// Every axis on which the residual is looked at; `velocity_unit` is that of the drive's velocity or of the process output.
 pub(super) fn axes(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Axis> {
     let mut axes = vec![continuous("time", "s", data.time.clone(), |a, b, _| {
-        format!("between {} and {}", seconds(a), seconds(b))
+        let [from, to] = [a, b].map(|t| moment(t, b - a));
+        format!("between {from} and {to}")
     })];
     match data.kind {
         Kind::Drive => drive_axes(data, motion, velocity_unit, &mut axes),
@@ -278,10 +279,12 @@ fn levels(input: &[f64]) -> usize {
 }
 
 fn within(from: f64, to: f64, unit: &str) -> String {
+    let digits = apart(to - from).max(3);
+    let [from, to] = [from, to].map(|value| rounded(value, digits));
     if unit == "1" {
-        format!("between {from:.3} and {to:.3}")
+        format!("between {from} and {to}")
     } else {
-        format!("between {from:.3} and {to:.3} {unit}")
+        format!("between {from} and {to} {unit}")
     }
 }
 
@@ -289,25 +292,71 @@ fn span_after(from: f64, to: f64, what: &str) -> String {
     if from <= 0.0 {
         format!("within {} after {what}", seconds(to))
     } else {
-        format!("from {} to {} after {what}", seconds(from), seconds(to))
+        let [from, to] = [from, to].map(|t| moment(t, to - from));
+        format!("from {from} to {to} after {what}")
+    }
+}
+
+/// Digits behind the point with which two values so far apart differ in two digits.
+fn apart(difference: f64) -> usize {
+    let first = libm::log10(difference.abs().max(f64::MIN_POSITIVE)).floor();
+    (1.0 - first).clamp(0.0, MOST_DIGITS) as usize
+}
+
+/// Most digits behind the point: two ends that are the same have no end of them.
+const MOST_DIGITS: f64 = 9.0;
+
+/// A value with so many digits behind the point; nothing but zeros is 0.
+fn rounded(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    if text.contains(|c| ('1'..='9').contains(&c)) {
+        text
+    } else {
+        "0".to_owned()
     }
 }
 
 /// A duration in a unit that suits it, also when it is rounded: 1.0 ms, not 1000 µs.
 pub(super) fn seconds(t: f64) -> String {
+    moment(t, f64::INFINITY)
+}
+
+/// Such a duration as one of two that are so far apart, s.
+fn moment(t: f64, difference: f64) -> String {
     let size = t.abs();
-    if size == 0.0 || size >= 0.999_95 {
-        format!("{t:.2} s")
+    let (unit, scale, digits) = if size == 0.0 || size >= 0.999_95 {
+        ("s", 1.0, 2)
     } else if size >= 0.999_5e-3 {
-        format!("{:.1} ms", 1e3 * t)
+        ("ms", 1e3, 1)
     } else {
-        format!("{:.0} µs", 1e6 * t)
-    }
+        ("µs", 1e6, 0)
+    };
+    let digits = apart(scale * difference).max(digits);
+    format!("{} {unit}", rounded(scale * t, digits))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::seconds;
+    use super::{moment, seconds, span_after, within};
+
+    #[test]
+    fn the_ends_of_a_range_differ_in_two_digits() {
+        assert_eq!(within(-0.04, 0.2, "rad"), "between -0.040 and 0.200 rad");
+        assert_eq!(
+            within(-0.000_31, 0.001_04, "rad"),
+            "between -0.0003 and 0.0010 rad"
+        );
+        assert_eq!(within(-0.000_01, 0.5, "1"), "between 0 and 0.500");
+        assert_eq!(moment(0.0, 0.0998), "0 s");
+        assert_eq!(
+            span_after(10.001, 10.0043, "it"),
+            "from 10.0010 s to 10.0043 s after it"
+        );
+        assert_eq!(
+            span_after(0.8e-3, 2.2e-3, "it"),
+            "from 800 µs to 2.2 ms after it"
+        );
+    }
 
     #[test]
     fn a_rounded_duration_has_the_unit_that_suits_it() {
@@ -315,5 +364,6 @@ mod tests {
         assert_eq!(seconds(0.000_72), "720 µs");
         assert_eq!(seconds(0.999_96), "1.00 s");
         assert_eq!(seconds(0.72), "720.0 ms");
+        assert_eq!(seconds(0.0), "0 s");
     }
 }
