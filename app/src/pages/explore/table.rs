@@ -5,6 +5,7 @@ use hysteron_core::limit_cycle::Cycle;
 use hysteron_core::relay::Relay;
 
 use crate::language::{tr, tr_number};
+use crate::pages::chart::significant;
 use crate::theme;
 
 /// Describing function, exact and simulated values with their differences in per cent.
@@ -63,7 +64,7 @@ fn row_ui(
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            ui.label(tr_number(format!("{value:.4}")));
+            ui.label(tr_number(four_digits(value)));
             if let Some(exact) = exact {
                 ui.small(tr(difference(value, exact)));
             }
@@ -73,6 +74,15 @@ fn row_ui(
         .stable
         .map_or("?", |s| if s { "yes" } else { "no" })));
     ui.end_row();
+}
+
+/// A value with four decimals, or with four digits that count: a fast loop has a short period.
+fn four_digits(value: f64) -> String {
+    if value.abs() < 0.1 {
+        significant(value, 4)
+    } else {
+        format!("{value:.4}")
+    }
 }
 
 fn difference(value: f64, exact: f64) -> String {
@@ -124,4 +134,17 @@ pub fn equations_ui(ui: &mut egui::Ui) {
         ui.monospace(tr("relay      u = -k h(y)\nbalance    P(jω) = -1/N(a)\n-1/N(a) = -π/(4k) [√(a² - ε²) + jε]\nmargin S   sin φ = πε/(4k)\nexact      (I + e^(Ah)) x0 = k [G(h-L)\n             - e^(A(h-L)) G(L)],  C x0 = ε"));
         ui.small(tr("h: half period, L: all delays, G(t): step response of the state."));
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::four_digits;
+
+    #[test]
+    fn a_short_period_has_its_digits() {
+        assert_eq!(four_digits(4.7881), "4.7881");
+        assert_eq!(four_digits(0.001_234_5), "0.001234");
+        assert_eq!(four_digits(3.2e-5), "3.200e-5");
+        assert_eq!(four_digits(0.0), "0");
+    }
 }
