@@ -35,7 +35,7 @@ impl Compare {
 
     pub(super) fn answer_ui(&self, ui: &mut egui::Ui) {
         let text = match self.report() {
-            None => "Fitting the simplest model ...".to_owned(),
+            None => "Comparing the measurement with a model ...".to_owned(),
             Some(report) => {
                 let present = self.model.as_ref().map(UserModel::present);
                 answer(report, &present.unwrap_or_default())
