@@ -10,7 +10,9 @@ use egui_plot::{
 };
 
 pub use super::chart_axes::round_step;
-use super::chart_axes::{LABELS, grid, grid_x, label, power_label, powers, shown_from, unit_of};
+use super::chart_axes::{
+    LABELS, beside, grid, grid_x, label, power_label, powers, shown_from, unit_of,
+};
 pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
 use super::chart_keys::Worked;
@@ -124,7 +126,9 @@ impl<'a> Chart<'a> {
             .allow_scroll(false)
             .custom_x_axes(vec![axis(AxisHints::new_x().label(x), 0)])
             .custom_y_axes(vec![axis(
-                AxisHints::new_y().label(y).min_thickness(width),
+                AxisHints::new_y()
+                    .label(beside(&y, height))
+                    .min_thickness(width),
                 1,
             )])
             .x_grid_spacer(uniform_grid_spacer(move |input| grid_x(&input, &unit)))

@@ -23,6 +23,10 @@ const FINEST: f64 = 8.0;
 const LETTER: f64 = 7.5;
 const APART: f64 = 6.0;
 
+/// Width of a letter of the name of an axis, about, and what a name of y leaves free of the height of its plot, points.
+const LETTER_OF_NAME: f64 = 6.5;
+const ABOVE_AND_BELOW: f32 = 20.0;
+
 /// Units that take a prefix, and the prefixes by their powers of ten.
 const PREFIXED: [&str; 10] = [
     "rad", "rad/s", "rad/s²", "m", "m/s", "m/s²", "s", "N", "N m", "V",
@@ -73,6 +77,15 @@ pub(super) fn label(mark: GridMark, range: &RangeInclusive<f64>, unit: &str) -> 
 pub(super) fn unit_of(axis: &str) -> &str {
     let inner = axis.strip_suffix(']').and_then(|a| a.rsplit_once('['));
     inner.map_or("", |(_, unit)| unit)
+}
+
+/// The name of y beside a plot of this height: without its unit where that has no room and would lie over what is
+/// above and below.
+pub(super) fn beside(name: &str, height: f32) -> &str {
+    let room = f64::from(height - ABOVE_AND_BELOW);
+    let longer = LETTER_OF_NAME * name.chars().count() as f64 > room;
+    let plain = name.strip_suffix(']').and_then(|n| n.rsplit_once(" ["));
+    plain.filter(|_| longer).map_or(name, |(plain, _)| plain)
 }
 
 /// Grid lines of x, whose labels stand beside each other: so far apart that none touches the next.
@@ -209,6 +222,18 @@ mod tests {
             ["5.3742", "5.37425"]
         );
         assert_eq!(labels(0.0..=3000.0, &[(2500.0, 500.0)]), ["2500"]);
+    }
+
+    #[test]
+    fn a_name_that_is_longer_than_its_plot_is_high_has_no_unit() {
+        let long = "Mittelwert [× Rauschen]";
+        assert_eq!(beside(long, 150.0), "Mittelwert");
+        assert_eq!(beside(long, 200.0), long);
+        assert_eq!(beside("rms [× Rauschen]", 150.0), "rms [× Rauschen]");
+        assert_eq!(
+            beside("a name without a unit", 100.0),
+            "a name without a unit"
+        );
     }
 
     #[test]
