@@ -21,9 +21,6 @@ const GROWING: [f64; 4] = [0.1, 0.2, 0.4, 0.7];
 /// Share of the inertia of body and joined load that the body has at least.
 const LEAST_ALONE: f64 = 0.1;
 
-/// Share of the dry friction of the body that it keeps where the rest is moved to a load.
-const LEFT_BEHIND: f64 = 0.01;
-
 impl Search {
     /// Adds `effect` to a fitted model; starts from its own values and from a fresh regression of
     /// the baseline, since a missing effect may have bent the baseline far off. What it contains, or
@@ -96,7 +93,6 @@ impl Search {
             structure.begin(&mut values, kept.len());
             points.push((values.clone(), at.starts.clone()));
             if !settled {
-                points.extend(Self::with_friction_of_load(fit, &structure, &values));
                 points.extend(Self::regressed(data, fit, &structure, values));
             }
         }
@@ -183,25 +179,6 @@ impl Search {
             (values, starts) = (fit.values, fit.starts);
         }
         Some((values, starts))
-    }
-
-    /// The same point with the dry friction of the body moved to the load that the newest effect brings: as long as that was
-    /// missing, what rubs there rubbed here.
-    fn with_friction_of_load(fit: &Fit, structure: &Structure, values: &[f64]) -> Option<Point> {
-        let newest = structure.effects.len().checked_sub(1)?;
-        let place = |index: usize, symbol: &str| {
-            let parameters = structure.effects[index].parameters();
-            let at = parameters.iter().position(|p| p.symbol == symbol)?;
-            Some(structure.range(index).start + at)
-        };
-        let on_load = place(newest, "c2")?;
-        let on_body = (0..newest).find_map(|index| place(index, "c"))?;
-        let inertia = structure.model(values).load?.inertia;
-        let mut moved = values.to_vec();
-        moved[0] = (values[0] - inertia).max(LEAST_ALONE * values[0]);
-        moved[on_load] = values[on_body];
-        moved[on_body] *= LEFT_BEHIND;
-        Some((moved, fit.starts.clone()))
     }
 
     /// An effect found while another one was missing may sit in a wrong valley: its own starting
