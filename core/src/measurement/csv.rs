@@ -5,6 +5,7 @@ use super::found::{Numbers, addressed};
 use super::guess::fill;
 use super::header::{Field, Header, Role, map, name_and_unit, shorten, understand};
 use super::mapping::ImportOptions;
+use super::rates;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
 /// How the rows of a file are written.
@@ -413,10 +414,9 @@ pub(super) fn assemble(
         hint: "add the input, such as u [N m]",
     })?;
     outputs.sort_by_key(|c| c.quantity != Quantity::Position);
-    let warnings = header
-        .ignored
-        .iter()
-        .map(|n| ignored(n, header.kind))
+    let warnings = rates::contradiction(&time, &outputs)
+        .into_iter()
+        .chain(header.ignored.iter().map(|n| ignored(n, header.kind)))
         .chain(header.notes.iter().cloned())
         .collect();
     Ok(Measurement {

@@ -11,6 +11,7 @@ mod guess;
 mod header;
 mod mapping;
 mod mat;
+mod rates;
 mod table;
 mod unit;
 
