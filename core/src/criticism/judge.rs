@@ -60,9 +60,8 @@ const LARGE_FALL: f64 = 0.1;
 const CLEAR_ERRORS: f64 = 3.0;
 const LEAST_ERRORS: f64 = 1.5;
 
-/// Fall of the error that speaks for itself, if there is any size that goes with it: in standard errors.
+/// Fall of the error that speaks for itself.
 pub(super) const HUGE_FALL: f64 = 0.5;
-const ANY_ERRORS: f64 = 0.5;
 
 /// Whether the last effect of `with` helps `model` on both parts of the record, and is itself seen. What only tells how the record was made may be a
 /// trifle: it is not said to be missing from the machine.
@@ -80,9 +79,10 @@ pub(super) fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> boo
 /// Whether the effect at this place of `with`, which `model` has not, or only a part of, stands out by itself.
 fn is_seen(model: &Scored, with: &Scored, place: usize) -> bool {
     let fall = fall(&model.score, &with.score);
-    let clear = if fall > HUGE_FALL {
-        ANY_ERRORS
-    } else if fall > LARGE_FALL {
+    if fall > HUGE_FALL {
+        return true;
+    }
+    let clear = if fall > LARGE_FALL {
         LEAST_ERRORS
     } else {
         CLEAR_ERRORS
