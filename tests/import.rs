@@ -666,6 +666,37 @@ fn a_value_that_overflows_in_si_is_not_finite() {
 }
 
 #[test]
+fn what_is_too_large_or_too_small_to_calculate_with_is_no_measurement() {
+    for text in ["1e308", "-1e76", "1e20"] {
+        refused(
+            &with_row_5(&format!("5,2,2,{text}")),
+            &["line 7, column 4 (v1): '", text, "too large"],
+        );
+    }
+    let late = file(HEADER, 30).replace("\n29,", "\n1e300,");
+    refused(&late, &["line 31, column 1 (t)", "'1e300'", "too large"]);
+    let late = file(HEADER, 30).replace("\n29,", "\n1e18,");
+    refused(&late, &["line 31, column 1 (t)", "'1e18'", "too large"]);
+    let tiny = file("t [s],u [N m],v1 [rad/s]", 30).replace(",2,2", ",0,1e-170");
+    refused(&tiny, &["line 2, column 3 (v1): '1e-170'", "too small"]);
+    // Values that a logger writes where it has none are seen later, in the company of the others.
+    for text in ["-9999", "1e12"] {
+        assert_eq!(import(&with_row_5(&format!("5,2,2,{text}"))).len(), 30);
+    }
+    // Nor is a long pause, or a clock that counts nanoseconds from 1970.
+    let paused = file(HEADER, 30).replace("\n29,", "\n1e9,");
+    assert_eq!(import(&paused).len(), 30);
+    let mut text = HEADER.to_owned();
+    for i in 0..30_u64 {
+        let _ = write!(text, "\n{},2,2,2", 1_700_000_000_000_000_000 + i * 1_000_000);
+    }
+    assert_eq!(import(&text.replace("t [s]", "t [us]")).len(), 30);
+    // At rest but for a moment.
+    let rest = file("t [s],u [N m],v1 [rad/s]", 30).replace(",2,2", ",1e-20,1e-20");
+    assert_eq!(import(&rest.replace("\n5,1e-20", "\n5,2")).len(), 30);
+}
+
+#[test]
 fn bytes_that_are_not_text_are_refused() {
     let mut latin1 = file(HEADER, 3).into_bytes();
     latin1.extend(b"# 3 \xb0C\n");

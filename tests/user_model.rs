@@ -198,6 +198,21 @@ fn a_model_must_suit_the_measurement() {
     );
 }
 
+#[test]
+fn an_error_that_is_no_number_is_not_said() {
+    // No file is read with such a value.
+    let mut measurement = measured("drive-01");
+    measurement.outputs[0].values[500] = 1e300;
+    let job = DiagnosisJob::new(&measurement).unwrap();
+    let step = finish(job).steps.pop().unwrap();
+    assert!(!step.error.is_finite(), "{}", step.error);
+    let refused = step.checked().unwrap_err();
+    assert_eq!(refused, CriticismError::NotFinite);
+    assert!(refused.to_string().contains("too large or too small"));
+    let job = DiagnosisJob::new(&measured("drive-01")).unwrap();
+    assert!(finish(job).steps.iter().all(|step| step.checked().is_ok()));
+}
+
 /// The text is refused on this line with a sentence that has these parts.
 #[track_caller]
 fn refused(text: &str, line: usize, parts: &[&str]) {

@@ -138,7 +138,11 @@ impl Work for StepTask {
             }
         };
         if let Some(report) = finish(|| job.advance(), say) {
-            say(News::Report(Box::new(report)));
+            let wrong = report.step.checked().err();
+            say(match wrong {
+                Some(error) => News::Failed(error.to_string()),
+                None => News::Report(Box::new(report)),
+            });
         }
     }
 }

@@ -303,6 +303,9 @@ fn of(
         match job.advance() {
             Progress::Running { fraction, text } => show(fraction, &text),
             Progress::Done(mut diagnosis) => {
+                for step in &diagnosis.steps {
+                    step.checked().map_err(|e| format!("{name}: {e}"))?;
+                }
                 diagnosis.seconds = started.elapsed().as_secs_f64();
                 let page = arguments.report.as_ref().and_then(|_| {
                     let (first, last) = job.evidence()?;

@@ -101,6 +101,11 @@ pub enum CriticismError {
         /// Symbol of the parameter.
         symbol: String,
     },
+    /// A model whose error is no number.
+    #[error(
+        "the error of the model is not finite: values of the measurement or of the model are too large or too small to calculate with"
+    )]
+    NotFinite,
     /// An effect that makes no sense for this kind of system.
     #[error("{effect} cannot be added to this kind of system")]
     WrongEffect {

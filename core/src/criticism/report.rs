@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Fingerprint, MissingPart, NextExperiment, Profile, ResidualTest};
+use super::{CriticismError, Fingerprint, MissingPart, NextExperiment, Profile, ResidualTest};
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Quantity};
 use crate::user_model::Status;
@@ -105,6 +105,20 @@ pub struct Step {
     pub tests: Vec<ResidualTest>,
     /// What could be added, best first.
     pub candidates: Vec<Candidate>,
+}
+
+impl Step {
+    /// Itself, if there is an error that can be said.
+    ///
+    /// # Errors
+    /// [`CriticismError::NotFinite`]: what was calculated with is too large or too small for an `f64`.
+    pub fn checked(&self) -> Result<&Self, CriticismError> {
+        if self.error.is_finite() && self.error_fit.is_finite() {
+            Ok(self)
+        } else {
+            Err(CriticismError::NotFinite)
+        }
+    }
 }
 
 /// What the data say in the end.

@@ -6,6 +6,7 @@ use super::guess::fill;
 use super::header::{Field, Header, Role, map, name_and_unit, shorten, understand};
 use super::mapping::ImportOptions;
 use super::rates;
+use super::size::wrong_size;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
 /// How the rows of a file are written.
@@ -79,7 +80,9 @@ pub(super) fn import_text(
         fail(Some(line), column, problem)
     })?;
     header.notes.splice(..0, taken);
-    let values = read_rows(&header, dialect, rows)
+    let separator = dialect.separator;
+    let values = read_rows(&header, dialect, rows.clone())
+        .and_then(|values| check_sizes(&header, separator, rows, values))
         .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
     header
         .doubt_seconds(&values)
@@ -359,6 +362,25 @@ fn read_rows<'a>(
         }
     }
     Ok(values)
+}
+
+/// The values of these rows, if they can be calculated with.
+fn check_sizes<'a>(
+    header: &Header,
+    separator: char,
+    mut rows: impl Iterator<Item = (usize, &'a str)>,
+    values: Vec<Vec<f64>>,
+) -> Result<Vec<Vec<f64>>, Failure> {
+    let mut columns = header.columns.iter().zip(&values);
+    let place = columns.find_map(|(column, values)| Some((column, wrong_size(column.role, values)?)));
+    let Some((column, (line, row))) = place.and_then(|(c, row)| Some((c, rows.nth(row)?))) else {
+        return Ok(values);
+    };
+    let mut fields = Vec::with_capacity(header.width);
+    split_row(row, separator, &mut fields);
+    let text = shorten(fields.get(column.index).copied().unwrap_or_default());
+    let here = Some(format!("{} ({})", column.index + 1, column.name));
+    Err((line, here, Problem::Size { text }))
 }
 
 fn number(text: &str, dialect: &mut Dialect) -> Option<f64> {

@@ -126,6 +126,10 @@ pub enum Problem {
     #[error("'{text}' is not finite; remove the row or measure again")]
     NotFinite { text: String },
     #[error(
+        "'{text}' is no measurement: it is too large or too small to calculate with, by itself or beside the rest of its column; remove the row or measure again"
+    )]
+    Size { text: String },
+    #[error(
         "time does not increase ({now} s after {before} s); rows must be in order of time, each time once"
     )]
     TimeOrder { before: String, now: String },

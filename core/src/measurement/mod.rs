@@ -12,6 +12,7 @@ mod header;
 mod mapping;
 mod mat;
 mod rates;
+mod size;
 mod table;
 mod unit;
 

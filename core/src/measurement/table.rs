@@ -5,6 +5,7 @@ use super::error::{ImportError, Problem};
 use super::header::{Field, Header, Role, map, understand};
 use super::mapping::ImportOptions;
 use super::mat::{self, Format, Series};
+use super::size::wrong_size;
 use super::{Measurement, header::shorten};
 
 /// Reads a measurement: CSV (see [`import_csv`](super::import_csv)) or a MATLAB file of level 5
@@ -87,6 +88,10 @@ fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Lo
                 let text = format!("{text}");
                 return Err((here(i), Problem::NotFinite { text }));
             }
+        }
+        if let Some(i) = wrong_size(column.role, &values) {
+            let text = format!("{:e}", values[i] / column.factor);
+            return Err((here(i), Problem::Size { text }));
         }
         let pairs = || values.iter().zip(values.iter().skip(1));
         if column.role == Role::Time
