@@ -127,6 +127,19 @@ fn simulate_writes_what_diagnose_reads() {
 }
 
 #[test]
+fn a_run_that_is_too_long_is_said_to_be() {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("long.toml");
+    let lines = "[plant]\nformula = \"1/(s+1)^3\"\n[relay]\ngain = 1\nhysteresis = 0.1\n[run]\nduration = ";
+    for duration in ["1e5", "1e8"] {
+        std::fs::write(&path, format!("{lines}{duration}\n")).unwrap();
+        let said = text(&hysteron("simulate", &path, &[]));
+        assert!(said.contains("a shorter duration"), "{said}");
+        assert!(!said.contains("chatter") && !said.contains(" 0.000000 s"), "{said}");
+        assert!(said.contains("It oscillates"), "{said}");
+    }
+}
+
+#[test]
 fn what_is_no_scenario_is_one_line_with_its_place() {
     let relay = "[relay]\ngain = 1.0\n";
     for (name, content, parts) in [

@@ -203,6 +203,30 @@ fn endless_switching_is_reported_and_not_waited_for() {
 }
 
 #[test]
+fn a_long_run_is_no_chattering() {
+    let relay = Relay {
+        hysteresis: 0.1,
+        ..Relay::default()
+    };
+    let lag = space("1/(s+1)^3");
+    for step in [1.0, 1e6] {
+        let run = run(&lag, &relay, 0.0, &Options::new(step * 1e5, step)).unwrap();
+        assert_eq!(run.cut, Some(Cut::TooManySwitches));
+        assert!(run.rises.len() + run.falls.len() >= MAX_SWITCHES);
+        let (period, _) = run.settled(1e-6).unwrap();
+        let whole = period * 0.5 * MAX_SWITCHES as f64;
+        assert!((run.end() / whole - 1.0).abs() < 1e-3, "{}", run.end());
+    }
+    // A narrow relay is fast, and no faster in the end.
+    let narrow = Relay {
+        hysteresis: 1e-4,
+        ..Relay::default()
+    };
+    let run = run(&space("1/(s+1)"), &narrow, 0.0, &Options::new(60.0, 0.1)).unwrap();
+    assert_eq!(run.cut, Some(Cut::TooManySwitches));
+}
+
+#[test]
 fn relays_side_by_side_do_not_hear_each_other() {
     // Two third-order lags in one plant, uncoupled: each must do what it does alone, bit for bit in events.
     let (slow, fast) = (space("1/(s+1)^3"), space("3/(0.5s+1)^3"));

@@ -296,6 +296,9 @@ fn sentence(
             "The relay chatters: it switches without end, the output slides along the threshold."
                 .to_owned()
         }
+        (None, _) if run.cut == Some(Cut::TooManySwitches) => {
+            "The relay switches so often that the run was cut: make it shorter.".to_owned()
+        }
         _ if run.cut == Some(Cut::TooFast) => {
             "A part of the plant is far too fast for the rest: the run was cut. Leave that part out."
                 .to_owned()

@@ -58,11 +58,14 @@ pub(super) fn read(path: &Path) -> Result<AnyScenario, String> {
 
 fn summary(run: &Trajectory) -> String {
     let mut text = String::new();
-    let end = run.time.last().copied().unwrap_or(0.0);
+    let end = run.end();
     let switches = run.rises.len() + run.falls.len();
     let _ = writeln!(text, "{switches} switches up to {end:.6} s.");
     let why = run.cut.map(|cut| match cut {
         Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
+        Cut::TooManySwitches => {
+            "The run was cut there after as many switches as it may have: a shorter duration is run to its end."
+        }
         Cut::TooFast => {
             "A part of the plant is far too fast for the rest: the run was cut there after millions of steps."
         }

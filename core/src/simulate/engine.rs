@@ -12,6 +12,16 @@ use super::sliding::Sliding;
 use super::trajectory::{Cut, Trajectory};
 use crate::relay::Relay;
 
+/// The first and the last of so many parts of all switches are compared where a run has too many of them.
+const COMPARED_PARTS: usize = 10;
+
+/// Share of the time which the first switches take that the last ones take where they follow each other ever faster.
+/// (Those that die away as slowly as 1/k, towards a threshold that cannot be slid along, take a hundredth of it.)
+const EVER_FASTER: f64 = 0.1;
+
+/// Share of the time in which the plant moves within which no relay with hysteresis or delay switches.
+const FAR_FASTER: f64 = 1e-6;
+
 /// A relay and what it has recorded.
 #[derive(Clone, Debug)]
 struct Channel {
@@ -180,8 +190,10 @@ impl<'a> Engine<'a> {
                 } else {
                     self.advance(limit)
                 };
-                let cut = if !fine {
+                let cut = if !fine && self.chatters() {
                     Some(Cut::Chattering)
+                } else if !fine {
+                    Some(Cut::TooManySwitches)
                 } else if steps > super::MAX_STEPS {
                     Some(Cut::TooFast)
                 } else {
@@ -197,6 +209,21 @@ impl<'a> Engine<'a> {
             self.arrive();
         }
         true
+    }
+
+    /// Whether the relays have switched ever faster, or far faster than the plant moves.
+    fn chatters(&self) -> bool {
+        let mut times: Vec<f64> = self
+            .channels
+            .iter()
+            .flat_map(|c| c.out.rises.iter().chain(&c.out.falls).copied())
+            .collect();
+        times.sort_by(f64::total_cmp);
+        let part = times.len() / COMPARED_PARTS;
+        let taken = |all: &[f64]| all.last().zip(all.first()).map_or(0.0, |(b, a)| b - a);
+        let first = taken(&times[..part]);
+        let last = taken(&times[times.len() - part..]);
+        last < EVER_FASTER * first || last < FAR_FASTER * part as f64 * self.flow.step(0)
     }
 
     /// Handles what is due now: changes of inputs and new pieces of noise.

@@ -22,7 +22,7 @@ use crate::plant::{MAX_ORDER, Multivariable, PlantError, StateSpace};
 use crate::relay::{Relay, RelayError};
 use sliding::Sliding;
 
-/// Switches after which a run counts as chattering and ends, unless the caller says otherwise.
+/// Switches after which a run ends, as chattering or as too long, unless the caller says otherwise.
 pub const MAX_SWITCHES: usize = 20_000;
 
 /// Steps after which a run is cut: the fastest mode of a plant may be a billion times faster than its cycle.
@@ -42,7 +42,7 @@ pub struct Options {
     pub initial: Option<DVector<f64>>,
     /// Measurement noise.
     pub noise: Option<Noise>,
-    /// Switches after which the run ends as chattering.
+    /// Switches after which the run ends.
     pub max_switches: usize,
 }
 

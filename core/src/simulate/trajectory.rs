@@ -27,13 +27,21 @@ pub struct Trajectory {
 /// Why a run is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// The relay switches without end.
+    /// The relay switches without end: ever faster, or far faster than the plant can follow.
     Chattering,
+    /// It switched as often as a run may, though at a pace that goes on: the run was too long.
+    TooManySwitches,
     /// A mode of the plant is so fast that the run would take millions of steps.
     TooFast,
 }
 
 impl Trajectory {
+    /// The last instant of which something is known, s.
+    pub fn end(&self) -> f64 {
+        let last = [self.time.last(), self.rises.last(), self.falls.last()];
+        last.into_iter().flatten().copied().fold(0.0, f64::max)
+    }
+
     /// Period in s and amplitude (half of peak to peak) of the last whole cycle, if the run has settled:
     /// the two last cycles differ by less than the share `tolerance` in both.
     pub fn settled(&self, tolerance: f64) -> Option<(f64, f64)> {
@@ -47,6 +55,7 @@ impl Trajectory {
         let earlier = 0.5 * (before[1] - before[0]);
         let calm = ((b - a) - period).abs() < tolerance * period
             && (earlier - amplitude).abs() < tolerance * amplitude;
-        (calm && self.cut.is_none()).then_some((period, amplitude))
+        let goes_on = matches!(self.cut, None | Some(Cut::TooManySwitches));
+        (calm && goes_on).then_some((period, amplitude))
     }
 }

@@ -98,7 +98,7 @@ impl RelayTest {
             if run.cut == Some(Cut::TooFast) {
                 return Err(TuningError::TooFast);
             }
-            if run.cut.is_some() || slides {
+            if run.cut == Some(Cut::Chattering) || slides {
                 return Err(TuningError::Chattering {
                     hysteresis: relay.hysteresis,
                 });
