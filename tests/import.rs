@@ -233,6 +233,7 @@ fn the_ways_in_which_programs_write_csv_are_all_one() {
         ("tab", tabs),
         ("byte order mark", format!("\u{feff}{plain}")),
         ("CRLF", plain.replace('\n', "\r\n")),
+        ("CR", plain.replace('\n', "\r")),
         (
             "comments and empty lines",
             format!(
@@ -596,6 +597,29 @@ fn a_missing_header_or_unit_is_named_with_what_is_accepted() {
         &file("t [s],u [N m],x1 [rad],theta [rad]", 30),
         &["column 4 (theta)", "twice"],
     );
+}
+
+#[test]
+fn dates_are_said_not_to_be_read() {
+    let dated = |name: &str, date: &str| {
+        let rows: Vec<String> = (10..40).map(|i| format!("{i}{date},2,2")).collect();
+        format!("{name},u [N m],x1 [rad]\n{}\n", rows.join("\n"))
+    };
+    for (name, date) in [
+        ("timestamp", "-03-05T12:00:00.5"),
+        ("when", ":59:59"),
+        ("day", "/03/2024"),
+        ("time", "-Mar-2024 12:00:00"),
+        ("t [s]", ":00:00"),
+    ] {
+        let said = [&format!("column '{}", &name[..1]) as &str, date, "seconds since"];
+        refused(&dated(name, date), &said);
+    }
+    // A date beside the time does not matter.
+    let beside = file("t [s],day,u [N m],x1 [rad]", 30);
+    let beside = beside.replace(",2,2\n", ",2024-03-05,2,2\n");
+    assert_eq!(import(&beside).len(), 30);
+    refused(&dated("a", ""), &["no column 't'"]);
 }
 
 #[test]

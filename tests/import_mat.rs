@@ -329,6 +329,14 @@ fn what_is_wrong_is_said_with_what_would_be_right() {
         None,
         &["-v7.3", "-v7"],
     );
+    // One column of doubles called t, by little-endian and by big-endian words.
+    let old = |word: fn(u32) -> [u8; 4], order: u32| {
+        let words = [1000 * order, 3, 1, 0, 2].map(word);
+        [words.concat(), b"t\0".to_vec(), vec![0; 24]].concat()
+    };
+    for old in [old(u32::to_le_bytes, 0), old(u32::to_be_bytes, 1)] {
+        refused(&old, RIG, None, &["level 4", "-v4", "-v7"]);
+    }
     refused(&FLAT[..200], RIG, None, &["at byte", "damaged"]);
 }
 

@@ -75,7 +75,17 @@ pub(super) fn import_text(
         ))
     };
     let taken = fill(&mut fields, options, look).map_err(|p| fail(Some(line), None, p))?;
+    let date = rows.clone().next().and_then(|(_, row)| date(row, dialect.separator, &fields));
     let mut header = understand(fields, options).map_err(|(column, problem)| {
+        let problem = match (problem, date) {
+            (Problem::NoColumn { wanted: "t", .. }, Some(date)) => date,
+            (Problem::NoUnit { name, .. }, Some(date))
+                if matches!(&date, Problem::Date { name: dated, .. } if *dated == shorten(&name)) =>
+            {
+                date
+            }
+            (other, _) => other,
+        };
         let column = column.map(|(i, n)| format!("{i} ({n})"));
         fail(Some(line), column, problem)
     })?;
@@ -106,14 +116,17 @@ struct Text<Rows> {
 
 /// Opens a text.
 fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &str)> + Clone>, Located> {
+    // Old loggers, and some spreadsheets, end lines with a carriage return alone.
+    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let before = bytes.get(..e.valid_up_to()).unwrap_or_default();
-        let line = before.split(|b| *b == b'\n').count();
+        let line = before.split(|b| *b == end).count();
         (Some(line), Problem::NotText)
     })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text
-        .lines()
+        .split(char::from(end))
+        .map(|line| line.strip_suffix('\r').unwrap_or(line))
         .enumerate()
         .map(|(i, line)| (i + 1, line))
         .filter(|(_, line)| !line.trim().is_empty());
@@ -330,13 +343,13 @@ fn read_rows<'a>(
             let here = || Some(format!("{} ({})", column.index + 1, column.name));
             let text = fields[column.index];
             let value = number(text, &mut dialect).ok_or_else(|| {
-                (
-                    line,
-                    here(),
-                    Problem::NotANumber {
-                        text: shorten(text),
-                    },
-                )
+                let (name, text) = (column.name.clone(), shorten(text));
+                let problem = if column.role == Role::Time && is_date(&text) {
+                    Problem::Date { name, text }
+                } else {
+                    Problem::NotANumber { text }
+                };
+                (line, here(), problem)
             })? * column.factor;
             if !value.is_finite() {
                 return Err((
@@ -362,6 +375,29 @@ fn read_rows<'a>(
         }
     }
     Ok(values)
+}
+
+/// The first of the columns that are the time, or nothing that is known, which has a date in this row.
+fn date(row: &str, separator: char, fields: &[Field]) -> Option<Problem> {
+    let mut texts = Vec::with_capacity(fields.len());
+    split_row(row, separator, &mut texts);
+    let mut free = fields.iter().zip(texts).filter(|(field, _)| field.role.is_none_or(|r| r == Role::Time));
+    free.find(|(_, text)| is_date(text)).map(|(field, text)| Problem::Date {
+        name: shorten(&field.name),
+        text: shorten(text),
+    })
+}
+
+/// Whether a text is a date or a time of day: digits with a colon between them, or three parts of digits with a
+/// hyphen or a slash between them.
+fn is_date(text: &str) -> bool {
+    let digit = |c: Option<&u8>| c.is_some_and(u8::is_ascii_digit);
+    let between = |marks: &[u8]| {
+        let triples = text.as_bytes().windows(3);
+        let is_mark = |t: &&[u8]| marks.contains(&t[1]) && digit(t.first()) && digit(t.last());
+        triples.filter(is_mark).count()
+    };
+    digit(text.as_bytes().first()) && (between(b":") > 0 || between(b"-/") > 1)
 }
 
 /// The values of these rows, if they can be calculated with.

@@ -38,6 +38,7 @@ impl Problem {
                 | Self::NoColumn { .. }
                 | Self::Unclear { .. }
                 | Self::NoSuchColumn { .. }
+                | Self::Date { .. }
                 | Self::NeedlessTorqueConstant { .. }
                 | Self::NotMapped { .. }
                 | Self::NoUnitInMat { .. }
@@ -85,6 +86,10 @@ pub enum Problem {
         found: String,
         example: Box<str>,
     },
+    #[error(
+        "the column '{name}' has dates or times of day, such as '{text}', which are not read; write the time as a number of seconds since the begin: t [s]"
+    )]
+    Date { name: String, text: String },
     #[error("no column '{wanted}' to map; the file has {found}")]
     NoSuchColumn { wanted: String, found: String },
     #[error(
@@ -109,6 +114,8 @@ pub enum Problem {
     MatTooLarge { mebibytes: usize },
     #[error("a file in HDF5, as MATLAB's save -v7.3 writes it; save it with -v7")]
     Hdf5,
+    #[error("a MAT-file of level 4, as MATLAB's save -v4 writes it; save it with -v7")]
+    Mat4,
     #[error("the column '{name}' stands there twice; each may come once")]
     Twice { name: String },
     #[error(

@@ -74,6 +74,7 @@ pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError
     let seen = match mat::format_of(bytes) {
         Format::Other => survey(bytes, Numbers::default(), Numbers::take).map_err(fail)?,
         Format::Hdf5 => return Err(fail((None, Problem::Hdf5))),
+        Format::Mat4 => return Err(fail((None, Problem::Mat4))),
         Format::Mat5 => survey_mat(bytes).map_err(|problem| fail((None, problem)))?,
     };
     let mut found = addressed(seen);

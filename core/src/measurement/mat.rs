@@ -10,6 +10,9 @@ use super::error::Problem;
 /// Length of the text and flags before the first element.
 const HEADER: usize = 128;
 
+/// Length of the five words at the begin of a file of level 4.
+const LEVEL_4_HEADER: usize = 20;
+
 /// Most bytes that all variables of a file may unpack to, so that a hostile one cannot fill the memory.
 const LARGEST: usize = 256 << 20;
 
@@ -30,6 +33,8 @@ pub(super) enum Format {
     Mat5,
     /// HDF5, as `save -v7.3` writes.
     Hdf5,
+    /// Level 4, as `save -v4` writes.
+    Mat4,
     /// None of these: text, as far as we know.
     Other,
 }
@@ -42,8 +47,28 @@ pub(super) fn format_of(bytes: &[u8]) -> Format {
     match bytes.get(124..HEADER) {
         Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I']) => Format::Mat5,
         _ if bytes.starts_with(b"MATLAB 5.0") => Format::Mat5,
+        _ if is_level_4(bytes) => Format::Mat4,
         _ => Format::Other,
     }
+}
+
+/// Whether a file begins as one of level 4 does: with five words for byte order and type, rows, columns, whether
+/// there is an imaginary part, and the length of a name, which ends with a zero.
+fn is_level_4(bytes: &[u8]) -> bool {
+    let Some(words) = bytes.first_chunk::<LEVEL_4_HEADER>() else {
+        return false;
+    };
+    let (words, _) = words.as_chunks::<4>();
+    [(0, u32::from_le_bytes as fn([u8; 4]) -> u32), (1, u32::from_be_bytes)]
+        .into_iter()
+        .any(|(order, word)| {
+            let [kind, imaginary, length] = [0, 3, 4].map(|i| word(words[i]));
+            // Thousands are the byte order, tens the type of the numbers, ones that of the matrix.
+            let typed = kind / 1000 == order && kind % 1000 <= 52 && kind % 10 <= 2;
+            let name = bytes.get(LEVEL_4_HEADER..).and_then(|rest| rest.get(..length as usize));
+            let named = name.is_some_and(|n| n.len() > 1 && n[0] != 0 && n.ends_with(&[0]));
+            typed && imaginary <= 1 && named
+        })
 }
 
 /// All series of numbers in a file.

@@ -31,6 +31,7 @@ pub fn import(
     match mat::format_of(bytes) {
         Format::Other => import_text(name, bytes, options),
         Format::Hdf5 => Err(fail((None, Problem::Hdf5))),
+        Format::Mat4 => Err(fail((None, Problem::Mat4))),
         Format::Mat5 => import_mat(name, bytes, options).map_err(fail),
     }
 }
@@ -89,16 +90,16 @@ fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Lo
                 return Err((here(i), Problem::NotFinite { text }));
             }
         }
-        if let Some(i) = wrong_size(column.role, &values) {
-            let text = format!("{:e}", values[i] / column.factor);
-            return Err((here(i), Problem::Size { text }));
-        }
         let pairs = || values.iter().zip(values.iter().skip(1));
         if column.role == Role::Time
             && let Some((i, (before, now))) = pairs().enumerate().find(|(_, (a, b))| b <= a)
         {
             let (before, now) = (format!("{before}"), format!("{now}"));
             return Err((here(i + 1), Problem::TimeOrder { before, now }));
+        }
+        if let Some(i) = wrong_size(column.role, &values) {
+            let text = format!("{:e}", values[i] / column.factor);
+            return Err((here(i), Problem::Size { text }));
         }
         all.push(values);
     }
