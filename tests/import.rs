@@ -292,6 +292,32 @@ fn a_header_may_stand_in_the_comment_above_the_numbers() {
 }
 
 #[test]
+fn units_may_stand_in_a_row_of_their_own() {
+    let wanted = import(&file("t [ms],u [N m],x1 [deg],v1 [rpm]", 30));
+    let rows = file("t [ms],u [N m],x1 [deg],v1 [rpm]", 30);
+    let (_, rows) = rows.split_once('\n').unwrap();
+    for head in [
+        "t,u,x1,v1\nms,N m,deg,rpm",
+        "\"Time\",\"Torque\",\"pos\",\"speed\"\n\"ms\",\"Nm\",\"deg\",\"rpm\"",
+        "t,u,x1,v1\n[ms],[Nm],[deg],[rpm]",
+        // What stands in the header is right.
+        "t [ms],u,x1 [deg],v1\n,N m,rad,rpm",
+    ] {
+        let read = import(&format!("{head}\n{rows}"));
+        let values = |m: &Measurement| (m.time.clone(), m.input.values.clone(), m.outputs[0].values.clone());
+        assert_eq!(values(&read), values(&wanted), "{head}");
+        assert_eq!(read.outputs[1].values, wanted.outputs[1].values, "{head}");
+    }
+    let m = import(&format!("t,u,status,y\ns,%,-,degC\n{rows}"));
+    assert_eq!((m.kind, m.outputs[0].unit.as_str()), (Kind::Process, "degC"));
+    // What is no unit is still a row that is wrong.
+    refused(
+        &format!("t [s],u [N m],x1 [rad],v1 [rad/s]\ns,N m,furlong,rpm\n{rows}"),
+        &["line 2, column 1 (t)", "'s' is not a number"],
+    );
+}
+
+#[test]
 fn blanks_divide_columns_where_nothing_else_does() {
     let plain = import(&format!("t [s],u [N m],x1 [rad],a [1]\n{}", rows(",")));
     for header in [

@@ -2,11 +2,12 @@
 
 use super::error::{ImportError, Problem};
 use super::found::{Numbers, addressed};
-use super::guess::fill;
+use super::guess::{fill, is_of_process};
 use super::header::{Field, Header, Role, map, name_and_unit, shorten, understand};
 use super::mapping::ImportOptions;
 use super::rates;
 use super::size::wrong_size;
+use super::unit::parse_input;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
 /// How the rows of a file are written.
@@ -23,7 +24,8 @@ struct Dialect {
 /// drive, `t [s],u [1],y [1]` for a process. Separated by comma, semicolon, tab or, where none of
 /// these is there, blanks; with semicolon and tab a decimal comma is understood. Lines that start
 /// with `#` are comments, of which the last one before the numbers is the header where the file has
-/// no other and it names as many columns as there are. Everything but the
+/// no other and it names as many columns as there are. Units may stand in a row of their own below the
+/// names. Everything but the
 /// signals of a process is converted to SI units; encoder counts state their resolution in the
 /// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). `kind` is guessed from the columns
 /// if not given. What no column is called is taken from the only one whose name resembles it, with a
@@ -159,12 +161,37 @@ fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &str)> + Clone
         };
         Field::named(name, unit)
     };
+    let mut fields: Vec<Field> = names.iter().map(field).collect();
+    let below = rows.clone().next().filter(|_| !numeric);
+    if let Some(units) = below.and_then(|(_, row)| units(row, separator, fields.len())) {
+        rows.next();
+        for (field, unit) in fields.iter_mut().zip(units) {
+            field.unit = field.unit.take().or(unit);
+        }
+    }
     Ok(Text {
-        fields: names.iter().map(field).collect(),
+        fields,
         line,
         dialect,
         rows: if numeric { whole } else { rows },
     })
+}
+
+/// The units of so many columns, where a row has nothing but units in it, or nothing for a column without one.
+fn units(row: &str, separator: char, columns: usize) -> Option<Vec<Option<String>>> {
+    let mut texts = Vec::with_capacity(columns);
+    split_row(row, separator, &mut texts);
+    // A separator at the end of every row is a habit of some loggers.
+    if texts.len() == columns + 1 && texts.last().is_some_and(|t| t.is_empty()) {
+        texts.pop();
+    }
+    let bare = |text: &str| text.trim_matches(['[', ']', '(', ')']).trim().to_owned();
+    let texts: Vec<String> = texts.into_iter().map(bare).collect();
+    let is_unit = |t: &String| t.is_empty() || parse_input(t).is_some() || is_of_process(t);
+    // The 1 of a plain number is a unit, but a row of numbers is none.
+    let says = |t: &String| !t.is_empty() && t.parse::<f64>().is_err();
+    let all = texts.len() == columns && texts.iter().all(is_unit) && texts.iter().any(says);
+    all.then(|| texts.into_iter().map(|t| Some(t).filter(|t| !t.is_empty())).collect())
 }
 
 /// What a comment says; `None` of a line that is none.

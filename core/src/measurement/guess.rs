@@ -179,7 +179,7 @@ impl Resembling {
 }
 
 /// Whether it is a unit of what no drive has.
-fn is_of_process(unit: &str) -> bool {
+pub(super) fn is_of_process(unit: &str) -> bool {
     UNITS_OF_PROCESS.contains(&unit.trim().to_lowercase().as_str())
 }
 
