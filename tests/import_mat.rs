@@ -346,7 +346,9 @@ fn a_mapping_or_constant_that_makes_no_sense_is_refused() {
     assert!(mapping("x1 enc").contains("'x1 enc' is not a mapping"));
     assert!(mapping("x1=").contains("not a mapping"));
     assert!(mapping("x1=enc [rad").contains("not a mapping"));
-    assert!(mapping("what=enc [rad]").contains("'what' is nothing that can be measured"));
+    assert!(mapping("what=enc [rad]").contains("'what' is none of t, u, x1"));
+    // A name that a column may have, on the wrong side.
+    assert!(mapping("q=u").contains("'q' is none of t, u, x1"));
     assert!(mapping("x1=a [rad],x1=b [rad]").contains("'x1' stands in the mapping twice"));
     assert!(mapping("x1=a [rad],v1=a [rpm]").contains("'a' stands in the mapping twice"));
     for wrong in [

@@ -75,6 +75,11 @@ impl Role {
         }
     }
 
+    /// The role of this name.
+    pub(super) fn called(name: &str) -> Option<Self> {
+        role(name).filter(|role| role.name().eq_ignore_ascii_case(name))
+    }
+
     /// Whether a column in this role may have this unit.
     pub fn takes(self, kind: Kind, unit: &str) -> bool {
         convert(self, kind, "", unit).is_ok()

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use super::csv::split_header;
-use super::header::{Role, role, shorten};
+use super::header::{Role, shorten};
 use super::unit::{self, Measures};
 
 /// How to read a file; the default asks the file itself.
@@ -82,7 +82,7 @@ pub enum MappingError {
         part: String,
     },
     /// Left of `=` stands no known quantity.
-    #[error("'{name}' is nothing that can be measured; expected t, u, x1, v1, x2, v2 or y")]
+    #[error("'{name}' is none of t, u, x1, v1, x2, v2 and y, which say what the column behind the = is")]
     UnknownQuantity {
         /// What was found.
         name: String,
@@ -149,7 +149,8 @@ fn entry(part: &str) -> Result<Entry, MappingError> {
     if what.is_empty() || (source.is_empty() && !none) {
         return Err(wrong());
     }
-    let role = role(what).ok_or_else(|| MappingError::UnknownQuantity {
+    // A file may call the position q; here the q of "q=u" is more likely a mistake that turns the columns round.
+    let role = Role::called(what).ok_or_else(|| MappingError::UnknownQuantity {
         name: shorten(what),
     })?;
     Ok(Entry {
