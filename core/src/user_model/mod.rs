@@ -219,7 +219,7 @@ impl UserModel {
             });
             let (symbol, value) = value.ok_or_else(|| {
                 format!(
-                    "'{}' is no starting value: write such as {} = 0.05",
+                    "'{}' is no starting value: write such as {} = 0.05, with a comma before the next one",
                     part.trim(),
                     symbols.first().map_or("a", String::as_str)
                 )
