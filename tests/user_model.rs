@@ -255,6 +255,16 @@ fn what_is_wrong_in_a_file_is_said_with_its_line() {
         &["J1 = -1", "above 0"],
     );
     refused(
+        "kind = \"drive\"\n\n[parameters]\nd1 = 1\nJ1 = -4e-3\n",
+        5,
+        &["J1 = -0.004", "above 0"],
+    );
+    refused(
+        "kind = \"drive\"\n[[effects]]\nid=\"cogging\"\n[effects.parameters]\nn = 2\na = { value = -1 }\n",
+        6,
+        &["a = -1", "at least 0"],
+    );
+    refused(
         "kind = \"drive\"\nparameters.J1 = {}\n",
         2,
         &["J1 needs a value"],

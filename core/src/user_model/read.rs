@@ -119,7 +119,7 @@ impl Reader<'_> {
                         _ => "above 0",
                     };
                     return Err(self.error(
-                        &value.span(),
+                        &place_of(&p.symbol, value),
                         format!("{} = {} must be {wanted}", p.symbol, p.value),
                     ));
                 }
@@ -208,7 +208,7 @@ impl Reader<'_> {
                         spec.and_then(|s| Some((s, s.range.refuses(p.value)?)))
                     {
                         return Err(self.error(
-                            &value.span(),
+                            &place_of(&p.symbol, value),
                             format!(
                                 "{} = {} ({}) must be {wanted}",
                                 p.symbol, p.value, spec.label
@@ -354,6 +354,13 @@ impl Reader<'_> {
             )
         })
     }
+}
+
+/// Where a table has the value of this name; the table itself where it has none.
+fn place_of(name: &str, table: &Value) -> Range<usize> {
+    let entries = table.get_ref().as_table().into_iter().flat_map(|t| t.iter());
+    let mut named = entries.filter(|(key, _)| key.get_ref() == name);
+    named.next().map_or_else(|| table.span(), |(_, value)| value.span())
 }
 
 /// `a, b or c`.
