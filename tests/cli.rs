@@ -283,7 +283,8 @@ fn a_report_is_written_beside_the_answer() {
     let page = Path::new(env!("CARGO_TARGET_TMPDIR")).join("process-02.html");
     let _ = std::fs::remove_file(&page);
     let output = hysteron()
-        .args(["diagnose", "--kind", "process", "--report"])
+        .args(["diagnose", "--kind", "process", "--limits", "duration=600"])
+        .arg("--report")
         .args([&page, &data("process-02.csv")])
         .output()
         .unwrap();
@@ -291,7 +292,7 @@ fn a_report_is_written_beside_the_answer() {
     let page = std::fs::read_to_string(page).unwrap();
     assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
     assert!(
-        page.contains("process-02.csv --kind process"),
+        page.contains("process-02.csv --kind process --limits duration=600"),
         "how to make it again"
     );
     let run = |arguments: &[&Path]| hysteron().arg("diagnose").args(arguments).output().unwrap();
@@ -386,6 +387,7 @@ fn the_next_experiment_is_proposed_within_the_limits() {
         &run("torque=3", "text"),
         &["torque=3", "one of input, duration, step, speed, travel"],
     );
+    refused(&run(" ", "text"), &["--limits", "no limit", "input=0.5"]);
 }
 
 fn gap(file: &Path, arguments: &[&str]) -> Output {

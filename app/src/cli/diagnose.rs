@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::Instant;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, LimitError, Limits, Progress};
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Limits, Progress};
 use hysteron_core::measurement::{
     self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
 };
@@ -90,7 +90,10 @@ impl<T: FromStr> FromStr for AsWritten<T> {
 }
 
 /// The limits as written, if they can be read.
-fn limits(text: &str) -> Result<String, LimitError> {
+fn limits(text: &str) -> Result<String, String> {
+    if text.trim_matches([' ', ',']).is_empty() {
+        return Err("it names no limit; expected such as input=0.5,duration=10".to_owned());
+    }
     let mut any = Limits {
         input: 1.0,
         duration: 1.0,
@@ -98,7 +101,7 @@ fn limits(text: &str) -> Result<String, LimitError> {
         speed: None,
         travel: None,
     };
-    any.set(text)?;
+    any.set(text).map_err(|e| e.to_string())?;
     Ok(text.to_owned())
 }
 
@@ -354,6 +357,7 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
             "--torque-constant",
             arguments.torque_constant.as_ref().map(|m| m.text.as_str()),
         ),
+        ("--limits", arguments.limits.as_deref()),
     ];
     for (option, value) in options {
         if let Some(value) = value {
