@@ -127,6 +127,20 @@ fn simulate_writes_what_diagnose_reads() {
 }
 
 #[test]
+fn the_output_is_written_with_the_noise_that_the_relay_sees() {
+    let csv = Path::new(env!("CARGO_TARGET_TMPDIR")).join("noisy.csv");
+    let file = scenario("fig-4-noise.toml");
+    text(&hysteron("simulate", &file, &["--csv", csv.to_str().unwrap()]));
+    let written = std::fs::read(&csv).unwrap();
+    let m = hysteron_core::measurement::import_csv("noisy.csv", &written, None).unwrap();
+    let y = &m.outputs[0].values;
+    // From one sample to the next the plant moves little.
+    let moves = y.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>();
+    let std_dev = (0.5 * moves / (y.len() - 1) as f64).sqrt();
+    assert!((std_dev / 0.02 - 1.0).abs() < 0.1, "{std_dev}");
+}
+
+#[test]
 fn a_run_that_is_too_long_is_said_to_be() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("long.toml");
     let lines = "[plant]\nformula = \"1/(s+1)^3\"\n[relay]\ngain = 1\nhysteresis = 0.1\n[run]\nduration = ";

@@ -363,6 +363,34 @@ fn fig_4_noise_is_reproducible_band_limited_and_answered_by_hysteresis() {
 }
 
 #[test]
+fn the_relay_switches_where_output_and_noise_pass_the_threshold() {
+    let noise = Noise {
+        std_dev: 0.02,
+        interval: 0.01,
+        seed: 7,
+    };
+    let relay = Relay {
+        hysteresis: 0.1,
+        ..Relay::default()
+    };
+    let step = 1e-3;
+    let options = Options {
+        noise: Some(noise),
+        ..Options::new(20.0, step)
+    };
+    let run = run(&space("1/(s+1)^3"), &relay, 0.0, &options).unwrap();
+    assert!(run.rises.len() > 3);
+    for rise in &run.rises[1..] {
+        let k = (rise / step) as usize;
+        let (output, noise) = (&run.output[k..=k + 1], noise.at(&run.time[k..=k + 1]));
+        let share = (rise - run.time[k]) / step;
+        let seen = |i: usize| output[i] + noise[i];
+        let there = seen(0) + share * (seen(1) - seen(0));
+        assert!((there - 0.1).abs() < 1e-5, "{there} at {rise}");
+    }
+}
+
+#[test]
 fn a_run_is_the_same_whatever_its_samples() {
     let plant = TransferFunction::new(&[1.0], &[1.0, 3.0, 3.0, 1.0], 0.2);
     let events = |step: f64| {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
 use hysteron_core::scenario::AnyScenario;
-use hysteron_core::simulate::{Cut, Trajectory};
+use hysteron_core::simulate::{Cut, Noise, Trajectory};
 
 /// Share by which the last two cycles may differ and still count as settled.
 const SETTLED: f64 = 1e-3;
@@ -15,7 +15,7 @@ pub(super) struct Arguments {
     /// Loop or drive to run: tables [plant] or [drive], [relay] and [run]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
-    /// Where to write time, input and output
+    /// Where to write time, input and output; the output is what the relay sees, with the noise if there is some
     #[arg(long, value_name = "OUT.csv")]
     csv: Option<PathBuf>,
 }
@@ -26,7 +26,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
     let (mut text, table, samples) = match read(&arguments.file)? {
         AnyScenario::Loop(scenario) => {
             let run = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
-            (summary(&run), table(&run), run.time.len())
+            let noise = scenario.options.noise;
+            (summary(&run), table(&run, noise), run.time.len())
         }
         AnyScenario::Drive(input) => {
             let run = drive::run(&input).map_err(|e| format!("{shown}: {e}"))?;
@@ -96,16 +97,18 @@ fn summary(run: &Trajectory) -> String {
     text
 }
 
-/// Input and output at the sampling instants, in the columns that `hysteron diagnose` reads.
-fn table(run: &Trajectory) -> String {
+/// Input and output at the sampling instants, in the columns that `hysteron diagnose` reads: the output as a recorder
+/// would have it, with what the relay sees of the noise.
+fn table(run: &Trajectory, noise: Option<Noise>) -> String {
+    let noise = noise.map_or_else(|| vec![0.0; run.time.len()], |noise| noise.at(&run.time));
     let mut text = String::from("t [s],u [1],y [1]\n");
     let mut inputs = run.input.iter().peekable();
     let mut u = 0.0;
-    for (t, y) in run.time.iter().zip(&run.output) {
+    for ((t, y), noise) in run.time.iter().zip(&run.output).zip(noise) {
         while let Some(change) = inputs.next_if(|i| i[0] <= *t) {
             u = change[1];
         }
-        let _ = writeln!(text, "{t},{u},{y}");
+        let _ = writeln!(text, "{t},{u},{}", y + noise);
     }
     text
 }

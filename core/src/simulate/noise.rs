@@ -19,6 +19,22 @@ pub struct Noise {
     pub seed: u64,
 }
 
+impl Noise {
+    /// The noise on the output of a single loop at these times (s, increasing), as the relay of [`run`](super::run) sees
+    /// it there.
+    pub fn at(self, times: &[f64]) -> Vec<f64> {
+        let mut source = Source::new(self, 0);
+        let (mut piece, mut end) = source.piece();
+        let value = |t: &f64| {
+            while end <= *t {
+                (piece, end) = source.piece();
+            }
+            piece.value + piece.slope * (t - piece.start)
+        };
+        times.iter().map(value).collect()
+    }
+}
+
 /// One straight piece of noise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
