@@ -252,6 +252,38 @@ fn cycles_of_which_the_describing_function_sees_nothing_are_found_however_narrow
 }
 
 #[test]
+fn a_dead_time_far_beyond_the_plant_is_counted_right_or_refused() {
+    let relay = Relay {
+        hysteresis: 0.1,
+        ..Relay::default()
+    };
+    let lag = |dead_time: f64| TransferFunction::new(&[1.0], &[1.0, 3.0, 3.0, 1.0], dead_time);
+    // What the output takes from -1 to the threshold does not depend on so long a dead time.
+    let rest = predict(&lag(1e2), &relay).unwrap();
+    let rest = rest.exact.last().unwrap().cycle.period - 2e2;
+    for dead_time in [1e3, 1e4, 1e6, 1e9] {
+        let found = predict(&lag(dead_time), &relay).unwrap();
+        let stable: Vec<f64> = found
+            .exact
+            .iter()
+            .filter(|c| c.cycle.stable == Some(true))
+            .map(|c| c.cycle.period)
+            .collect();
+        let [period] = stable[..] else {
+            panic!("{dead_time}: {stable:?}");
+        };
+        let error = period - 2.0 * dead_time - rest;
+        assert!(error.abs() < 1e-14 * period + 1e-9, "{dead_time}: {error}");
+        let said = format!("period {period:.4} s");
+        assert!(found.text.contains(&said), "{}", found.text);
+    }
+    for dead_time in [1.1e9, 1e12] {
+        let refused = predict(&lag(dead_time), &relay).unwrap_err().to_string();
+        assert!(refused.contains("slowest time constant"), "{refused}");
+    }
+}
+
+#[test]
 fn delays_longer_than_half_a_period_are_counted_right() {
     // A resonance above a long delay: several changes of the input are on their way at once.
     let plant = TransferFunction::new(&[1.0], &[1.0, 0.2, 1.0], 9.0);

@@ -153,6 +153,9 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     let prediction = predict(plant, relay).map_err(|e| match e {
         crate::limit_cycle::PredictError::Plant(e) => ExploreError::Plant(e),
         crate::limit_cycle::PredictError::Relay(e) => ExploreError::Relay(e),
+        crate::limit_cycle::PredictError::LongDelay { lag, most } => {
+            ExploreError::Lag { lag, most }
+        }
     })?;
     let main = dominant(&prediction.describing_function);
     let lag = plant.dead_time + relay.delay;

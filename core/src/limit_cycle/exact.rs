@@ -23,7 +23,7 @@ pub struct ExactCycle {
     /// State of the plant when the relay rises.
     pub start: DVector<f64>,
     /// Largest modulus of the multipliers of the Poincare map over one period; below 1 small
-    /// disturbances die out.
+    /// disturbances die out, at 1 to round-off they stay.
     pub multiplier: Option<f64>,
 }
 
@@ -44,6 +44,10 @@ const MAX_NEWTON: usize = 40;
 
 /// Smallest step of the way from a symmetric relay to an asymmetric one.
 const SMALLEST_STEP: f64 = 1.0 / 256.0;
+
+/// Multipliers this close to 1 do not tell whether a disturbance dies out: several half periods within a delay that is far
+/// longer than all that the plant does just come round again, but for round-off.
+const NEUTRAL: f64 = 1e-12;
 
 /// Periods for which a delay may reach back.
 const MAX_PERIODS_BACK: f64 = 200.0;
@@ -388,7 +392,7 @@ impl Search {
             cycle: Cycle {
                 period,
                 amplitude: 0.5 * (range[1] - range[0]),
-                stable: multiplier.map(|m| m < 1.0),
+                stable: multiplier.filter(|m| (m - 1.0).abs() > NEUTRAL).map(|m| m < 1.0),
             },
             durations,
             range,

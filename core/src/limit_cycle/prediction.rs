@@ -44,7 +44,21 @@ pub enum PredictError {
     /// The relay.
     #[error(transparent)]
     Relay(#[from] RelayError),
+    /// A delay beside which the plant is at rest at once.
+    #[error(
+        "dead time and delay are {lag:.2e} s, where the plant's slowest time constant allows {most:.2e} s at most: beyond that they are too far apart to compute with"
+    )]
+    LongDelay {
+        /// Dead time and delay, s.
+        lag: f64,
+        /// The longest that is taken, s.
+        most: f64,
+    },
 }
+
+/// Largest ratio of the delay to the plant's slowest time constant: of an `f64`'s 16 digits, the instants of switches
+/// then have seven left to say what the plant does.
+const MAX_DELAY: f64 = 1e9;
 
 /// Share by which period or amplitude may be off for the describing function to be called reliable.
 const TRUSTED_ERROR: f64 = 0.05;
@@ -59,6 +73,11 @@ const SAME_CYCLE: f64 = 1e-6;
 pub fn predict(plant: &TransferFunction, relay: &Relay) -> Result<Prediction, PredictError> {
     plant.validate()?;
     relay.validate()?;
+    let lag = plant.dead_time + relay.delay;
+    let most = slowest(plant).map_or(f64::INFINITY, |time| MAX_DELAY * time);
+    if lag > most {
+        return Err(PredictError::LongDelay { lag, most });
+    }
     let describing = describing_function(plant, relay);
     let exact = all_exact(plant, relay, &describing);
     let existence = existence(plant, relay);
@@ -71,6 +90,13 @@ pub fn predict(plant: &TransferFunction, relay: &Relay) -> Result<Prediction, Pr
         trust,
         text,
     })
+}
+
+/// The slowest time constant of a plant, s, but for what it integrates.
+fn slowest(plant: &TransferFunction) -> Option<f64> {
+    let sizes = plant.poles().into_iter().map(|p| p.norm());
+    let slowest = sizes.filter(|size| *size > 0.0).reduce(f64::min)?;
+    Some(1.0 / slowest)
 }
 
 /// The intersection that the loop would go to: the first stable one, or else the first.

@@ -76,10 +76,14 @@ const fn powers() -> [Series; TERMS / 2] {
 /// Share of the whole that the last two coefficients may have on a resolved step: round-off.
 const RESOLVED: f64 = 1e-15;
 
-/// Whether Chebyshev coefficients have fallen to round-off, or to the `noise` of their making.
+/// Share of the whole by which an output at rest seems to move: what the round-off of the state makes of itself.
+const AT_REST: f64 = 1e-13;
+
+/// Whether Chebyshev coefficients have fallen to round-off, or to the `noise` of their making, or belong to an output
+/// at rest, which is to be waited for in long steps.
 pub(crate) fn is_resolved(c: &Series, noise: f64) -> bool {
     let size: f64 = c.iter().map(|v| v.abs()).sum();
-    c[TERMS - 1].abs() + c[TERMS - 2].abs() <= RESOLVED * size + noise
+    c[TERMS - 1].abs() + c[TERMS - 2].abs() <= RESOLVED * size + noise || spread(c) <= AT_REST * size
 }
 
 /// Largest distance of a Chebyshev series from its first coefficient.
