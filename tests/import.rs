@@ -304,12 +304,21 @@ fn units_may_stand_in_a_row_of_their_own() {
         "t [ms],u,x1 [deg],v1\n,N m,rad,rpm",
     ] {
         let read = import(&format!("{head}\n{rows}"));
-        let values = |m: &Measurement| (m.time.clone(), m.input.values.clone(), m.outputs[0].values.clone());
+        let values = |m: &Measurement| {
+            (
+                m.time.clone(),
+                m.input.values.clone(),
+                m.outputs[0].values.clone(),
+            )
+        };
         assert_eq!(values(&read), values(&wanted), "{head}");
         assert_eq!(read.outputs[1].values, wanted.outputs[1].values, "{head}");
     }
     let m = import(&format!("t,u,status,y\ns,%,-,degC\n{rows}"));
-    assert_eq!((m.kind, m.outputs[0].unit.as_str()), (Kind::Process, "degC"));
+    assert_eq!(
+        (m.kind, m.outputs[0].unit.as_str()),
+        (Kind::Process, "degC")
+    );
     // What is no unit is still a row that is wrong.
     refused(
         &format!("t [s],u [N m],x1 [rad],v1 [rad/s]\ns,N m,furlong,rpm\n{rows}"),
@@ -574,7 +583,7 @@ fn what_several_columns_could_be_is_asked() {
     // Of a drive no unit is guessed.
     refused(
         &log("t [s],pwm,motor_pos [deg]"),
-        &["column 2 (pwm)", "no unit"],
+        &["column 2 (pwm)", "no unit", "--map \"u=pwm [N m]\""],
     );
     refused(
         &log("t [s],u [V],encoder"),
@@ -638,7 +647,11 @@ fn dates_are_said_not_to_be_read() {
         ("time", "-Mar-2024 12:00:00"),
         ("t [s]", ":00:00"),
     ] {
-        let said = [&format!("column '{}", &name[..1]) as &str, date, "seconds since"];
+        let said = [
+            &format!("column '{}", &name[..1]) as &str,
+            date,
+            "seconds since",
+        ];
         refused(&dated(name, date), &said);
     }
     // A date beside the time does not matter.
@@ -738,7 +751,11 @@ fn what_is_too_large_or_too_small_to_calculate_with_is_no_measurement() {
     assert_eq!(import(&paused).len(), 30);
     let mut text = HEADER.to_owned();
     for i in 0..30_u64 {
-        let _ = write!(text, "\n{},2,2,2", 1_700_000_000_000_000_000 + i * 1_000_000);
+        let _ = write!(
+            text,
+            "\n{},2,2,2",
+            1_700_000_000_000_000_000 + i * 1_000_000
+        );
     }
     assert_eq!(import(&text.replace("t [s]", "t [us]")).len(), 30);
     // At rest but for a moment.

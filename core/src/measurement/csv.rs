@@ -77,7 +77,10 @@ pub(super) fn import_text(
         ))
     };
     let taken = fill(&mut fields, options, look).map_err(|p| fail(Some(line), None, p))?;
-    let date = rows.clone().next().and_then(|(_, row)| date(row, dialect.separator, &fields));
+    let date = rows
+        .clone()
+        .next()
+        .and_then(|(_, row)| date(row, dialect.separator, &fields));
     let mut header = understand(fields, options).map_err(|(column, problem)| {
         let problem = match (problem, date) {
             (Problem::NoColumn { wanted: "t", .. }, Some(date)) => date,
@@ -191,7 +194,12 @@ fn units(row: &str, separator: char, columns: usize) -> Option<Vec<Option<String
     // The 1 of a plain number is a unit, but a row of numbers is none.
     let says = |t: &String| !t.is_empty() && t.parse::<f64>().is_err();
     let all = texts.len() == columns && texts.iter().all(is_unit) && texts.iter().any(says);
-    all.then(|| texts.into_iter().map(|t| Some(t).filter(|t| !t.is_empty())).collect())
+    all.then(|| {
+        texts
+            .into_iter()
+            .map(|t| Some(t).filter(|t| !t.is_empty()))
+            .collect()
+    })
 }
 
 /// What a comment says; `None` of a line that is none.
@@ -408,11 +416,15 @@ fn read_rows<'a>(
 fn date(row: &str, separator: char, fields: &[Field]) -> Option<Problem> {
     let mut texts = Vec::with_capacity(fields.len());
     split_row(row, separator, &mut texts);
-    let mut free = fields.iter().zip(texts).filter(|(field, _)| field.role.is_none_or(|r| r == Role::Time));
-    free.find(|(_, text)| is_date(text)).map(|(field, text)| Problem::Date {
-        name: shorten(&field.name),
-        text: shorten(text),
-    })
+    let mut free = fields
+        .iter()
+        .zip(texts)
+        .filter(|(field, _)| field.role.is_none_or(|r| r == Role::Time));
+    free.find(|(_, text)| is_date(text))
+        .map(|(field, text)| Problem::Date {
+            name: shorten(&field.name),
+            text: shorten(text),
+        })
 }
 
 /// Whether a text is a date or a time of day: digits with a colon between them, or three parts of digits with a
@@ -435,7 +447,8 @@ fn check_sizes<'a>(
     values: Vec<Vec<f64>>,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut columns = header.columns.iter().zip(&values);
-    let place = columns.find_map(|(column, values)| Some((column, wrong_size(column.role, values)?)));
+    let place =
+        columns.find_map(|(column, values)| Some((column, wrong_size(column.role, values)?)));
     let Some((column, (line, row))) = place.and_then(|(c, row)| Some((c, rows.nth(row)?))) else {
         return Ok(values);
     };

@@ -114,8 +114,7 @@ impl Header {
             return Ok(());
         }
         let here = format!("{} ({})", column.index + 1, column.name);
-        let (name, example) = (column.name.clone(), example(Role::Time));
-        Err((Some(here), Problem::NoUnit { name, example }))
+        Err((Some(here), no_unit(column.name.clone(), Role::Time)))
     }
 }
 
@@ -272,8 +271,8 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
                 "s".to_owned()
             }
             None => {
-                let example = example(role);
-                return Err((here(), Problem::NoUnit { name, example }));
+                let problem = no_unit(name.clone(), role);
+                return Err((here(), problem));
             }
         };
         let (measures, factor, unit) = convert(role, kind, &name, &unit)
@@ -326,6 +325,15 @@ fn or_process(problem: Problem, role: Role, options: &ImportOptions) -> Problem 
             Problem::WrongUnit { unit, expected }
         }
         other => other,
+    }
+}
+
+/// What is said of a column in this role without a unit.
+fn no_unit(name: String, role: Role) -> Problem {
+    Problem::NoUnit {
+        name,
+        role: role.name(),
+        example: example(role),
     }
 }
 

@@ -82,7 +82,9 @@ pub enum MappingError {
         part: String,
     },
     /// Left of `=` stands no known quantity.
-    #[error("'{name}' is none of t, u, x1, v1, x2, v2 and y, which say what the column behind the = is")]
+    #[error(
+        "'{name}' is none of t, u, x1, v1, x2, v2 and y, which say what the column behind the = is"
+    )]
     UnknownQuantity {
         /// What was found.
         name: String,

@@ -59,16 +59,21 @@ fn is_level_4(bytes: &[u8]) -> bool {
         return false;
     };
     let (words, _) = words.as_chunks::<4>();
-    [(0, u32::from_le_bytes as fn([u8; 4]) -> u32), (1, u32::from_be_bytes)]
-        .into_iter()
-        .any(|(order, word)| {
-            let [kind, imaginary, length] = [0, 3, 4].map(|i| word(words[i]));
-            // Thousands are the byte order, tens the type of the numbers, ones that of the matrix.
-            let typed = kind / 1000 == order && kind % 1000 <= 52 && kind % 10 <= 2;
-            let name = bytes.get(LEVEL_4_HEADER..).and_then(|rest| rest.get(..length as usize));
-            let named = name.is_some_and(|n| n.len() > 1 && n[0] != 0 && n.ends_with(&[0]));
-            typed && imaginary <= 1 && named
-        })
+    [
+        (0, u32::from_le_bytes as fn([u8; 4]) -> u32),
+        (1, u32::from_be_bytes),
+    ]
+    .into_iter()
+    .any(|(order, word)| {
+        let [kind, imaginary, length] = [0, 3, 4].map(|i| word(words[i]));
+        // Thousands are the byte order, tens the type of the numbers, ones that of the matrix.
+        let typed = kind / 1000 == order && kind % 1000 <= 52 && kind % 10 <= 2;
+        let name = bytes
+            .get(LEVEL_4_HEADER..)
+            .and_then(|rest| rest.get(..length as usize));
+        let named = name.is_some_and(|n| n.len() > 1 && n[0] != 0 && n.ends_with(&[0]));
+        typed && imaginary <= 1 && named
+    })
 }
 
 /// All series of numbers in a file.
