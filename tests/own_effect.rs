@@ -136,7 +136,10 @@ fn what_is_wrong_with_a_candidate_is_said() {
     assert!(said("bump: a*(x").contains("column 5"));
     assert!(said("bump: a*x; k = 3").contains("a = 0.05"));
     let twice = said("bump: a*x + b; a = 0.8; b = 0.3");
-    assert!(twice.contains("'a = 0.8; b = 0.3'") && twice.contains("comma"), "{twice}");
+    assert!(
+        twice.contains("'a = 0.8; b = 0.3'") && twice.contains("comma"),
+        "{twice}"
+    );
     for effect in registry() {
         assert_eq!(EffectId::own(effect.id().as_str()), None);
     }

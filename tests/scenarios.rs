@@ -130,7 +130,11 @@ fn simulate_writes_what_diagnose_reads() {
 fn the_output_is_written_with_the_noise_that_the_relay_sees() {
     let csv = Path::new(env!("CARGO_TARGET_TMPDIR")).join("noisy.csv");
     let file = scenario("fig-4-noise.toml");
-    text(&hysteron("simulate", &file, &["--csv", csv.to_str().unwrap()]));
+    text(&hysteron(
+        "simulate",
+        &file,
+        &["--csv", csv.to_str().unwrap()],
+    ));
     let written = std::fs::read(&csv).unwrap();
     let m = hysteron_core::measurement::import_csv("noisy.csv", &written, None).unwrap();
     let y = &m.outputs[0].values;
@@ -143,12 +147,16 @@ fn the_output_is_written_with_the_noise_that_the_relay_sees() {
 #[test]
 fn a_run_that_is_too_long_is_said_to_be() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("long.toml");
-    let lines = "[plant]\nformula = \"1/(s+1)^3\"\n[relay]\ngain = 1\nhysteresis = 0.1\n[run]\nduration = ";
+    let lines =
+        "[plant]\nformula = \"1/(s+1)^3\"\n[relay]\ngain = 1\nhysteresis = 0.1\n[run]\nduration = ";
     for duration in ["1e5", "1e8"] {
         std::fs::write(&path, format!("{lines}{duration}\n")).unwrap();
         let said = text(&hysteron("simulate", &path, &[]));
         assert!(said.contains("a shorter duration"), "{said}");
-        assert!(!said.contains("chatter") && !said.contains(" 0.000000 s"), "{said}");
+        assert!(
+            !said.contains("chatter") && !said.contains(" 0.000000 s"),
+            "{said}"
+        );
         assert!(said.contains("It oscillates"), "{said}");
     }
 }

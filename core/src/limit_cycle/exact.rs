@@ -392,7 +392,9 @@ impl Search {
             cycle: Cycle {
                 period,
                 amplitude: 0.5 * (range[1] - range[0]),
-                stable: multiplier.filter(|m| (m - 1.0).abs() > NEUTRAL).map(|m| m < 1.0),
+                stable: multiplier
+                    .filter(|m| (m - 1.0).abs() > NEUTRAL)
+                    .map(|m| m < 1.0),
             },
             durations,
             range,

@@ -83,7 +83,8 @@ const AT_REST: f64 = 1e-13;
 /// at rest, which is to be waited for in long steps.
 pub(crate) fn is_resolved(c: &Series, noise: f64) -> bool {
     let size: f64 = c.iter().map(|v| v.abs()).sum();
-    c[TERMS - 1].abs() + c[TERMS - 2].abs() <= RESOLVED * size + noise || spread(c) <= AT_REST * size
+    c[TERMS - 1].abs() + c[TERMS - 2].abs() <= RESOLVED * size + noise
+        || spread(c) <= AT_REST * size
 }
 
 /// Largest distance of a Chebyshev series from its first coefficient.

@@ -358,9 +358,15 @@ impl Reader<'_> {
 
 /// Where a table has the value of this name; the table itself where it has none.
 fn place_of(name: &str, table: &Value) -> Range<usize> {
-    let entries = table.get_ref().as_table().into_iter().flat_map(|t| t.iter());
+    let entries = table
+        .get_ref()
+        .as_table()
+        .into_iter()
+        .flat_map(|t| t.iter());
     let mut named = entries.filter(|(key, _)| key.get_ref() == name);
-    named.next().map_or_else(|| table.span(), |(_, value)| value.span())
+    named
+        .next()
+        .map_or_else(|| table.span(), |(_, value)| value.span())
 }
 
 /// `a, b or c`.
