@@ -1,5 +1,7 @@
 //! Everything that can be said about the oscillation of a loop without simulating it.
 
+use num_complex::Complex;
+
 use super::{
     ExactCycle, Existence, Intersection, TRUSTED_DISTORTION, describing_function, exact_cycles,
     existence, likely_half_periods, settled_cycle,
@@ -94,7 +96,7 @@ pub fn predict(plant: &TransferFunction, relay: &Relay) -> Result<Prediction, Pr
 
 /// The slowest time constant of a plant, s, but for what it integrates.
 fn slowest(plant: &TransferFunction) -> Option<f64> {
-    let sizes = plant.poles().into_iter().map(|p| p.norm());
+    let sizes = plant.poles().into_iter().map(Complex::norm);
     let slowest = sizes.filter(|size| *size > 0.0).reduce(f64::min)?;
     Some(1.0 / slowest)
 }

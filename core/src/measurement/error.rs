@@ -67,7 +67,7 @@ pub enum Problem {
         "no unit; write it in brackets after the name, such as {name} [{example}], or say it with --map, such as --map \"{role}={name} [{example}]\"; accepted: {ACCEPTED}"
     )]
     NoUnit {
-        name: String,
+        name: Box<str>,
         role: &'static str,
         example: &'static str,
     },

@@ -331,7 +331,7 @@ fn or_process(problem: Problem, role: Role, options: &ImportOptions) -> Problem 
 /// What is said of a column in this role without a unit.
 fn no_unit(name: String, role: Role) -> Problem {
     Problem::NoUnit {
-        name,
+        name: name.into(),
         role: role.name(),
         example: example(role),
     }
