@@ -583,7 +583,7 @@ fn what_several_columns_could_be_is_asked() {
     // Of a drive no unit is guessed.
     refused(
         &log("t [s],pwm,motor_pos [deg]"),
-        &["column 2 (pwm)", "no unit", "--map \"u=pwm [N m]\""],
+        &["column 2 (pwm)", "no unit"],
     );
     refused(
         &log("t [s],u [V],encoder"),

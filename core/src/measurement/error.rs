@@ -64,13 +64,9 @@ pub enum Problem {
     )]
     NoHeader { found: String },
     #[error(
-        "no unit; write it in brackets after the name, such as {name} [{example}], or say it with --map, such as --map \"{role}={name} [{example}]\"; accepted: {ACCEPTED}"
+        "no unit; write it in brackets after the name, such as {name} [{example}]; accepted: {ACCEPTED}"
     )]
-    NoUnit {
-        name: Box<str>,
-        role: &'static str,
-        example: &'static str,
-    },
+    NoUnit { name: String, example: &'static str },
     #[error("the unit '{unit}' does not fit; expected {expected}")]
     WrongUnit { unit: String, expected: String },
     #[error(
@@ -104,7 +100,7 @@ pub enum Problem {
         "a MAT-file does not say which variable is what; map them, such as t=time [s], u=current [A], x1=angle [rad]; it has {found}"
     )]
     NotMapped { found: String },
-    #[error("no unit; a MAT-file has none, so say it in the mapping (--map), such as {name} [s]")]
+    #[error("no unit; a MAT-file has none, so say it in the mapping, such as {name} [s]")]
     NoUnitInMat { name: String },
     #[error("{found} values, but '{other}' has {expected}; all must have the same number")]
     Lengths {

@@ -114,7 +114,8 @@ impl Header {
             return Ok(());
         }
         let here = format!("{} ({})", column.index + 1, column.name);
-        Err((Some(here), no_unit(column.name.clone(), Role::Time)))
+        let (name, example) = (column.name.clone(), example(Role::Time));
+        Err((Some(here), Problem::NoUnit { name, example }))
     }
 }
 
@@ -271,8 +272,8 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
                 "s".to_owned()
             }
             None => {
-                let problem = no_unit(name.clone(), role);
-                return Err((here(), problem));
+                let example = example(role);
+                return Err((here(), Problem::NoUnit { name, example }));
             }
         };
         let (measures, factor, unit) = convert(role, kind, &name, &unit)
@@ -325,15 +326,6 @@ fn or_process(problem: Problem, role: Role, options: &ImportOptions) -> Problem 
             Problem::WrongUnit { unit, expected }
         }
         other => other,
-    }
-}
-
-/// What is said of a column in this role without a unit.
-fn no_unit(name: String, role: Role) -> Problem {
-    Problem::NoUnit {
-        name: name.into(),
-        role: role.name(),
-        example: example(role),
     }
 }
 
