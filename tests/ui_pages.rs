@@ -144,13 +144,7 @@ fn an_effect_of_ones_own_is_typed_and_added() {
         .click_accesskit();
     harness.run();
     harness.get_by_label_contains("To be fitted: ");
-    let field = harness.get_by_label("Input =");
-    field.focus();
-    harness.step();
-    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    harness.step();
-    harness.get_by_label("Input =").type_text("a*t");
-    harness.run();
+    type_over(&mut harness, "Input =", "a*t");
     harness.get_by_label("To be fitted: a");
     harness.get_by_label("Add your effect").click_accesskit();
     harness.step();
@@ -173,12 +167,7 @@ fn an_effect_of_ones_own_can_be_undone_and_done_again() {
         .get_by_label("An effect of your own")
         .click_accesskit();
     harness.run();
-    harness.get_by_label("Input =").focus();
-    harness.step();
-    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    harness.step();
-    harness.get_by_label("Input =").type_text("a*t");
-    harness.run();
+    type_over(&mut harness, "Input =", "a*t");
     harness.get_by_label("Add your effect").click_accesskit();
     harness.step();
     finish(&mut harness);
