@@ -79,13 +79,15 @@ pub(super) fn unit_of(axis: &str) -> &str {
     inner.map_or("", |(_, unit)| unit)
 }
 
-/// The name of y beside a plot of this height: without its unit where that has no room and would lie over what is
-/// above and below.
-pub(super) fn beside(name: &str, height: f32) -> &str {
+/// The name of y beside a plot of this height: its unit on a line of its own where both on one would
+/// lie over what is above and below.
+pub(super) fn beside(name: &str, height: f32) -> String {
     let room = f64::from(height - ABOVE_AND_BELOW);
     let longer = LETTER_OF_NAME * name.chars().count() as f64 > room;
-    let plain = name.strip_suffix(']').and_then(|n| n.rsplit_once(" ["));
-    plain.filter(|_| longer).map_or(name, |(plain, _)| plain)
+    match name.rsplit_once(" [").filter(|_| longer) {
+        Some((plain, unit)) => format!("{plain}\n[{unit}"),
+        None => name.to_owned(),
+    }
 }
 
 /// Grid lines of x, whose labels stand beside each other: so far apart that none touches the next.
@@ -225,9 +227,9 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_longer_than_its_plot_is_high_has_no_unit() {
+    fn a_name_that_is_longer_than_its_plot_is_high_has_its_unit_on_a_line_of_its_own() {
         let long = "Mittelwert [× Rauschen]";
-        assert_eq!(beside(long, 150.0), "Mittelwert");
+        assert_eq!(beside(long, 150.0), "Mittelwert\n[× Rauschen]");
         assert_eq!(beside(long, 200.0), long);
         assert_eq!(beside("rms [× Rauschen]", 150.0), "rms [× Rauschen]");
         assert_eq!(

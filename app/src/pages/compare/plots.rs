@@ -40,7 +40,7 @@ const GROUND: f32 = 0.75;
 const CAPTION: f32 = 26.0;
 
 /// Width of the labels of y, so that the plots line up.
-const AXIS_WIDTH: f32 = 90.0;
+const AXIS_WIDTH: f32 = 106.0;
 
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 110.0;
