@@ -92,20 +92,28 @@ pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> 
 fn sentence(kind: ResidualTestKind, name: &str, correlation: f64, lag: f64, bound: f64) -> String {
     let lag = seconds(lag);
     let passed = correlation.abs() <= bound;
+    let share = share(correlation);
     match (kind, passed) {
         (ResidualTestKind::Whiteness, true) => format!(
             "The residual of the {name} is white: no correlation beyond what chance leaves, {bound:.3}."
         ),
         (ResidualTestKind::Whiteness, false) => format!(
-            "The residual of the {name} is not white: {lag} apart it correlates by {correlation:.3}, chance leaves {bound:.3}."
+            "The residual of the {name} is not white: {lag} apart it correlates by {correlation:.3}, {share} of its square; chance leaves {bound:.3}."
         ),
         (ResidualTestKind::InputCorrelation, true) => format!(
             "The residual of the {name} does not follow the input: no correlation beyond what chance leaves, {bound:.3}."
         ),
         (ResidualTestKind::InputCorrelation, false) => format!(
-            "The residual of the {name} still follows the input: {lag} later it correlates by {correlation:.3}, chance leaves {bound:.3}."
+            "The residual of the {name} still follows the input: {lag} later it correlates by {correlation:.3}, {share} of its square; chance leaves {bound:.3}."
         ),
     }
+}
+
+/// Share of the squared residual that a correlation explains: many samples show one that is far too small to matter.
+fn share(correlation: f64) -> String {
+    let percent = 100.0 * correlation * correlation;
+    let decimals = usize::from(percent < 9.95);
+    format!("{percent:.decimals$} %")
 }
 
 /// The values in the runs without their mean; 0 elsewhere.
@@ -205,6 +213,14 @@ mod tests {
         }
         // One in a hundred; eleven of 300 would come by chance once in ten thousand times.
         assert!(white <= 10 && follows <= 10, "{white} {follows}");
+    }
+
+    #[test]
+    fn a_correlation_that_fails_says_how_much_of_the_residual_it_is() {
+        let text = |c| sentence(ResidualTestKind::Whiteness, "velocity", c, 4e-4, 0.035);
+        assert!(text(0.06).contains("by 0.060, 0.4 % of its square;"));
+        assert!(text(-0.709).contains("by -0.709, 50 % of its square;"));
+        assert!(text(0.03).contains(" is white"));
     }
 
     #[test]

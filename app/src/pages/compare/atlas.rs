@@ -59,6 +59,10 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
     });
 }
 
+/// What to make of a test that fails although the verdict says noise.
+const SMALL: &str = "A long record shows correlations that are far too small to matter: a few hundredths of the \
+                     square are no missing effect. The rounding of a counter is not white either.";
+
 /// Whether what is left is white and no longer follows the input, in words.
 fn tests_ui(report: &StepReport, ui: &mut egui::Ui) {
     if report.step.tests.is_empty() {
@@ -69,6 +73,9 @@ fn tests_ui(report: &StepReport, ui: &mut egui::Ui) {
         |ui| {
             for test in &report.step.tests {
                 ui.label(tr(&test.text));
+            }
+            if report.step.tests.iter().any(|t| !t.passed) {
+                ui.label(tr(SMALL));
             }
         },
     );
