@@ -2,13 +2,16 @@
 
 mod support;
 
+use std::f64::consts::TAU;
+
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
 use hysteron_core::effect::{EffectId, Formula, registry};
 use hysteron_core::measurement::{Kind, Measurement};
-use hysteron_core::rig::{DriveRig, Excitation, Stranger};
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Stranger};
 use hysteron_core::user_model::UserModel;
 use proptest::prelude::*;
 use support::diagnosis::{classes, finish};
+use support::servo::servo;
 
 fn diagnose(measurement: &Measurement, model: &UserModel) -> Diagnosis {
     finish(DiagnosisJob::with_model(measurement, model).unwrap())
@@ -77,6 +80,29 @@ fn a_formula_of_what_the_library_has_is_found_like_it() {
         d.verdict.text
     );
     assert!(d.verdict.complete);
+}
+
+#[test]
+fn a_formula_that_jumps_where_the_body_turns_is_dry_friction() {
+    // A position loop that rests between its moves, with an encoder that does not see the bristles of the rig.
+    let friction = 0.02;
+    let rig = DriveRig {
+        excitation: servo(2.0, 1.2, 16.0),
+        sampling: 2e-3,
+        samples: 8000,
+        friction: Friction::dry(friction),
+        encoder: TAU / 20_000.0,
+        velocity_noise: 0.02,
+        ..DriveRig::default()
+    };
+    let text = "kind = \"drive\"\n[[effects]]\nid = \"dry\"\nformula = \"-c*sign(v)\"\n";
+    let d = diagnose(&rig.measure(), &UserModel::from_toml(text).unwrap());
+    let first = &d.steps[0];
+    assert!(first.error < 1.2, "{}", first.error);
+    for (symbol, truth) in [("c", friction), ("J1", rig.inertia), ("d1", rig.viscous)] {
+        let p = first.parameters.iter().find(|p| p.name == symbol).unwrap();
+        assert!((p.value / truth - 1.0).abs() < 0.05, "{p:?}");
+    }
 }
 
 /// The formula is refused at this column with a sentence that has these parts.

@@ -1,5 +1,7 @@
 //! The hybrid engine: exact flow between events, modes for sticking, slipping and contact.
 
+mod turns;
+
 use std::cell::Cell;
 
 use super::contact::Contact;
@@ -298,7 +300,11 @@ impl<'m> Engine<'m> {
             .max(self.level_halvings(state, h));
         let step = h / f64::from(1_u32 << halvings);
         for _ in 0..1_u32 << halvings {
-            self.midpoint_step(state, w, step);
+            if self.may_jump() {
+                self.turning_step(state, w, step);
+            } else {
+                self.midpoint_step(state, w, step);
+            }
         }
     }
 
