@@ -7,6 +7,7 @@
 //! the fresh ones tell.
 
 use super::held::fresh;
+use crate::order::quantile;
 
 /// Orders of difference that are tried.
 const ORDERS: [usize; 4] = [2, 3, 4, 5];
@@ -272,7 +273,8 @@ fn level_at_order(
     };
     by_group.retain_mut(as_quiet);
     let mut pooled = by_group.concat();
-    Some((low_quantile(&mut pooled), pooled.len()))
+    // None is as quiet as one that is no number.
+    (!pooled.is_empty()).then(|| (low_quantile(&mut pooled), pooled.len()))
 }
 
 /// Whether the samples of each difference are evenly spaced: only then does a smooth signal vanish. All may speak where
@@ -294,10 +296,9 @@ fn chance(count: usize) -> f64 {
     CHANCE / (count as f64).sqrt()
 }
 
-/// The noise that these absolute differences show; there must be some.
+/// The noise that these absolute differences show; 0 without any.
 fn low_quantile(differences: &mut [f64]) -> f64 {
-    let k = (QUANTILE * differences.len() as f64) as usize;
-    *differences.select_nth_unstable_by(k, f64::total_cmp).1 / NORMAL_QUANTILE
+    quantile(differences, QUANTILE) / NORMAL_QUANTILE
 }
 
 /// Signed binomial coefficients of the difference of this order.
@@ -315,6 +316,14 @@ fn binomials(order: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_that_are_no_numbers_show_no_noise() {
+        let places: Vec<usize> = (0..100).collect();
+        let level = |values: &[f64]| least_level(&places, values, &[0; 100]);
+        assert!(!level(&[f64::NAN; 100]).is_finite());
+        assert!(!level(&[f64::INFINITY; 100]).is_finite());
+    }
 
     #[test]
     fn differences_have_binomial_weights() {
