@@ -18,8 +18,8 @@ use super::split::hold_back;
 use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::crew::Crew;
 use crate::effect::{
-    self, Dimension, Effect, EffectId, Motion, Probe, ProbeInput, ProbeOutput, Range, Rubbing,
-    Scales, SeenGap,
+    self, Dimension, Effect, EffectId, Motion, ParameterSpec, Probe, ProbeInput, ProbeOutput,
+    Range, Rubbing, Scales, SeenGap,
 };
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::user_model::{Status, UserModel};
@@ -314,17 +314,20 @@ impl Session {
         let Some((place, newest)) = structure.effects.iter().enumerate().next_back() else {
             return true;
         };
-        let own = newest.parameters().iter();
-        let sized = own.zip(&fit.values[structure.range(place)]);
-        let mut shares = sized
-            .filter(|(spec, _)| {
-                let asymmetry = (spec.dimension, spec.range) == (Dimension::Ratio, Range::Fraction);
-                asymmetry || spec.dimension == Dimension::Force
-            })
-            .map(|(spec, size)| size.abs() / self.scales.of(spec.dimension))
-            .peekable();
+        let specs = newest.parameters();
+        let is_force = |spec: &ParameterSpec| {
+            spec.dimension == Dimension::Force
+                || (spec.dimension, spec.range) == (Dimension::Ratio, Range::Fraction)
+        };
+        // Another one may bring a force that is 0, such as the friction of a load.
+        if !specs.first().is_some_and(is_force) {
+            return true;
+        }
+        let mut sized = specs.iter().zip(&fit.values[structure.range(place)]);
         // Friction may be all in what it takes to start.
-        shares.peek().is_none() || shares.any(|share| share >= TRIFLE)
+        sized.any(|(spec, size)| {
+            is_force(spec) && size.abs() >= TRIFLE * self.scales.of(spec.dimension)
+        })
     }
 
     /// Effects of a fit, those of the baseline first.
