@@ -6,7 +6,7 @@ mod support;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepJob};
 use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Random, Recorded, Stranger};
 use support::diagnosis::{classes, finish};
@@ -185,6 +185,53 @@ fn a_spring_to_the_ground_is_no_joint() {
     assert!(d.verdict.unknown, "{}", d.verdict.text);
     let joint = |class: &Vec<&str>| class.contains(&"joint_compliance");
     assert!(!classes(&d).iter().any(joint), "{}", d.verdict.text);
+}
+
+/// Nor is it a gap of no width, or a wave of which less than one is ever seen.
+#[test]
+fn a_stiff_spring_to_the_ground_is_no_gap_and_no_wave() {
+    for recorded in [Recorded::Both, Recorded::VelocityOnly] {
+        let rig = DriveRig {
+            stranger: Some(Stranger::Spring { stiffness: 0.3 }),
+            encoder: 1e-9,
+            velocity_noise: 0.02,
+            recorded,
+            ..machine(1e3, 6000, Excitation::Multisine { amplitude: 0.12 })
+        };
+        let d = diagnose(&rig);
+        assert!(d.verdict.unknown, "{}", d.verdict.text);
+        let found = classes(&d).concat();
+        for wrong in ["joint_compliance", "backlash", "cogging"] {
+            assert!(!found.contains(&wrong), "{}", d.verdict.text);
+        }
+    }
+}
+
+/// A load that does not rub has a dry friction of 0, which is no reason not to offer it.
+#[test]
+fn a_load_behind_a_shaft_is_offered_at_once() {
+    let load = Load {
+        half_gap: 0.0,
+        stiffness: 18.0,
+        damping: 4e-3,
+        inertia: 8.8e-4,
+        viscous: 2e-3,
+        coulomb: 0.0,
+    };
+    let rig = DriveRig {
+        load: Some(load),
+        recorded: Recorded::Both,
+        ..machine(5e3, 6000, Excitation::Multisine { amplitude: 0.12 })
+    };
+    let mut job = StepJob::new(&rig.measure(), &[]).unwrap();
+    let report = loop {
+        if let Progress::Done(report) = job.advance() {
+            break report;
+        }
+    };
+    assert!(report.verdict.is_none(), "{:?}", report.verdict);
+    let best = &report.step.candidates[0];
+    assert_eq!(best.effects[0].as_str(), "joint_compliance");
 }
 
 /// It hardly ever turns round, so that its encoder may never be seen on two neighbouring counts.

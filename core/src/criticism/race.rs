@@ -465,11 +465,13 @@ impl Race {
     }
 
     /// Every effect that was tried, came to a cost and shows its marks, with its best fit.
-    pub fn finish(self) -> Vec<(&'static dyn Effect, Fit)> {
+    pub fn finish(self, session: &Session) -> Vec<(&'static dyn Effect, Fit)> {
         let results = self.contenders.into_iter();
         results
             .filter_map(|c| Some((c.effect, c.result?)))
-            .filter(|(effect, fit)| fit.cost.is_finite() && fit.shows_marks_of(*effect))
+            .filter(|(effect, fit)| {
+                fit.cost.is_finite() && fit.shows_marks_of(*effect, &session.scales)
+            })
             .collect()
     }
 }

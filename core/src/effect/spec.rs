@@ -180,6 +180,9 @@ pub const LIGHTEST: f64 = 0.03;
 /// like any other force.
 pub const SEEN_TURN: f64 = 0.75 * TAU;
 
+/// A wave within this factor of the longest is at the end of its range.
+const AT_END: f64 = 1.001;
+
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
 
@@ -196,6 +199,12 @@ impl ParameterSpec {
                 | Range::Long
                 | Range::Repeating
         )
+    }
+
+    /// Whether a wave is at the end of its range: the record shows too little of it to tell that it repeats.
+    pub fn is_too_long(&self, value: f64, scales: &Scales) -> bool {
+        let longest = SEEN_TURN * scales.of(self.dimension);
+        self.range == Range::Repeating && value <= AT_END * longest
     }
 
     /// `value` moved into the range.

@@ -226,17 +226,19 @@ impl Fit {
         }
     }
 
-    /// Whether what makes an effect in the model what it is could be seen beside the noise.
-    pub fn shows_marks_of(&self, effect: &dyn Effect) -> bool {
+    /// Whether what makes an effect in the model what it is could be seen beside the noise, and within the way of the record.
+    pub fn shows_marks_of(&self, effect: &dyn Effect, scales: &Scales) -> bool {
         let marks = effect.marks();
         let mut effects = self.structure.effects.iter();
-        let place = effects.position(|e| e.id() == effect.id());
-        let Some(place) = place.filter(|_| !marks.is_empty()) else {
+        let Some(place) = effects.position(|e| e.id() == effect.id()) else {
             return true;
         };
         let errors = self.standard_errors(1.0);
         let mut values = self.structure.range(place).zip(effect.parameters());
-        values.all(|(j, p)| !marks.contains(&p.symbol) || self.values[j] > MARKED * errors[j])
+        values.all(|(j, p)| {
+            let stands_out = self.values[j] > MARKED * errors[j];
+            (stands_out || !marks.contains(&p.symbol)) && !p.is_too_long(self.values[j], scales)
+        })
     }
 
     /// Standard errors of the values: noise as found, with `inflation` of the variance; 0 for fixed ones.

@@ -93,10 +93,11 @@ impl StepJob {
                 && outweighs(without.error, model.score.error)
         };
         let idle = |without: &Score| !helps(without, &model.score) && !explains(without);
+        let shows = |e: &dyn Effect| model.fit.shows_marks_of(e, &self.session.scales);
         self.wanted
             .iter()
             .zip(&self.without)
-            .filter(|(e, without)| idle(&without.score) || !model.fit.shows_marks_of(**e))
+            .filter(|(e, without)| idle(&without.score) || !shows(**e))
             .map(|(e, _)| e.id())
             .partition(|id| self.session.knowledge.has(*id))
     }

@@ -335,7 +335,7 @@ impl StepJob {
                 self.remove_stage(index + 1)
             }
             Stage::Swap { place, race } => {
-                let fits = race.finish();
+                let fits = race.finish(&self.session);
                 self.judge_swaps(place, fits);
                 self.swap_stage(place + 1)
             }
@@ -356,7 +356,7 @@ impl StepJob {
     /// What a race came to.
     fn scored_all(&self, race: Race) -> Vec<(&'static dyn Effect, Scored)> {
         let scored = |(effect, fit)| (effect, self.session.scored(fit));
-        race.finish().into_iter().map(scored).collect()
+        race.finish(&self.session).into_iter().map(scored).collect()
     }
 
     /// Whether the effect at `place` is part of the user's model.
