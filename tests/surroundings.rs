@@ -85,6 +85,16 @@ fn what_stores_heat_on_the_way_is_as_warm_as_the_room_at_first() {
     }
 }
 
+/// It came on with the record, which shows in how late the output begins, little as that is.
+#[test]
+fn a_thin_wall_is_as_warm_as_the_room_though_the_heater_is_on_from_the_first() {
+    for (seed, wall) in [(7, 6.0), (8, 10.0), (9, 15.0)] {
+        let d = diagnose(&heater(seed, wall, 0.0, 0));
+        let missing: [&[&str]; 2] = [&["constant_load"], &["second_lag", "sensor_lag"]];
+        check(&d, &missing, &[("K", GAIN), ("F0", ROOM / GAIN)]);
+    }
+}
+
 /// It lies still while the dead time lasts: the heater came on with the record.
 #[test]
 fn an_input_that_comes_on_with_the_record_was_off_before() {

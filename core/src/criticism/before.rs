@@ -14,10 +14,17 @@ const ONE_OF: usize = 20;
 const MOVES: f64 = 20.0;
 
 /// Share of that way at which it has begun, and up to which it is watched; of the time until then, the share before it has
-/// begun. What moves on at a steady rate or ever slower, as a process that was on its way, has begun in a fifth of it.
+/// begun of what moves on at a steady rate. A process that was on its way, ever slower, begins sooner.
 const BEGUN: f64 = 0.1;
 const HALFWAY: f64 = 0.5;
-const LATE: f64 = 0.3;
+const STEADY: f64 = BEGUN / HALFWAY;
+
+/// Samples by which it must begin later than that, and the same in shares of the time for noise as large as the way.
+const LATER: f64 = 1.0;
+const LATER_FOR_NOISE: f64 = 4.0;
+
+/// Share of its first value by which an input may change meanwhile.
+const ABOUT: f64 = 0.5;
 
 /// Whether nothing moved before the input came on with the record.
 pub(super) fn begins_at_rest(kind: Kind, input: &[f64], outputs: &[Output]) -> bool {
@@ -27,10 +34,11 @@ pub(super) fn begins_at_rest(kind: Kind, input: &[f64], outputs: &[Output]) -> b
     at_zero || kind == Kind::Process && came_on()
 }
 
-/// Whether an output lay still at first, wherever that was, and went its way later though the input stayed as it was: so
-/// that came on with the record, and the process is late.
+/// Whether an output lay still at first, wherever that was, and went its way later though the input stayed about as it was:
+/// so that came on with the record, and the process is late.
 fn began_late(input: &[f64], output: &Output) -> bool {
-    let held = input.iter().take_while(|u| **u == input[0]).count();
+    let stays = |u: &&f64| (**u - input[0]).abs() <= ABOUT * input[0].abs();
+    let held = input.iter().take_while(stays).count();
     let values = &output.values[..held.min(output.values.len())];
     let first = &values[..values.len().div_ceil(ONE_OF).min(FIRST)];
     let rest = first.iter().sum::<f64>() / first.len() as f64;
@@ -45,6 +53,6 @@ fn began_late(input: &[f64], output: &Output) -> bool {
     let back = coming
         .iter()
         .any(|share| *share < -BEGUN - AT_REST * output.noise / way.abs());
-    // The first is still in any case.
-    !back && still as f64 > 1.0 + LATE * coming.len() as f64
+    let late = STEADY + LATER_FOR_NOISE * output.noise / way.abs();
+    !back && still as f64 > LATER + late * coming.len() as f64
 }
