@@ -13,6 +13,11 @@ use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
 
+/// What a model leaves that explains all there is.
+const ALL_NOISE: &str = " is measurement noise.";
+
+const LOAD: EffectId = EffectId::new("constant_load");
+
 /// The verdict on a final model: `wanted` are its effects, each with whether it only tells how the record was made,
 /// `classes` what could replace each.
 pub(super) fn verdict(
@@ -46,8 +51,8 @@ pub(super) fn verdict(
         };
     }
     text.push_str(match (missing.is_empty(), complete) {
-        (true, true) => "Nothing is missing: what the model leaves is measurement noise.",
-        (false, true) => "With that, what is left is measurement noise.",
+        (true, true) => "Nothing is missing: what the model leaves",
+        (false, true) => "With that, what is left",
         (true, false) => {
             "The model leaves more than noise, but no effect in the library explains it."
         }
@@ -55,6 +60,9 @@ pub(super) fn verdict(
             "What is left is more than noise, but no further effect in the library explains it."
         }
     });
+    if complete {
+        text.push_str(ALL_NOISE);
+    }
     Verdict {
         missing,
         complete,
@@ -136,10 +144,13 @@ pub(super) fn add_rest(
         return;
     }
     if verdict.complete {
+        if let Some(before) = verdict.text.strip_suffix(ALL_NOISE) {
+            verdict.text = before.to_owned();
+        }
         let _ = write!(
             verdict.text,
-            " That is, but for short stretches or a trifle: the error is {error:.2} times the noise, {share:.2} % of what \
-             it was at first."
+            " is noise but for a trifle, or for short stretches: the error is {error:.2} times the noise, {share:.2} % of \
+             what it was at first."
         );
         return;
     }
@@ -152,6 +163,26 @@ pub(super) fn add_rest(
     if let Some(strongest) = findings.first() {
         let _ = write!(verdict.text, " {}", strongest.text);
     }
+}
+
+/// Says of a process where its constant load lets the output rest: in the file it may be the warmth of a room.
+pub(super) fn add_resting_place(verdict: &mut Verdict, parameters: &[Parameter], unit: &str) {
+    let alone = |class: &Vec<EffectId>| class[..] == [LOAD];
+    if !verdict.missing.iter().any(alone) {
+        return;
+    }
+    let find = |name: &str| parameters.iter().find(|p| p.name == name);
+    let (Some(gain), Some(load)) = (find("K"), find("F0").filter(|p| p.effect == Some(LOAD)))
+    else {
+        return;
+    };
+    let rest = gain.value * load.value;
+    let error = (gain.value * load.std_error).abs();
+    let _ = write!(
+        verdict.text,
+        " Without input the output would come to rest at {}: the load may be its surroundings.",
+        written_like(rest, (rest, error), unit)
+    );
 }
 
 /// Says how many values were left out.
