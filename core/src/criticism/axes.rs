@@ -52,7 +52,12 @@ impl Axis {
             let changes = (1..n).filter(|k| pairs[*k].0 > pairs[k - 1].0);
             [0].into_iter().chain(changes).chain([n]).collect()
         } else {
-            (0..=count).map(|k| k * n / count).collect()
+            // Equal values are in one part.
+            let whole = |k: usize| k == 0 || k == n || pairs[k].0 > pairs[k - 1].0;
+            let next = |k: usize| (k..n).find(|k| whole(*k)).unwrap_or(n);
+            let mut edges: Vec<usize> = (0..=count).map(|k| next(k * n / count)).collect();
+            edges.dedup();
+            edges
         };
         Some(Parts {
             order: pairs.into_iter().map(|(_, i)| i).collect(),
@@ -82,6 +87,7 @@ impl Parts {
 pub(super) fn axes(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Axis> {
     let mut axes = vec![continuous("time", "s", data.time.clone(), |a, b, _| {
         let [from, to] = [a, b].map(|t| moment(t, b - a));
+        let from = if a == 0.0 { "0" } else { &from };
         format!("between {from} and {to}")
     })];
     match data.kind {
@@ -279,17 +285,28 @@ fn levels(input: &[f64]) -> usize {
 }
 
 fn within(from: f64, to: f64, unit: &str) -> String {
-    let digits = apart(to - from).max(3);
-    let [from, to] = [from, to].map(|value| rounded(value, digits));
-    if unit == "1" {
-        format!("between {from} and {to}")
+    let unit = if unit == "1" {
+        String::new()
     } else {
-        format!("between {from} and {to} {unit}")
+        format!(" {unit}")
+    };
+    let size = from.abs().max(to.abs());
+    if to - from <= SAME * size {
+        let value = rounded(to, apart(size) + 1);
+        return format!("close to {value}{unit}");
     }
+    let digits = apart(to - from) + 1;
+    let [from, to] = [from, to].map(|value| rounded(value, digits));
+    format!("between {from} and {to}{unit}")
 }
 
+/// Share of their size up to which two ends of a range say the same.
+const SAME: f64 = 1e-4;
+
 fn span_after(from: f64, to: f64, what: &str) -> String {
-    if from <= 0.0 {
+    if to <= 0.0 {
+        format!("in the first sample after {what}")
+    } else if from <= 0.0 {
         format!("within {} after {what}", seconds(to))
     } else {
         let [from, to] = [from, to].map(|t| moment(t, to - from));
@@ -337,21 +354,34 @@ fn moment(t: f64, difference: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{moment, seconds, span_after, within};
+    use super::{continuous, moment, seconds, span_after, within};
+
+    #[test]
+    fn equal_values_are_in_one_part() {
+        let mut values = vec![0.0; 50];
+        values.extend((1..=50).map(f64::from));
+        let axis = continuous("output", "1", values, |_, _, _| String::new());
+        let parts = axis.parts(0..100, 10).unwrap();
+        assert_eq!(parts.between(0, 1).len(), 50);
+        assert_eq!(parts.len(), 6);
+    }
 
     #[test]
     fn the_ends_of_a_range_differ_in_two_digits() {
         assert_eq!(within(-0.04, 0.2, "rad"), "between -0.040 and 0.200 rad");
         assert_eq!(
             within(-0.000_31, 0.001_04, "rad"),
-            "between -0.0003 and 0.0010 rad"
+            "between -0.00031 and 0.00104 rad"
         );
+        assert_eq!(within(-10.84, 7.23, "rad/s"), "between -10.8 and 7.2 rad/s");
+        assert_eq!(within(0.178_346_330, 0.178_346_333, "1"), "close to 0.178");
         assert_eq!(within(-0.000_01, 0.5, "1"), "between 0 and 0.500");
         assert_eq!(moment(0.0, 0.0998), "0 s");
         assert_eq!(
             span_after(10.001, 10.0043, "it"),
             "from 10.0010 s to 10.0043 s after it"
         );
+        assert_eq!(span_after(0.0, 0.0, "it"), "in the first sample after it");
         assert_eq!(
             span_after(0.8e-3, 2.2e-3, "it"),
             "from 800 µs to 2.2 ms after it"
