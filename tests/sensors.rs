@@ -136,3 +136,16 @@ fn two_values_in_a_row_beyond_all_others_are_left_out_and_said() {
         check_said(&record, &missing, "2 values stood alone");
     }
 }
+
+#[test]
+fn of_a_sensor_at_its_limit_only_the_rest_counts() {
+    for (friction, missing) in [(0.0, &[][..]), (0.03, &["coulomb_friction"])] {
+        let mut record = with_noise(drive(friction, None), 0.0, 4);
+        let values = &mut record.outputs[0].values;
+        let most = values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        for value in values {
+            *value = value.clamp(-0.6 * most, 0.6 * most);
+        }
+        check_said(&record, missing, "its sensor was at its limit");
+    }
+}

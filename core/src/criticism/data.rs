@@ -8,12 +8,13 @@ use super::baseline::GUESS_FACTOR;
 use super::before::begins_at_rest;
 use super::cut::{self, Block, MIN_WINDOW};
 use super::fit::Motion;
-use super::noise::{Noise, noise};
+use super::limited::limited;
+use super::noise::{Noise, noise_beside};
 use super::output::Output;
 use super::window::drive_window;
 use crate::crew::Crew;
 use crate::effect::Scales;
-use crate::measurement::{Kind, Measurement};
+use crate::measurement::{Channel, Kind, Measurement};
 use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start, smoothed};
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
@@ -71,7 +72,8 @@ pub(super) struct Data {
 impl Data {
     pub fn new(measurement: &Measurement) -> Result<Self, CriticismError> {
         let input = &measurement.input.values;
-        let levels = measurement.outputs.iter().map(|c| noise(&c.values, input));
+        let noise = |c: &Channel| noise_beside(&c.values, input, &limited(c));
+        let levels = measurement.outputs.iter().map(noise);
         Self::with_noise(measurement, &levels.collect::<Vec<_>>())
     }
 

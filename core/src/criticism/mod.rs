@@ -16,6 +16,7 @@ mod job;
 mod judge;
 mod knowledge;
 mod leap;
+mod limited;
 mod locate;
 mod memory;
 mod missing;

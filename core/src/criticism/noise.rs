@@ -81,6 +81,16 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
     noise_at(&fresh, &at(values), &at(input))
 }
 
+/// The same without the samples that are marked; none is where there are no marks.
+pub(super) fn noise_beside(values: &[f64], input: &[f64], marked: &[bool]) -> Noise {
+    if marked.is_empty() {
+        return noise(values, input);
+    }
+    let places: Vec<usize> = (0..values.len()).filter(|i| !marked[*i]).collect();
+    let at = |all: &[f64]| -> Vec<f64> { places.iter().map(|i| all[*i]).collect() };
+    noise_at(&places, &at(values), &at(input))
+}
+
 /// The same of values at these samples.
 fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
     let quantum = quantum(values);

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::glitches::mend;
 use super::held::{bridged, fresh};
+use super::limited::limited;
 use super::noise::Noise;
 use crate::measurement::{Channel, Quantity};
 
@@ -18,6 +19,8 @@ pub(super) struct Output {
     /// Samples at which nothing was measured, readings that a channel held and glitches of several values: the values there
     /// lie between those around and are compared with no model. Empty where every sample tells.
     pub silent: Vec<bool>,
+    /// Samples at which the sensor was at its limit: they are silent too.
+    pub limited: usize,
 }
 
 impl Output {
@@ -46,7 +49,13 @@ impl Output {
         for i in &glitches.lost {
             silent[fresh.as_ref().map_or(*i, |fresh| fresh[*i])] = true;
         }
+        let limited = limited(channel);
+        silent.resize(silent.len().max(limited.len()), false);
+        for (silent, limited) in silent.iter_mut().zip(&limited) {
+            *silent |= limited;
+        }
         let output = Self {
+            limited: limited.iter().filter(|l| **l).count(),
             is_velocity: channel.quantity != Quantity::Position,
             noise: noise.level,
             counted: noise.counted,
@@ -58,7 +67,8 @@ impl Output {
 
     /// Whether the channel holds its readings over several samples.
     pub fn is_held(&self) -> bool {
-        3 * self.telling(0, self.silent.len()) < 2 * self.silent.len()
+        let length = self.silent.len();
+        3 * self.telling(0, length) < 2 * (length - self.limited)
     }
 
     /// Whether something was measured at this sample.
@@ -109,6 +119,7 @@ mod tests {
             noise: 1.0,
             counted: false,
             silent: [0, 1, 0, 1, 1, 0, 0, 1].map(|s| s == 1).to_vec(),
+            limited: 0,
         };
         let series: Vec<f64> = (0..8).map(f64::from).collect();
         let (told, runs) = output.told(&series, &[(0, 2), (3, 7)]);

@@ -227,6 +227,18 @@ pub(super) fn add_held(verdict: &mut Verdict, data: &Data) {
     }
 }
 
+/// Says which sensors were at their limit for a while.
+pub(super) fn add_limited(verdict: &mut Verdict, data: &Data) {
+    for output in data.outputs.iter().filter(|o| o.limited > 0) {
+        let _ = write!(
+            verdict.text,
+            " The {} stays at its largest values for {} samples: its sensor was at its limit, and they were left out.",
+            signal_name(data.kind, output),
+            output.limited
+        );
+    }
+}
+
 /// Says which effects lower the error but may be imitations: they explain less than they leave, or their size is
 /// not known to differ from 0.
 pub(super) fn add_imitations(verdict: &mut Verdict, imitations: &[EffectId]) {

@@ -9,8 +9,8 @@ use crate::criticism::score::Score;
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
-    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_pauses,
-    add_rest, add_resting_place, verdict,
+    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_limited,
+    add_pauses, add_rest, add_resting_place, verdict,
 };
 use crate::criticism::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
@@ -70,6 +70,7 @@ impl StepJob {
             add_glitches(&mut verdict, self.session.whole().glitches);
             add_pauses(&mut verdict, self.session.whole().pauses);
             add_held(&mut verdict, self.session.whole());
+            add_limited(&mut verdict, self.session.whole());
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
