@@ -35,7 +35,8 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     }
     for (i, step) in diagnosis.steps.iter().enumerate() {
         let before = i.checked_sub(1).and_then(|k| diagnosis.steps.get(k));
-        describe_step(&mut out, step, before, diagnosis.noise_floor);
+        let is_last = i + 1 == diagnosis.steps.len();
+        describe_step(&mut out, step, before, is_last, diagnosis.noise_floor);
     }
     if !diagnosis.steps.is_empty() {
         chart(&mut out, diagnosis);
@@ -65,7 +66,13 @@ fn other_experiments(out: &mut String, proposal: &NextExperiment) {
     }
 }
 
-fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, floor: f64) {
+fn describe_step(
+    out: &mut String,
+    step: &Step,
+    before: Option<&Step>,
+    is_last: bool,
+    floor: f64,
+) {
     let title = before.map_or_else(|| "Baseline".to_owned(), |before| change(step, before));
     heading(out, &title);
     paragraph(
@@ -77,8 +84,10 @@ fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, floor: f6
             short(floor)
         ),
     );
+    // Of the last model all are said: the body is what it was found to be with all effects.
     let fresh = |p: &&Parameter| match before {
         None => true,
+        Some(_) if is_last => true,
         Some(before) => p.effect.is_some_and(|e| !before.effects.contains(&e)),
     };
     parameters(
