@@ -430,6 +430,23 @@ fn nothing_is_missing_where_nothing_is() {
     }
 }
 
+/// Where it rests, all that its encoder tells is the count on which it is.
+#[test]
+fn a_coarse_encoder_is_no_missing_effect() {
+    for counts in [5000.0, 9000.0, 14_400.0] {
+        for seed in 1..5 {
+            let rig = DriveRig {
+                seed,
+                encoder: TAU / counts,
+                ..machine(1e3, 4000, servo(3.0, 0.8, 25.0))
+            };
+            let d = diagnose(&rig);
+            assert_eq!(d.verdict.missing.len(), 0, "{counts}: {}", d.verdict.text);
+            assert!(d.verdict.complete, "{counts}: {}", d.verdict.text);
+        }
+    }
+}
+
 #[test]
 fn stribeck_friction_is_known_from_the_position_under_a_relay_that_turns_every_few_samples() {
     for gain in [0.5, 0.3] {

@@ -66,13 +66,7 @@ fn other_experiments(out: &mut String, proposal: &NextExperiment) {
     }
 }
 
-fn describe_step(
-    out: &mut String,
-    step: &Step,
-    before: Option<&Step>,
-    is_last: bool,
-    floor: f64,
-) {
+fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: bool, floor: f64) {
     let title = before.map_or_else(|| "Baseline".to_owned(), |before| change(step, before));
     heading(out, &title);
     paragraph(

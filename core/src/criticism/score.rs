@@ -77,11 +77,12 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
     }
 }
 
-/// Half a step of a counter in its standard deviations, with a little more for what a state is off by.
-const HALF_STEP: f64 = 1.05 * 1.732_050_8;
+/// Half a step of a counter in its standard deviations, with a tenth of a step more: where a body rests, all that is known of
+/// its state is the step in which it is.
+const HALF_STEP: f64 = 1.2 * 1.732_050_8;
 
 /// Share of the residuals that must lie within half a step.
-const WITHIN: f64 = 0.97;
+const WITHIN: f64 = 0.95;
 
 /// Whether the held-back residuals stay within half a step of their counters.
 fn within_counts(data: &Data, motion: &Motion) -> bool {
