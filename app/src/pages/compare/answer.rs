@@ -111,8 +111,13 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
         }
         (Some(verdict), false) if verdict.complete => {
             if verdict.missing.iter().all(|class| class.len() < 2) {
+                let were = if added.len() > 1 {
+                    "effects were"
+                } else {
+                    "effect was"
+                };
                 let added = added.join(" and ");
-                return format!("The missing effect was {added}. Nothing more is missing.");
+                return format!("The missing {were} {added}. Nothing more is missing.");
             }
             let classes: Vec<String> = verdict
                 .missing
@@ -122,10 +127,13 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
                     names.join(" or ")
                 })
                 .collect();
-            format!(
-                "The missing effect is {}: this record cannot tell which.",
-                classes.join(", and ")
-            )
+            let are = if classes.len() > 1 {
+                "effects are"
+            } else {
+                "effect is"
+            };
+            let classes = classes.join(", and ");
+            format!("The missing {are} {classes}: this record cannot tell which.")
         }
         (Some(verdict), true) if verdict.complete => {
             "Nothing is missing: what the model leaves is measurement noise.".to_owned()
