@@ -1,10 +1,11 @@
 //! Every parameter of the model with its uncertainty.
 
-use hysteron_core::criticism::{Parameter, StepReport, with_error};
-use hysteron_core::effect::{name_of, shown_unit};
+use hysteron_core::criticism::{Parameter, StepReport};
+use hysteron_core::effect::name_of;
 
 use crate::language::tr;
 use crate::theme;
+use crate::uncertain::{interval, with_error};
 
 /// Size of the bar that shows an interval, points.
 const BAR: egui::Vec2 = egui::vec2(70.0, 12.0);
@@ -59,10 +60,6 @@ fn interval_ui(p: &Parameter, ui: &mut egui::Ui) {
     } else {
         painter.rect_filled(bar, 1.0, theme::MODEL);
     }
-    response.on_hover_text(tr(format!(
-        "95 % interval: {:.4e} to {:.4e} {}",
-        p.value - INTERVAL * p.std_error,
-        p.value + INTERVAL * p.std_error,
-        shown_unit(if p.unit == "1" { "" } else { &p.unit })
-    )));
+    let interval = interval(p.value, p.std_error, INTERVAL, &p.unit);
+    response.on_hover_text(tr(format!("95 % interval: {interval}")));
 }

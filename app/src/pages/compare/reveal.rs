@@ -1,7 +1,6 @@
 //! The sealed truth of a mystery, and the model on screen beside it.
 
 use egui::RichText;
-use hysteron_core::criticism::{with_error, written_like};
 use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 
@@ -12,6 +11,7 @@ use crate::language::tr;
 use crate::motion;
 use crate::tasks::RevealTask;
 use crate::theme;
+use crate::uncertain::{with_error, written_like};
 
 /// Width that the table of numbers needs, points; in a narrower window each is a line of its own.
 const TABLE: f32 = 600.0;
