@@ -40,6 +40,10 @@ pub const MODEL: Filter = Filter {
     endings: &["toml"],
 };
 
+/// What to do where no dialog can be shown.
+#[cfg(not(target_arch = "wasm32"))]
+const NO_DIALOG: &str = "No dialog can be shown here: drop the file on this window.";
+
 /// A file that is being read elsewhere, and how to find it again.
 struct Read {
     name: String,
@@ -91,6 +95,8 @@ impl From<&Enclosed> for Held {
 pub struct Files {
     sender: Sender<Read>,
     receiver: Receiver<Read>,
+    /// Why none can be asked for.
+    refused: (Sender<String>, Receiver<String>),
     /// The last one that has arrived: nobody knows yet whether it is what its page takes.
     arrived: Option<Recent>,
     opened: Vec<Recent>,
@@ -106,6 +112,7 @@ impl Default for Files {
         Self {
             sender,
             receiver,
+            refused: channel(),
             arrived: None,
             opened: Vec::new(),
             held: Vec::new(),
@@ -220,12 +227,27 @@ impl Files {
         });
     }
 
+    /// Why no file could be asked for, once.
+    pub fn refused(&mut self) -> Option<String> {
+        self.refused.1.try_recv().ok()
+    }
+
     /// Asks for a file.
     pub fn open_dialog(&self, ctx: &egui::Context, filter: Filter) {
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
+        #[cfg(not(target_arch = "wasm32"))]
+        let refused = self.refused.0.clone();
         let dialog = rfd::AsyncFileDialog::new().add_filter(filter.words, filter.endings);
         let pick = async move {
-            if let Some(file) = dialog.pick_file().await {
+            #[cfg(not(target_arch = "wasm32"))]
+            let asked = std::time::Instant::now();
+            let picked = dialog.pick_file().await;
+            #[cfg(not(target_arch = "wasm32"))]
+            if picked.is_none() && asked.elapsed() < crate::save::AT_ONCE {
+                let _ = refused.send(NO_DIALOG.to_owned());
+                ctx.request_repaint();
+            }
+            if let Some(file) = picked {
                 let bytes = Ok(file.read().await);
                 #[cfg(not(target_arch = "wasm32"))]
                 let path = file.path().to_string_lossy().into_owned();

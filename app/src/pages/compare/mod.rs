@@ -214,6 +214,9 @@ impl Compare {
                 Err(error) => self.refuse(format!("{name}: cannot be read ({error})")),
             }
         }
+        if let Some(sentence) = self.files.refused() {
+            self.refuse(sentence);
+        }
         self.take_opened(ctx);
         if let Some(text) = self.saved.1.try_iter().last() {
             self.message = Some(text);
