@@ -8,6 +8,8 @@ use crate::language::{tr, tr_number};
 pub const MEASURED: Color32 = Color32::from_rgb(0x56, 0xB4, 0xE9);
 /// What the model says.
 pub const MODEL: Color32 = Color32::from_rgb(0xD5, 0x5E, 0x00);
+/// What the model before said.
+pub const BEFORE: Color32 = Color32::from_rgb(0x00, 0x72, 0xB2);
 /// The difference.
 pub const RESIDUAL: Color32 = Color32::from_rgb(0xCC, 0x79, 0xA7);
 /// The measurement noise.

@@ -29,7 +29,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
     ];
     let before = page.report_before().filter(|_| page.before);
     if before.is_some() {
-        curves.insert(0, ("the step before", theme::MODEL, Shape::Line));
+        curves.insert(0, ("the step before", theme::BEFORE, Shape::Line));
     }
     tests_ui(report, ui);
     caption_ui(ui, "Size of the residual, in units of the noise", &curves);
@@ -192,7 +192,7 @@ fn picture_ui(
         }
         if let Some(before) = before {
             let line = Line::new(tr("the step before"), points(before, |b| b.rms));
-            plot.line(line.color(theme::MODEL).width(1.5));
+            plot.line(line.color(theme::BEFORE).width(1.5));
         }
         plot.line(
             Line::new(tr("this model"), points(profile, |b| b.rms))

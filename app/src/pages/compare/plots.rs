@@ -72,7 +72,7 @@ fn curves(page: &Compare, modelled: bool) -> Vec<Key<'static>> {
         curves.push(("model", theme::MODEL, Shape::Dashes));
         curves.push(("residual", theme::RESIDUAL, Shape::Line));
         if page.before && page.report_before().is_some() {
-            curves.push(("the step before", theme::MODEL, Shape::Line));
+            curves.push(("the step before", theme::BEFORE, Shape::Line));
         }
         curves.push(("noise, 2 sigma", theme::NOISE, Shape::Dashes));
     }
@@ -243,7 +243,7 @@ fn residual_plot(
                 tr("the step before"),
                 points(&measurement.time, &earlier, &drawn),
             );
-            plot.line(line.color(theme::MODEL).width(1.2));
+            plot.line(line.color(theme::BEFORE).width(1.2));
         }
         plot.line(
             Line::new(tr("residual"), points(&measurement.time, &residual, &drawn))
