@@ -89,7 +89,7 @@ fn the_way_goes_back_and_forth_and_shows_the_step_before() {
     picture(&mut harness, "compare_before_and_after");
     click(&mut harness, "Take back Coulomb friction");
     assert_eq!(error(&harness), before);
-    click(&mut harness, "Coulomb friction again");
+    click(&mut harness, "Put Coulomb friction back");
     assert_eq!(error(&harness), after, "forth again, without a new fit");
     click(&mut harness, "Baseline");
     assert_eq!(error(&harness), before);

@@ -92,7 +92,7 @@ pub(super) fn ui(
             }
         }
         if let Some(next) = way.get(page.effects.len()) {
-            let redo = ui.button(tr(format!("{} again", name_of(*next))));
+            let redo = ui.button(tr(format!("Put {} back", name_of(*next))));
             targets.note("redo", ui, &redo);
             if redo.clicked() {
                 commands.push(Command::Redo);
