@@ -1,12 +1,13 @@
 //! Where the model fails: the residual over every axis, as small pictures.
 
-use egui_plot::{HLine, Line, LineStyle, Span};
+use egui::Color32;
+use egui_plot::{HLine, Line, LineStyle, Points, Span};
 use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
 
 use super::Compare;
 use super::parts::Part;
 use crate::language::tr;
-use crate::pages::chart::{Chart, Shape, caption_ui};
+use crate::pages::chart::{Chart, Pen, Shape, caption_ui};
 use crate::theme;
 
 /// Least width of a picture, and its height, points.
@@ -109,7 +110,7 @@ pub(super) fn words(axis: &str) -> String {
 }
 
 /// Label of an axis with its unit.
-pub(super) fn axis_label(profile: &Profile) -> String {
+fn axis_label(profile: &Profile) -> String {
     if profile.unit == "1" {
         words(&profile.axis)
     } else {
@@ -130,7 +131,7 @@ fn place(axis: &str, value: f64) -> f64 {
 }
 
 /// A point in the middle of each bin, with the mean of those that are in the same place.
-pub(super) fn points(profile: &Profile, value: impl Fn(&ProfileBin) -> f64) -> Vec<[f64; 2]> {
+fn points(profile: &Profile, value: impl Fn(&ProfileBin) -> f64) -> Vec<[f64; 2]> {
     let at = |value: f64| place(&profile.axis, value);
     let range = match (profile.bins.first(), profile.bins.last()) {
         (Some(first), Some(last)) => at(last.to) - at(first.from),
@@ -157,9 +158,47 @@ pub(super) fn points(profile: &Profile, value: impl Fn(&ProfileBin) -> f64) -> V
     places.into_iter().map(|(x, sum, n)| [x, sum / n]).collect()
 }
 
+/// Radius of the point of a single value, and what is shaded and is left free on either side of it.
+const RADIUS: f32 = 5.0;
+const SHADED: f64 = 0.2;
+const FREE: f64 = 0.5;
+
+/// Share of such a plot that is left free around its points: none is cut at the edge.
+const MARGIN: egui::Vec2 = egui::vec2(0.05, 0.1);
+
+/// Whether an axis has single values, such as a sign: there is nothing between them.
+fn is_discrete(profile: &Profile) -> bool {
+    profile.bins.iter().all(|b| b.from == b.to)
+}
+
+/// Draws a curve over an axis: points where it has single values.
+pub(super) fn draw(
+    plot: &mut Pen<'_, '_>,
+    profile: &Profile,
+    value: impl Fn(&ProfileBin) -> f64,
+    (name, color): (&str, Color32),
+    style: impl FnOnce(Line<'static>) -> Line<'static>,
+) {
+    let (name, points) = (tr(name), points(profile, value));
+    if !is_discrete(profile) {
+        plot.line(style(Line::new(name, points).color(color)));
+        return;
+    }
+    plot.points(Points::new(name, points).color(color).radius(RADIUS));
+}
+
 /// A small plot that stays where it is.
-pub(super) fn small(id: String, x: String, y: &'static str) -> Chart<'static> {
-    Chart::new(id, [x, y.to_owned()], HEIGHT, AXIS_WIDTH).still()
+pub(super) fn small(id: String, profile: &Profile, y: &'static str) -> Chart<'static> {
+    let axes = [axis_label(profile), y.to_owned()];
+    let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH).still();
+    match (profile.bins.first(), profile.bins.last()) {
+        (Some(first), Some(last)) if is_discrete(profile) => chart.with(|plot| {
+            plot.include_x(first.from - FREE)
+                .include_x(last.from + FREE)
+                .set_margin_fraction(MARGIN)
+        }),
+        _ => chart,
+    }
 }
 
 fn picture_ui(
@@ -170,8 +209,11 @@ fn picture_ui(
 ) {
     let id = format!("atlas {} {}", profile.output, profile.axis);
     let region = finding
-        .filter(|f| f.axis == profile.axis && f.from < f.to)
+        .filter(|f| f.axis == profile.axis && (f.from < f.to || is_discrete(profile)))
         .map(|f| {
+            if is_discrete(profile) {
+                return f.from - SHADED..=f.to + SHADED;
+            }
             // Its logarithmic axis has no 0: such a band begins where the curve does.
             let first = profile.bins.first().map_or(f.from, |b| 0.5 * b.to);
             let low = if f.axis == FREQUENCY {
@@ -181,7 +223,7 @@ fn picture_ui(
             };
             place(&f.axis, low)..=place(&f.axis, f.to)
         });
-    let mut chart = small(id, axis_label(profile), "rms [× noise]");
+    let mut chart = small(id, profile, "rms [× noise]");
     if profile.axis == FREQUENCY {
         chart = chart.decades();
     }
@@ -191,14 +233,11 @@ fn picture_ui(
             plot.add(Span::new("", region).fill(color).border_width(0.0));
         }
         if let Some(before) = before {
-            let line = Line::new(tr("the step before"), points(before, |b| b.rms));
-            plot.line(line.color(theme::BEFORE).width(1.5));
+            let name = ("the step before", theme::BEFORE);
+            draw(plot, before, |b| b.rms, name, |line| line.width(1.5));
         }
-        plot.line(
-            Line::new(tr("this model"), points(profile, |b| b.rms))
-                .color(theme::RESIDUAL)
-                .width(2.0),
-        );
+        let name = ("this model", theme::RESIDUAL);
+        draw(plot, profile, |b| b.rms, name, |line| line.width(2.0));
         let noise = HLine::new(tr("noise"), 1.0).color(theme::NOISE).width(1.5);
         plot.hline(noise.style(LineStyle::dashed_dense()));
     });

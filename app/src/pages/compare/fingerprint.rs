@@ -5,7 +5,7 @@ use hysteron_core::criticism::{Fingerprint, Profile, StepReport};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Measurement;
 
-use super::atlas::{axis_label, grid_ui, points, small, words};
+use super::atlas::{draw, grid_ui, small, words};
 use super::parts::Part;
 use super::{Command, Compare};
 use crate::hook::Targets;
@@ -139,16 +139,13 @@ fn profile_ui(report: &StepReport, profile: &Profile, ui: &mut egui::Ui) {
     let mut all = report.atlas.iter();
     let left = all.find(|p| p.output == profile.output && p.axis == profile.axis);
     let id = format!("print {} {}", profile.output, profile.axis);
-    small(id, axis_label(profile), "mean [× noise]").show(ui, |plot| {
+    small(id, profile, "mean [× noise]").show(ui, |plot| {
         if let Some(left) = left {
-            let line = Line::new(tr("what is left"), points(left, |b| b.mean));
-            plot.line(line.color(theme::RESIDUAL).width(2.0));
+            let name = ("what is left", theme::RESIDUAL);
+            draw(plot, left, |b| b.mean, name, |line| line.width(2.0));
         }
-        plot.line(
-            Line::new(tr("what it would leave"), points(profile, |b| b.mean))
-                .color(theme::INPUT)
-                .style(LineStyle::dashed_loose())
-                .width(2.0),
-        );
+        let name = ("what it would leave", theme::INPUT);
+        let dashed = |line: Line<'static>| line.style(LineStyle::dashed_loose()).width(2.0);
+        draw(plot, profile, |b| b.mean, name, dashed);
     });
 }
