@@ -229,8 +229,8 @@ fn the_sentences_of_an_experiment_stay_in_their_order() {
          leaves less than 0.01. 0.07 s are enough for this; 1 s let all other effects be judged as well.",
     );
     assert!(said.complete, "{}", said.text);
-    let end = "Der falsche ließe dann das 132-fache des Rauschens übrig; in dieser Aufzeichnung ist es weniger als das \
-               0,01-fache. Dafür genügen 0,07 s; mit 1 s lassen sich auch alle anderen Effekte beurteilen.";
+    let end = "Der falsche ließe dann das 132-Fache des Rauschens übrig; in dieser Aufzeichnung ist es weniger als das \
+               0,01-Fache. Dafür genügen 0,07 s; mit 1 s lassen sich auch alle anderen Effekte beurteilen.";
     assert!(
         said.text.starts_with("Zur Unterscheidung ("),
         "{}",

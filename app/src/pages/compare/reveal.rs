@@ -231,7 +231,7 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
 
 /// Name, truth, value of the model, error and marks of a number.
 fn cells(number: &Compared) -> [String; 5] {
-    let owner = number.effect.map_or("simplest model", name_of);
+    let owner = number.effect.map_or("baseline", name_of);
     // The truth is written as what was found, so that their digits can be compared.
     let (truth, found) = match number.found {
         Some((value, error)) => (
