@@ -10,7 +10,7 @@ use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::Compare;
 use super::parts::Part;
-use crate::language::tr;
+use crate::language::{self, tr};
 use crate::pages::chart::{Chart, Key, Pen, Shape, caption_ui, envelope, extremes};
 use crate::theme;
 
@@ -39,8 +39,11 @@ const GROUND: f32 = 0.75;
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
 
-/// Width of the labels of y, so that the plots line up.
+/// Least width of the labels of y: the plots line up at the widest.
 const AXIS_WIDTH: f32 = 106.0;
+
+/// Less is rounding, points.
+const PIXEL: f32 = 1.0;
 
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 110.0;
@@ -52,17 +55,39 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let report = page.report_in(Part::Plots);
     let finding = report.and_then(|r| r.step.findings.get(page.finding));
     let count = measurement.outputs.len().max(1) as f32;
+    let widest = egui::Id::unique(("compare_axis", &measurement.name, language::spoken()));
+    let labels = ui.data(|data| data.get_temp(widest)).unwrap_or(AXIS_WIDTH);
+    let left = ui.cursor().left();
+    let mut needed = labels;
     caption_ui(ui, "", &curves(page, report.is_some()));
     let each = ((height - CAPTION) / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
-        signal_plot(ui, measurement, output, modelled, finding, each);
+        let size = Size {
+            height: each,
+            labels,
+        };
+        let plot = signal_plot(ui, measurement, output, modelled, finding, size);
+        needed = needed.max(plot.left() - left);
         if let Some(modelled) = modelled {
             let before = page.report_before().filter(|_| page.before);
             let before = before.and_then(|r| r.replay.channels.get(index));
-            residual_plot(ui, measurement, output, (modelled, before), finding, each);
+            let models = (modelled, before);
+            let plot = residual_plot(ui, measurement, output, models, finding, size);
+            needed = needed.max(plot.left() - left);
         }
     }
+    if needed > labels + PIXEL {
+        ui.data_mut(|data| data.insert_temp(widest, needed));
+        ui.ctx().request_repaint();
+    }
+}
+
+/// Height of a plot, and width of its labels of y, points.
+#[derive(Clone, Copy)]
+struct Size {
+    height: f32,
+    labels: f32,
 }
 
 /// What stands in the plots, for all of them.
@@ -85,12 +110,12 @@ fn plot<'a>(
     finding: Option<&Finding>,
     id: String,
     y_label: String,
-    height: f32,
+    size: Size,
 ) -> Chart<'a> {
     let group = egui::Id::unique(("compare", &measurement.name));
     let (start, end) = view_of(measurement, finding);
     let axes = ["time [s]".to_owned(), y_label];
-    let chart = Chart::new(id, axes, height, AXIS_WIDTH)
+    let chart = Chart::new(id, axes, size.height, size.labels)
         .zoomed_as("time")
         .linked(group);
     chart.with(|plot| {
@@ -166,20 +191,20 @@ fn signal_plot(
     output: &Channel,
     modelled: Option<&ReplayChannel>,
     finding: Option<&Finding>,
-    height: f32,
-) {
+    size: Size,
+) -> egui::Rect {
     let label = unit_label(&output.name, &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let alone = measurement.outputs.len() == 1;
     let marked = finding.filter(|f| alone || is_about(f, output));
-    let words = marked.map_or(0.0, |_| f64::from(WORDS / (height - BELOW)));
+    let words = marked.map_or(0.0, |_| f64::from(WORDS / (size.height - BELOW)));
     let shown = plot(
         measurement,
         finding,
         format!("signal {}", output.name),
         label,
-        height,
+        size,
     )
     .show(ui, |plot| {
         fit(
@@ -209,6 +234,7 @@ fn signal_plot(
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
+    *shown.transform.frame()
 }
 
 fn residual_plot(
@@ -217,8 +243,8 @@ fn residual_plot(
     output: &Channel,
     (modelled, before): (&ReplayChannel, Option<&ReplayChannel>),
     finding: Option<&Finding>,
-    height: f32,
-) {
+    size: Size,
+) -> egui::Rect {
     let label = unit_label(&format!("{} - model", output.name), &output.unit);
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
@@ -231,7 +257,7 @@ fn residual_plot(
         finding,
         format!("residual {}", output.name),
         label,
-        height,
+        size,
     )
     .show(ui, |plot| {
         let noise = [2.0, -2.0].map(|side| side * modelled.noise);
@@ -257,6 +283,7 @@ fn residual_plot(
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
+    *shown.transform.frame()
 }
 
 /// Where the selected finding says that the error lies.
