@@ -36,6 +36,10 @@ const ROOM: f64 = 0.08;
 /// How much the ground of words hides of the curves under it.
 const GROUND: f32 = 0.75;
 
+/// What jumps of the residual are.
+const RESTARTED: &str = "The model is restarted in short windows from estimated states: where one begins, the residual \
+                         may jump.";
+
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
 
@@ -60,7 +64,12 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let left = ui.cursor().left();
     let mut needed = labels;
     caption_ui(ui, "", &curves(page, report.is_some()));
-    let each = ((height - CAPTION) / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
+    let mut above = CAPTION;
+    if report.is_some() {
+        let note = ui.small(tr(RESTARTED));
+        above += note.rect.height() + ui.spacing().item_spacing.y;
+    }
+    let each = ((height - above) / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
         let size = Size {
