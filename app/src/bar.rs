@@ -185,14 +185,21 @@ fn buttons<'a>(ui: &Ui, names: impl IntoIterator<Item = &'a str>) -> f32 {
 
 /// Width of a button with its gap, points.
 pub fn button(ui: &Ui, name: &str) -> f32 {
+    button_of(ui, &tr(name))
+}
+
+/// The same of a name in the language that is spoken.
+pub fn button_of(ui: &Ui, text: &str) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let around = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
-    width(ui, name, font) + around
+    width_of(ui, text.to_owned(), font) + around
 }
 
 fn width(ui: &Ui, name: &str, font: egui::FontId) -> f32 {
-    let text = ui
-        .painter()
-        .layout_no_wrap(tr(name), font, egui::Color32::PLACEHOLDER);
-    text.size().x
+    width_of(ui, tr(name), font)
+}
+
+fn width_of(ui: &Ui, text: String, font: egui::FontId) -> f32 {
+    let color = egui::Color32::PLACEHOLDER;
+    ui.painter().layout_no_wrap(text, font, color).size().x
 }

@@ -5,6 +5,7 @@ use hysteron_core::criticism::StepReport;
 use hysteron_core::effect::name_of;
 
 use super::{Command, Compare, times_noise};
+use crate::bar;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::motion;
@@ -13,10 +14,10 @@ use crate::theme;
 /// Width of the widest bar, in points.
 pub(super) const BAR_WIDTH: f32 = 150.0;
 
-/// Width of a narrow one, of the names beside the bars, and of these with the numbers and gaps.
+/// Width of a narrow one, least width of the names beside the bars, and width of the numbers and gaps.
 const LEAST_BAR: f32 = 50.0;
-const WATERFALL_LABEL: f32 = 140.0;
-const WATERFALL_TEXT: f32 = 230.0;
+const LEAST_LABEL: f32 = 140.0;
+const NUMBERS: f32 = 90.0;
 
 /// The error from the baseline to the noise floor. A click on a step goes back to it.
 pub(super) fn ui(
@@ -45,15 +46,20 @@ pub(super) fn ui(
     let known = || steps.iter().filter_map(|(_, r)| *r);
     let largest = known().map(|r| r.step.error).fold(2.0, f64::max);
     let floor = known().next_back().map_or(1.0, |r| r.noise_floor);
-    let width = (ui.available_width() - WATERFALL_TEXT).clamp(LEAST_BAR, BAR_WIDTH);
+    let room = ui.available_width() - NUMBERS;
+    // Names are cut only where there is no room for them beside narrow bars.
+    let names = steps.iter().map(|(label, _)| bar::button_of(ui, label));
+    let names = names.fold(LEAST_LABEL, f32::max);
+    let names = names.min((room - LEAST_BAR).max(LEAST_LABEL));
+    let width = (room - names).clamp(LEAST_BAR, BAR_WIDTH);
     egui::Grid::new("waterfall").num_columns(3).show(ui, |ui| {
         for (n, (label, report)) in steps.iter().enumerate() {
             let row = ui
                 .allocate_ui_with_layout(
-                    egui::vec2(WATERFALL_LABEL, 22.0),
+                    egui::vec2(names, 22.0),
                     egui::Layout::left_to_right(egui::Align::Center),
                     |ui| {
-                        ui.set_width(WATERFALL_LABEL);
+                        ui.set_width(names);
                         ui.add(egui::Button::selectable(n == at, label.as_str()).truncate())
                     },
                 )
