@@ -149,7 +149,8 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
     let row = &said[at.expect("a row of the inertia")..];
     let decimals = |text: &str| {
         let number = text.split(' ').next().unwrap_or_default();
-        number.split_once('.').map(|(_, d)| d.len())
+        let digits = |d: &str| d.chars().take_while(char::is_ascii_digit).count();
+        number.split_once('.').map(|(_, d)| digits(d))
     };
     assert!(row[2].contains('±'), "{row:#?}");
     assert_eq!(decimals(&row[1]), decimals(&row[2]), "{row:#?}");

@@ -123,6 +123,21 @@ pub(super) fn ui(
         return;
     };
     ui.add_space(6.0);
+    if let Some((effects, reveal)) = &sealed.revealed {
+        revealed_ui(page, sealed, effects, reveal, ui, targets, commands);
+    } else {
+        word_ui(page, sealed, ui, targets, commands);
+    }
+}
+
+/// Asks for the word.
+fn word_ui(
+    page: &Compare,
+    sealed: &Sealed,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
     ui.label(tr("The truth about this record lies in it, sealed. Add what is missing until only noise is left; then say the word."));
     let (mut word, mut legible) = (sealed.word.clone(), sealed.legible);
     let asked = ui.horizontal_wrapped(|ui| {
@@ -152,15 +167,34 @@ pub(super) fn ui(
     if let Some(message) = &sealed.message {
         ui.colored_label(ui.visuals().warn_fg_color, tr(message));
     }
-    let Some((effects, reveal)) = &sealed.revealed else {
-        return;
-    };
-    ui.add_space(8.0);
+}
+
+/// The truth beside the model with these effects.
+fn revealed_ui(
+    page: &Compare,
+    sealed: &Sealed,
+    effects: &[EffectId],
+    reveal: &Reveal,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
     theme::answer_ui(ui, &format!("{:.0} of 100 points.", reveal.points()));
-    if Some(effects) != page.shown.as_ref() {
-        ui.label(tr(
-            "They are for the model that was on screen then; the model is another one now.",
-        ));
+    if Some(effects) != page.shown.as_deref() {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(tr(
+                "They are for the model that was on screen then; the model is another one now.",
+            ));
+            let ready = sealed.job.is_none() && page.report().is_some();
+            let again = ui.add_enabled(ready, egui::Button::new(tr("Judge this one")));
+            targets.note("reveal:again", ui, &again);
+            if again.clicked() {
+                commands.push(Command::Reveal);
+            }
+            if sealed.job.is_some() {
+                motion::busy_ui(ui);
+            }
+        });
     }
     effects_ui(reveal, ui);
     numbers_ui(reveal, ui);

@@ -80,10 +80,15 @@ pub(super) fn file_ui(
             commands.push(Command::Close);
         }
     });
-    if page.sealed.is_some() {
+    if let Some(sealed) = &page.sealed {
+        let (state, name) = if sealed.is_revealed() {
+            ("A mystery: its truth is revealed.", "Truth and points")
+        } else {
+            ("A mystery: its truth is sealed in it.", "Reveal ...")
+        };
         ui.horizontal_wrapped(|ui| {
-            ui.label(tr("A mystery: its truth is sealed in it."));
-            let reveal = ui.button(tr("Reveal ..."));
+            ui.label(tr(state));
+            let reveal = ui.button(tr(name));
             targets.note("reveal:go", ui, &reveal);
             if reveal.clicked() {
                 commands.push(Command::Look(Look::Reveal));

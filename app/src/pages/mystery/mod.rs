@@ -234,6 +234,11 @@ impl View for Bench {
     }
 
     fn hint(&self) -> Option<Hint> {
+        if self.made.is_some() {
+            return Some(Hint::say(
+                "Hand on the mystery: its file, or its link. Whoever solves it needs your word at the end.",
+            ));
+        }
         Some(Hint::open(
             "Never looked for a hidden effect? Begin with a drive that loses its swing.",
             "v1;compare;compare.file=drive-02",
