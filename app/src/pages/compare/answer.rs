@@ -39,10 +39,20 @@ impl Compare {
             None => "Comparing the measurement with a model ...".to_owned(),
             Some(report) => {
                 let present = self.model.as_ref().map(UserModel::present);
-                answer(report, &present.unwrap_or_default())
+                answer(report, &present.unwrap_or_default(), self.is_noise(report))
             }
         };
         theme::answer_ui(ui, &text);
+    }
+
+    /// Whether nothing was missing before something needless was added.
+    fn is_noise(&self, report: &StepReport) -> bool {
+        let Some((idle, shown)) = report.needless.first().zip(self.shown.as_deref()) else {
+            return false;
+        };
+        let without: Vec<EffectId> = shown.iter().filter(|e| *e != idle).copied().collect();
+        let before = self.reports.get(&without).and_then(|r| r.verdict.as_ref());
+        report.suggestion.is_none() && before.is_some_and(|v| v.complete)
     }
 
     pub(super) fn findings_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -78,8 +88,9 @@ fn of_machine(report: &StepReport, effect: EffectId) -> bool {
     verdict.is_none_or(|v| v.missing.iter().flatten().any(|m| *m == effect))
 }
 
-/// The page's answer in one or two sentences; `present` are the effects of the user's model.
-fn answer(report: &StepReport, present: &[EffectId]) -> String {
+/// The page's answer in one or two sentences; `present` are the effects of the user's model, `noise`: nothing is missing
+/// without what is needless.
+fn answer(report: &StepReport, present: &[EffectId], noise: bool) -> String {
     let step = &report.step;
     let added: Vec<String> = step
         .effects
@@ -142,6 +153,10 @@ fn answer(report: &StepReport, present: &[EffectId]) -> String {
         _ => {
             let error = times_noise(step.error);
             match report.needless.first() {
+                Some(idle) if noise => format!(
+                    "The model leaves only noise, with {} or without.",
+                    name_of(*idle)
+                ),
                 Some(idle) if report.suggestion.is_none() => format!(
                     "The model misses by {error} times the noise, with {} or without.",
                     name_of(*idle)
