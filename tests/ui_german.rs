@@ -240,6 +240,27 @@ fn the_sentences_of_an_experiment_stay_in_their_order() {
 }
 
 #[test]
+fn one_effect_was_missing_or_two_were() {
+    for (english, expected) in [
+        (
+            "The missing effect was Input delay: (8.80 ± 0.12)e-4 s. Nothing more is missing.",
+            "Der fehlende Effekt war Eingangstotzeit: (8,80 ± 0,12)e-4 s. Mehr fehlt nicht.",
+        ),
+        (
+            "The missing effects were Input delay: 0.00400 ± 0.00012 s and Dead zone: 0.050 ± 0.012. Nothing more is missing.",
+            "Die fehlenden Effekte waren Eingangstotzeit: 0,00400 ± 0,00012 s und Tote Zone: 0,050 ± 0,012. Mehr fehlt nicht.",
+        ),
+        (
+            "The missing effects are Input delay, and Dead zone or Saturation: this record cannot tell which.",
+            "Es fehlen Eingangstotzeit und Tote Zone oder Sättigung: Diese Aufzeichnung kann nicht sagen, was davon.",
+        ),
+    ] {
+        let said = german().translate(english);
+        assert_eq!((said.text.as_str(), said.complete), (expected, true));
+    }
+}
+
+#[test]
 fn the_keys_are_named_in_german() {
     let mut english = English::default();
     let mut harness = app("lessons", WIDE);

@@ -39,6 +39,8 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     click(&mut teacher, "Make the mystery");
     let page = state(&teacher)["link"].as_str().expect("a link").to_owned();
     assert!(!page.contains("delay") && !page.contains("whale"), "{page}");
+    let hint = state(&teacher)["hint"].as_str().expect("a hint").to_owned();
+    assert!(hint.starts_with("Hand on the mystery"), "{hint}");
     // What is chosen afterwards is not in it.
     let remark = "It is still as it was made: what is chosen has changed since.";
     assert!(teacher.query_by_label(remark).is_none());
@@ -84,6 +86,14 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     student.key_press(Key::Enter);
     finish(&mut student);
     student.get_by_label("Input delay: missed");
+    student.get_by_label("A mystery: its truth is revealed.");
+    assert!(student.query_by_label("Word").is_none());
+    // The word is not asked for again.
+    student.get_by_label("Add Input delay").click_accesskit();
+    finish(&mut student);
+    click(&mut student, "Judge this one");
+    student.get_by_label("Input delay: found");
+    assert!(student.query_by_label("Judge this one").is_none());
 }
 
 #[test]

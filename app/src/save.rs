@@ -11,7 +11,7 @@ use std::sync::mpsc::Sender;
 
 /// A dialog that ends within this time was never shown: nobody closes one so fast.
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) const AT_ONCE: Duration = Duration::from_millis(300);
+pub const AT_ONCE: Duration = Duration::from_millis(300);
 
 /// Files of one name that are kept beside each other, at most.
 #[cfg(not(target_arch = "wasm32"))]
