@@ -396,7 +396,7 @@ fn notation(value: f64, error: f64) -> Option<(usize, i32)> {
     }
     let place = libm::log10(error.abs()).floor() as i32 - 1;
     let size = libm::log10(value.abs().max(error)).floor() as i32;
-    let power = if (-4..=5).contains(&size) { 0 } else { size };
+    let power = if (-3..=5).contains(&size) { 0 } else { size };
     Some(((power - place).clamp(0, 12) as usize, power))
 }
 
@@ -437,9 +437,9 @@ mod tests {
         let found = (9.100_61e-4, 7.7e-8);
         assert_eq!(
             with_error(found.0, found.1, "kg m^2"),
-            "0.000910061 ± 0.000000077 kg m²"
+            "(9.10061 ± 0.00077)e-4 kg m²"
         );
-        assert_eq!(written_like(9.098e-4, found, "kg m^2"), "0.000909800 kg m²");
+        assert_eq!(written_like(9.098e-4, found, "kg m^2"), "9.09800e-4 kg m²");
         assert_eq!(
             written_like(1.3e-5, (1.28e-5, 2.1e-7), "rad"),
             "1.300e-5 rad"
