@@ -4,9 +4,9 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepJob};
 use hysteron_core::effect::{EffectId, Formula, registry};
-use hysteron_core::measurement::{Kind, Measurement};
+use hysteron_core::measurement::{Kind, Measurement, import_csv};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Stranger};
 use hysteron_core::user_model::UserModel;
 use proptest::prelude::*;
@@ -103,6 +103,25 @@ fn a_formula_that_jumps_where_the_body_turns_is_dry_friction() {
         let p = first.parameters.iter().find(|p| p.name == symbol).unwrap();
         assert!((p.value / truth - 1.0).abs() < 0.05, "{p:?}");
     }
+}
+
+/// Viscous friction once more, and a bend of it: the body may rub less by as much.
+#[test]
+fn a_formula_of_what_the_model_has_is_needless() {
+    let csv = include_bytes!("data/drive-02.csv");
+    let measurement = import_csv("drive-02", csv, None).unwrap();
+    let effects = [
+        EffectId::new("coulomb_friction"),
+        EffectId::own("again").unwrap(),
+    ];
+    let model = with_candidate("again: -p*v-q*v^3");
+    let mut job = StepJob::with_model(&measurement, &effects, &model).unwrap();
+    let report = loop {
+        if let Progress::Done(report) = job.advance() {
+            break report;
+        }
+    };
+    assert_eq!(report.needless, effects[1..], "{:?}", report.verdict);
 }
 
 /// The formula is refused at this column with a sentence that has these parts.

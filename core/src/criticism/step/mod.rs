@@ -55,6 +55,8 @@ pub struct StepJob {
     wanted: Vec<&'static dyn Effect>,
     stage: Stage,
     model: Option<Scored>,
+    /// The same before its last effect was added.
+    before_last: Option<Scored>,
     tried: Vec<(&'static dyn Effect, Scored)>,
     /// The model with two more effects, tried together.
     pair: Option<Scored>,
@@ -140,6 +142,7 @@ impl StepJob {
             wanted,
             stage,
             model: None,
+            before_last: None,
             tried: Vec::new(),
             pair: None,
             without: Vec::new(),
@@ -286,6 +289,14 @@ impl StepJob {
                     .get_or_insert_with(|| scored.score.clone());
                 if search.is_none() {
                     self.wanted.clone_from(&scored.fit.structure.effects);
+                    // One that took the place of a part has none before it.
+                    let ids = |effects: &[&dyn Effect]| effects.iter().map(|e| e.id()).collect();
+                    let others: Option<Vec<EffectId>> =
+                        self.wanted.split_last().map(|(_, others)| ids(others));
+                    self.before_last = self
+                        .model
+                        .take()
+                        .filter(|before| Some(ids(&before.fit.structure.effects)) == others);
                 }
                 self.model = Some(scored);
                 match search {
@@ -331,7 +342,11 @@ impl StepJob {
             }
             Stage::Remove { index, search } => {
                 let scored = self.finished(&search);
-                self.without.extend(scored);
+                // What the last effect has led astray may not find back without it.
+                let before = self.before_last.take_if(|_| index + 1 == self.wanted.len());
+                let both = scored.into_iter().chain(before);
+                let better = both.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+                self.without.extend(better);
                 self.remove_stage(index + 1)
             }
             Stage::Swap { place, race } => {
