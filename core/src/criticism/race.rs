@@ -9,6 +9,7 @@ use super::search::{Ground, Search};
 use super::select::is_plain_noise;
 use super::session::Session;
 use crate::effect::Effect;
+use crate::model::Load;
 
 /// After its first iteration on the whole record, an effect gets another one if it is hoped to come within this many
 /// times the best cost.
@@ -187,10 +188,12 @@ impl Contender {
     }
 }
 
-/// Whether a fit holds the body to the ground.
+/// Whether a fit holds the body to the ground, by a joint with a load that does not move; what is met behind a gap that is
+/// seen may well be a wall.
 fn tied_to_ground(fit: &Fit, session: &Session) -> bool {
     let load = fit.structure.model(&fit.values).load;
-    load.is_some_and(|load| load.ties_to_ground(fit.values[0], session.scales.duration))
+    let still = |load: Load| load.is_still(fit.values[0], session.scales.duration);
+    load.is_some_and(still) && !fit.shows_gap()
 }
 
 /// Whether the effect at this place of a fit contains `part`.

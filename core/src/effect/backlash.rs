@@ -359,11 +359,6 @@ impl Effect for Backlash {
         const { &[EffectId::new("joint_compliance")] }
     }
 
-    /// Without a gap that is seen it is a joint, or, with a load that does not move, a spring to the ground.
-    fn marks(&self) -> &'static [&'static str] {
-        &["beta"]
-    }
-
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         if let Some((half_gap, load)) = probe.gap().and_then(|g| Some((g.half_gap, g.load?))) {
             return felt(probe, half_gap, load);

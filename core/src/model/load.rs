@@ -62,12 +62,10 @@ pub struct Load {
 const HEAVIEST: f64 = 1e3;
 
 impl Load {
-    /// Whether its joint holds a body of this inertia to the ground, since it does not move within so long (s), by its
-    /// weight or by its viscous friction; what is met behind a gap may well be a wall.
-    pub fn ties_to_ground(&self, inertia: f64, duration: f64) -> bool {
+    /// Whether it does not move beside a body of this inertia within so long (s), by its weight or by its viscous friction.
+    pub fn is_still(&self, inertia: f64, duration: f64) -> bool {
         let heaviest = HEAVIEST * inertia.abs();
-        let still = self.inertia > heaviest || self.viscous * duration > heaviest;
-        still && self.coupling.half_gap == 0.0
+        self.inertia > heaviest || self.viscous * duration > heaviest
     }
 }
 
