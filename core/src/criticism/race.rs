@@ -62,6 +62,9 @@ const HALFWAY: f64 = 0.3;
 /// not be followed where a simple one explains nearly all.
 const GROUPS: [usize; 2] = [1, 3];
 
+/// Starting points of an effect that are tried without waiting for others.
+const SCANNED_AT_ONCE: usize = 8;
+
 /// The first iteration of an effect must come to within this many times what simpler ones have come to on the scout:
 /// what explains so much less is looked for again when that is in the model.
 const OUTSHONE: f64 = 8.0;
@@ -109,7 +112,7 @@ struct Contender {
 }
 
 impl Contender {
-    /// Begins, tries a starting point, does an iteration, or after all that takes the result.
+    /// Begins, tries some starting points, does an iteration, or after all that takes the result.
     fn advance(&mut self, track: &Track, session: &Session) {
         let Session {
             data,
@@ -123,7 +126,7 @@ impl Contender {
                 let (fit, probed, ground) = (&track.fit, &track.probed, Some(track.ground));
                 Search::adding(data, fit, self.effect, probed, instead, ground, scales)
             });
-            if !search.scan(data, scout, scales) {
+            if (0..SCANNED_AT_ONCE).any(|_| !search.scan(data, scout, scales)) {
                 self.stage = Stage::FirstHeat;
             }
             return;

@@ -78,6 +78,10 @@ const PROMISING: f64 = 0.995;
 /// Share of the unexplained force that may be left by a gap seen in the record for no other to be tried.
 const WELL_SEEN: f64 = 0.2;
 
+/// Times the share that a gap may leave from which on, where all leave more on a smoothed motion, none will leave less than
+/// that on the motion as it was measured.
+const WITHIN_REACH: f64 = 4.0;
+
 fn gap_shares() -> impl Iterator<Item = f64> {
     std::iter::successors(Some(SMALLEST_GAP), |share| {
         Some((share * GAP_RATIO).min(share + GAP_SPACING))
@@ -272,11 +276,33 @@ fn met_again(met: &Bounces) -> Vec<BodyStart> {
 }
 
 /// The best loads behind a gap that nobody has seen, where one may leave less than this share of the unexplained force.
-fn hidden(stretch: &Probe, share: f64) -> Vec<Trial> {
+fn hidden(probe: &Probe, share: f64) -> Vec<Trial> {
+    let stretch = probe.stretch();
+    let smooth = scanned(&stretch);
+    let mut found = behind(&stretch, &promising(&smooth, share));
+    let well_seen = found.first().is_some_and(|trial| trial.left <= WELL_SEEN);
+    if !well_seen
+        && smooth
+            .first()
+            .is_some_and(|best| best.left < WITHIN_REACH * share)
+    {
+        let measured = stretch.as_measured();
+        found.extend(behind(&measured, &promising(&scanned(&measured), share)));
+    }
+    found.retain(|trial| Probe::may_be(trial.left));
+    found
+}
+
+/// Loads behind all gaps, the best first.
+fn scanned(stretch: &Probe) -> Vec<Trial> {
     let gaps = gap_shares().map(|share| share * stretch.scales.travel);
     let guesses = gaps.flat_map(|gap| SCANNED.map(|(friction, k)| Guess::new(gap, friction, k)));
-    let mut scanned = tried(stretch, &guesses.collect::<Vec<_>>());
-    scanned.sort_by(|a, b| a.left.total_cmp(&b.left));
+    let guesses: Vec<Guess> = guesses.collect();
+    best(tried(stretch, &guesses), guesses.len())
+}
+
+/// The best gaps of those that leave less than this share.
+fn promising(scanned: &[Trial], share: f64) -> Vec<f64> {
     let mut gaps: Vec<f64> = Vec::new();
     for trial in scanned {
         let gap = trial.guess.half_gap;
@@ -284,9 +310,7 @@ fn hidden(stretch: &Probe, share: f64) -> Vec<Trial> {
             gaps.push(gap);
         }
     }
-    let mut found = behind(stretch, &gaps);
-    found.retain(|trial| Probe::may_be(trial.left));
-    found
+    gaps
 }
 
 impl Effect for Backlash {
@@ -378,11 +402,7 @@ impl Effect for Backlash {
         if told {
             return met;
         }
-        let stretch = probe.stretch();
-        let mut found = hidden(&stretch, share);
-        if found.first().is_none_or(|trial| trial.left > WELL_SEEN) {
-            found.extend(hidden(&stretch.as_measured(), share));
-        }
+        let found = hidden(probe, share);
         let found = found.iter().filter(|trial| trial.body[1] >= 0.0);
         let found = found.map(|trial| (trial.body, trial.values()));
         met.into_iter().chain(found).collect()

@@ -12,7 +12,7 @@ use super::short;
 
 /// Coefficients of the solution after a duration `h`.
 #[derive(Clone, Copy, Debug)]
-struct Coefficients {
+pub(super) struct Coefficients {
     /// Duration, s.
     h: f64,
     /// `exp(-lambda h)`.
@@ -204,14 +204,16 @@ impl Flow {
 
     /// Like [`Flow::after`], quick for the durations that were prepared.
     pub fn after_cached(&self, m: Motion, w: f64, q: f64, h: f64) -> Motion {
-        let found = self
-            .cache
-            .iter()
-            .find(|c| (c.h - h).abs() <= SAME_DURATION * h);
-        match found {
+        match self.prepared(h) {
             Some(c) => self.apply(c, m, w, q),
             None => self.after(m, w, q, h),
         }
+    }
+
+    /// What was prepared for this duration.
+    pub fn prepared(&self, h: f64) -> Option<&Coefficients> {
+        let mut cache = self.cache.iter();
+        cache.find(|c| (c.h - h).abs() <= SAME_DURATION * h)
     }
 
     /// State after `h` seconds with input `w` and force `q`.
@@ -249,7 +251,8 @@ impl Flow {
         self.b * (m.z + q) - self.lambda * m.v
     }
 
-    fn apply(&self, c: &Coefficients, m: Motion, w: f64, q: f64) -> Motion {
+    /// State after a prepared duration with input `w` and force `q`.
+    pub fn apply(&self, c: &Coefficients, m: Motion, w: f64, q: f64) -> Motion {
         let steady = self.b * (w + q);
         let (x, v) = (
             m.x + m.v * c.phi1 + steady * c.phi2,

@@ -150,6 +150,8 @@ pub(super) struct Follower<'m> {
     flow: Flow,
     pub now: Followed,
     steps: u32,
+    /// Time from a sample to the next for which its flow is prepared, s.
+    usual: f64,
     /// In one step where the load neither turns nor comes or goes.
     swing: Option<Swing>,
     /// Sample up to which it has followed.
@@ -190,6 +192,7 @@ impl<'m> Follower<'m> {
                 mode: Mode::Stick,
             },
             steps: steps as u32,
+            usual: h,
             swing: Swing::new(load, h),
             sample: 0,
             warm_up: load.warm_up(h),
@@ -227,7 +230,9 @@ impl<'m> Follower<'m> {
     ) {
         let plays = self.load.coupling.half_gap > 0.0;
         while self.sample < to {
-            if !plays {
+            if plays {
+                self.coast(position, to, &h, &mut torque);
+            } else {
                 self.hold(position, to, &h, &mut torque);
                 self.glide(position, to, &h, &mut torque);
             }
@@ -276,6 +281,45 @@ impl<'m> Follower<'m> {
             self.now.motion.x = from + swung[0];
             self.now.motion.v = swung[1] / swing.h;
             self.now.mode = Mode::of(self.now.motion.v);
+        }
+    }
+
+    /// Follows up to sample `to` as long as a load behind a gap meets neither side and does not turn: what [`Self::step`]
+    /// does, without asking at each sample what else may happen.
+    fn coast(
+        &mut self,
+        position: &[f64],
+        to: usize,
+        h: impl Fn(usize) -> f64,
+        mut torque: impl FnMut(usize, f64),
+    ) {
+        let (step, dry) = (self.usual, self.load.dry_friction);
+        let rubs = dry > 0.0;
+        let sign = if rubs { self.now.mode.sign() } else { 0.0 };
+        let sticks = rubs && sign == 0.0;
+        let Some(free) = self.flow.prepared(step) else {
+            return;
+        };
+        while self.sample < to && h(self.sample) == step {
+            let Some([from, next]) = position.get(self.sample..self.sample + 2) else {
+                return;
+            };
+            let Motion { x, v, .. } = self.now.motion;
+            if self
+                .load
+                .may_touch(from - x, (next - from) / step - v, step)
+            {
+                return;
+            }
+            if !sticks {
+                let end = self.flow.apply(free, self.now.motion, 0.0, -sign * dry);
+                if rubs && end.v * sign <= 0.0 {
+                    return;
+                }
+                self.now.motion = end;
+            }
+            torque(self.sample, 0.0);
+            self.sample += 1;
         }
     }
 

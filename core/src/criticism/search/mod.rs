@@ -277,17 +277,21 @@ impl Search {
         if self.finalists.is_empty() {
             self.choose_finalists(data, scales);
         }
-        let mut fits = Vec::with_capacity(self.finalists.len());
-        for mut fit in self.finalists.drain(..) {
-            let before = fit.cost;
-            fit.iterate(data, scales);
-            let hoped = if fit.done {
+        let before: Vec<f64> = self.finalists.iter().map(|fit| fit.cost).collect();
+        let all = self.finalists.iter_mut().collect();
+        data.crew
+            .for_each(all, |fit: &mut Fit| fit.iterate(data, scales));
+        let fits = self.finalists.drain(..).zip(before);
+        let hoped = |fit: &Fit, before: f64| {
+            if fit.done {
                 fit.cost
             } else {
                 fit.cost - HOPE * (before - fit.cost).max(0.0)
-            };
-            fits.push((hoped, fit));
-        }
+            }
+        };
+        let mut fits: Vec<(f64, Fit)> = fits
+            .map(|(fit, before)| (hoped(&fit, before), fit))
+            .collect();
         fits.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         self.optimism = fits.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
         for (hoped, fit) in fits {
