@@ -106,6 +106,9 @@ impl Effect for StribeckFriction {
                 (level + excess > 0.0).then(|| {
                     let level = level.max(0.1 * (level + excess));
                     let excess = excess.max(0.1 * level);
+                    // More than the input ever overcomes would hold the body for good.
+                    let share = (probe.largest_input() / (level + excess)).min(1.0);
+                    let (level, excess) = (share * level, share * excess);
                     (fit.left, vec![level, excess, speed, 0.5 * crossed, 0.1])
                 })
             })
