@@ -174,7 +174,7 @@ impl Search {
         for _ in 1..SCAN_ITERATIONS {
             fit.iterate(scout, scales);
         }
-        if self.retries && fit.cost > self.limit {
+        if self.retries && self.scanned.is_empty() && fit.cost > self.limit {
             // Perhaps a wrong body led the new effect astray.
             let mut other = self.begun(&point, scout, scales);
             other.fit_body(scout, scales);
