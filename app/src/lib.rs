@@ -32,7 +32,6 @@ mod shortcuts;
 mod start;
 mod tasks;
 mod theme;
-mod uncertain;
 #[cfg(any(test, target_arch = "wasm32"))]
 mod wire;
 #[cfg(not(target_arch = "wasm32"))]

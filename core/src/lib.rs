@@ -52,4 +52,5 @@ mod simplex;
 pub mod simulate;
 mod sums;
 pub mod tuning;
+pub mod uncertain;
 pub mod user_model;

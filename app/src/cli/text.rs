@@ -6,7 +6,7 @@ use hysteron_core::criticism::{Candidate, Diagnosis, NextExperiment, Parameter, 
 use hysteron_core::effect::{EffectId, name_of, shown_unit};
 use hysteron_core::measurement::Kind;
 
-use crate::uncertain;
+use hysteron_core::uncertain;
 
 const WIDTH: usize = 80;
 

@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 use serde::{Deserialize, Serialize};
 
 use super::session::{Scored, Session};
-use super::verdict::with_error;
 use crate::effect::{Dimension, Place, StepPart};
 use crate::measurement::Kind;
+use crate::uncertain::with_error;
 
 /// Estimates that explain less than this share of the squared error are not shown.
 const LEAST_EXPLAINED: f64 = 0.02;

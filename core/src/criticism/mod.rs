@@ -25,6 +25,7 @@ mod noise;
 mod odd_windows;
 mod output;
 mod probes;
+mod pushes;
 mod race;
 mod report;
 mod residual_test;
@@ -58,4 +59,3 @@ pub use report::{
 };
 pub use residual_test::{ResidualTest, ResidualTestKind};
 pub use step::StepJob;
-pub use verdict::{with_error, written_like};

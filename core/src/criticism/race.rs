@@ -476,7 +476,7 @@ impl Race {
         results
             .filter_map(|c| Some((c.effect, c.result?)))
             .filter(|(effect, fit)| {
-                fit.cost.is_finite() && fit.shows_marks_of(*effect, &session.scales)
+                fit.cost.is_finite() && fit.shows_marks_of(*effect, &session.scales, 1.0)
             })
             .collect()
     }

@@ -11,6 +11,7 @@ use super::knowledge::{self, Knowledge};
 use super::locate::locate;
 use super::memory::is_noise_with_memory;
 use super::probes::{Probed, Probes};
+use super::pushes::is_left_by_random_forces;
 use super::score::{Score, score};
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
@@ -34,9 +35,18 @@ pub(super) struct Scored {
 impl Scored {
     /// Standard errors of the values, widened by what the model leaves and by how that is correlated.
     pub fn standard_errors(&self) -> Vec<f64> {
+        self.fit.standard_errors(self.inflation())
+    }
+
+    /// By how much the variance of the values is widened so.
+    fn inflation(&self) -> f64 {
         let left = self.score.error_fit.powi(2).max(1.0);
-        self.fit
-            .standard_errors(left * self.score.correlation.max(1.0))
+        left * self.score.correlation.max(1.0)
+    }
+
+    /// Whether what makes an effect in the model what it is stands out by these errors.
+    pub fn shows_marks_of(&self, effect: &dyn Effect, scales: &Scales) -> bool {
+        self.fit.shows_marks_of(effect, scales, self.inflation())
     }
 }
 
@@ -47,12 +57,17 @@ pub(super) enum Rest {
     Noise,
     /// Noise that remembers for some samples, and so is larger than neighbouring samples show.
     NoiseWithMemory,
+    /// What small random forces leave, and noise.
+    RandomForces,
     /// More than noise.
     More,
 }
 
 /// Error up to which noise that remembers some samples may be larger than their differences show.
 const MOST_REMEMBERED: f64 = 2.0;
+
+/// Error up to which small random forces may be what is left.
+const MOST_PUSHED: f64 = 2.5;
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
@@ -397,9 +412,19 @@ impl Session {
             Rest::Noise
         } else if scored.score.error < MOST_REMEMBERED && remembers() {
             Rest::NoiseWithMemory
+        } else if self.is_left_by_random_forces(scored) {
+            Rest::RandomForces
         } else {
             Rest::More
         }
+    }
+
+    /// Whether small random forces leave what a fit of the whole record leaves.
+    fn is_left_by_random_forces(&self, scored: &Scored) -> bool {
+        let (data, fit) = (self.whole(), &scored.fit);
+        let error = scored.score.error;
+        let probe = || self.probe_of(data, fit);
+        error < MOST_PUSHED && is_left_by_random_forces(data, &fit.motion, error, probe)
     }
 
     /// Where a fit of the whole record fails.

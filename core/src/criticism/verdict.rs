@@ -9,6 +9,7 @@ use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
+use crate::uncertain::{with_error, written_like};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -146,6 +147,15 @@ pub(super) fn add_rest(
     if verdict.complete {
         if let Some(before) = verdict.text.strip_suffix(ALL_NOISE) {
             verdict.text = before.to_owned();
+        }
+        if rest == Rest::RandomForces {
+            let _ = write!(
+                verdict.text,
+                " is noise, and what small random forces leave, such as those of a controller that is faster than the \
+                 record: {error:.2} times the noise. It goes on a random walk, and depends neither on the motion nor on \
+                 the input."
+            );
+            return;
         }
         let _ = write!(
             verdict.text,
@@ -361,53 +371,6 @@ fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
     )
 }
 
-/// Value and uncertainty with two digits of uncertainty, such as `0.0406 ± 0.0012 N m`.
-pub fn with_error(value: f64, error: f64, unit: &str) -> String {
-    let unit = unit_behind(unit);
-    match notation(value, error) {
-        None => format!("{value:.4e}{unit}"),
-        Some((digits, 0)) => format!("{value:.digits$} ± {error:.digits$}{unit}"),
-        Some((digits, power)) => {
-            let scale = 10_f64.powi(power);
-            format!(
-                "({:.digits$} ± {:.digits$})e{power}{unit}",
-                value / scale,
-                error / scale
-            )
-        }
-    }
-}
-
-/// A value with the digits and in the notation in which [`with_error`] writes another value and its error.
-pub fn written_like(value: f64, (other, error): (f64, f64), unit: &str) -> String {
-    let unit = unit_behind(unit);
-    match notation(other, error) {
-        None => format!("{value:.4e}{unit}"),
-        Some((digits, 0)) => format!("{value:.digits$}{unit}"),
-        Some((digits, power)) => format!("{:.digits$}e{power}{unit}", value / 10_f64.powi(power)),
-    }
-}
-
-/// Decimals, and the power of ten that is written behind them, so that two digits of the uncertainty are seen;
-/// nothing where there is none.
-fn notation(value: f64, error: f64) -> Option<(usize, i32)> {
-    if !error.is_finite() || error <= 0.0 {
-        return None;
-    }
-    let place = libm::log10(error.abs()).floor() as i32 - 1;
-    let size = libm::log10(value.abs().max(error)).floor() as i32;
-    let power = if (-3..=5).contains(&size) { 0 } else { size };
-    Some(((power - place).clamp(0, 12) as usize, power))
-}
-
-fn unit_behind(unit: &str) -> String {
-    if unit == "1" {
-        String::new()
-    } else {
-        format!(" {}", shown_unit(unit))
-    }
-}
-
 fn in_registry_order(mut ids: Vec<EffectId>) -> Vec<EffectId> {
     // Effects of the user's own come last.
     ids.sort_by_key(|id| {
@@ -415,36 +378,4 @@ fn in_registry_order(mut ids: Vec<EffectId>) -> Vec<EffectId> {
         at.unwrap_or(usize::MAX)
     });
     ids
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{with_error, written_like};
-
-    #[test]
-    fn digits_follow_the_uncertainty() {
-        assert_eq!(
-            with_error(0.040_563, 0.000_21, "N m"),
-            "0.04056 ± 0.00021 N m"
-        );
-        assert_eq!(with_error(29.87, 0.43, "s"), "29.87 ± 0.43 s");
-        assert_eq!(with_error(1.28e-5, 2.1e-7, "rad"), "(1.280 ± 0.021)e-5 rad");
-        assert_eq!(with_error(2.0, 0.1, "kg m^2"), "2.00 ± 0.10 kg m²");
-    }
-
-    #[test]
-    fn a_value_beside_another_is_written_like_it() {
-        let found = (9.100_61e-4, 7.7e-8);
-        assert_eq!(
-            with_error(found.0, found.1, "kg m^2"),
-            "(9.10061 ± 0.00077)e-4 kg m²"
-        );
-        assert_eq!(written_like(9.098e-4, found, "kg m^2"), "9.09800e-4 kg m²");
-        assert_eq!(
-            written_like(1.3e-5, (1.28e-5, 2.1e-7), "rad"),
-            "1.300e-5 rad"
-        );
-        assert_eq!(written_like(3.0, (29.87, 0.43), "1"), "3.00");
-        assert_eq!(written_like(3.0, (2.0, f64::NAN), "1"), "3.0000e0");
-    }
 }

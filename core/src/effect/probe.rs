@@ -451,16 +451,22 @@ impl Probe {
         };
         let firsts = 0..=self.spans.len() - count;
         let first = firsts.max_by(|a, b| power(a).total_cmp(&power(b)));
-        let part = first.unwrap_or(0)..first.unwrap_or(0) + count;
-        let mut stretch = Self {
-            spans: self.spans[part.clone()].to_vec(),
-            target: self.target[part.clone()].to_vec(),
-            base: self.base[part.clone()].to_vec(),
-            known: self.known[part].to_vec(),
+        let first = first.unwrap_or(0);
+        self.of_windows(|window| (first..first + count).contains(&window))
+    }
+
+    /// The same in the windows that are `chosen` by their number.
+    fn of_windows(&self, chosen: impl Fn(usize) -> bool) -> Self {
+        let chosen: Vec<usize> = (0..self.spans.len()).filter(|w| chosen(*w)).collect();
+        let mut part = Self {
+            spans: chosen.iter().map(|w| self.spans[*w]).collect(),
+            target: chosen.iter().map(|w| self.target[*w].clone()).collect(),
+            base: chosen.iter().map(|w| self.base[*w].clone()).collect(),
+            known: chosen.iter().map(|w| self.known[*w].clone()).collect(),
             ..self.clone()
         };
-        stretch.base_left = stretch.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
-        stretch
+        part.base_left = part.solve(&[], 1).map_or(f64::NAN, |(_, left)| left);
+        part
     }
 
     /// The same with loads that follow the position as it was measured: what is free of noise is rounded where a load is

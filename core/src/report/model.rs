@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 
 use super::html::{Cell, escape, table};
 use super::{ReportInput, short};
-use crate::criticism::{NextExperiment, Parameter, Step, with_error};
+use crate::criticism::{NextExperiment, Parameter, Step};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
+use crate::uncertain::with_error;
 use crate::user_model::Status;
 
 /// Equations of the baseline; `F` is the sum of what the effects add.

@@ -7,7 +7,7 @@ use hysteron_core::user_model::UserModel;
 use super::{Command, Compare};
 use crate::language::tr;
 use crate::theme;
-use crate::uncertain::with_error;
+use hysteron_core::uncertain::with_error;
 
 impl Compare {
     pub(super) fn message_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -5,7 +5,7 @@ use hysteron_core::effect::name_of;
 
 use crate::language::tr;
 use crate::theme;
-use crate::uncertain::{interval, with_error};
+use hysteron_core::uncertain::{interval, with_error};
 
 /// Size of the bar that shows an interval, points.
 const BAR: egui::Vec2 = egui::vec2(70.0, 12.0);

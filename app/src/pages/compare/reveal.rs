@@ -11,7 +11,7 @@ use crate::language::tr;
 use crate::motion;
 use crate::tasks::RevealTask;
 use crate::theme;
-use crate::uncertain::{with_error, written_like};
+use hysteron_core::uncertain::{with_error, written_like};
 
 /// Width that the table of numbers needs, points; in a narrower window each is a line of its own.
 const TABLE: f32 = 600.0;

@@ -13,7 +13,7 @@ use crate::bar;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
-use crate::uncertain::with_error;
+use hysteron_core::uncertain::with_error;
 
 pub(super) fn ui(
     page: &Compare,

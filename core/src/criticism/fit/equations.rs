@@ -230,13 +230,14 @@ impl Fit {
     }
 
     /// Whether what makes an effect in the model what it is could be seen beside the noise, and within the way of the record.
-    pub fn shows_marks_of(&self, effect: &dyn Effect, scales: &Scales) -> bool {
+    /// `inflation` is that of the variance of the values.
+    pub fn shows_marks_of(&self, effect: &dyn Effect, scales: &Scales, inflation: f64) -> bool {
         let marks = effect.marks();
         let mut effects = self.structure.effects.iter();
         let Some(place) = effects.position(|e| e.id() == effect.id()) else {
             return true;
         };
-        let errors = self.standard_errors(1.0);
+        let errors = self.standard_errors(inflation);
         let mut values = self.structure.range(place).zip(effect.parameters());
         values.all(|(j, p)| {
             let stands_out = self.values[j] > MARKED * errors[j];

@@ -93,7 +93,7 @@ impl StepJob {
                 && outweighs(without.error, model.score.error)
         };
         let idle = |without: &Score| !helps(without, &model.score) && !explains(without);
-        let shows = |e: &dyn Effect| model.fit.shows_marks_of(e, &self.session.scales);
+        let shows = |e: &dyn Effect| model.shows_marks_of(e, &self.session.scales);
         self.wanted
             .iter()
             .zip(&self.without)

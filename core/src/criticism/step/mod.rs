@@ -371,7 +371,11 @@ impl StepJob {
     /// What a race came to.
     fn scored_all(&self, race: Race) -> Vec<(&'static dyn Effect, Scored)> {
         let scored = |(effect, fit)| (effect, self.session.scored(fit));
-        race.finish(&self.session).into_iter().map(scored).collect()
+        let tried = race.finish(&self.session).into_iter().map(scored);
+        let shows = |(effect, scored): &(&'static dyn Effect, Scored)| {
+            scored.shows_marks_of(*effect, &self.session.scales)
+        };
+        tried.filter(shows).collect()
     }
 
     /// Whether the effect at `place` is part of the user's model.

@@ -27,7 +27,7 @@ impl StepJob {
         let rest = self.session.rest(&whole);
         let findings = match rest {
             Rest::More => self.session.findings(&whole),
-            Rest::Noise | Rest::NoiseWithMemory => Vec::new(),
+            Rest::Noise | Rest::NoiseWithMemory | Rest::RandomForces => Vec::new(),
         };
         let verdict = (suggestion.is_none() && needless.is_empty()).then(|| {
             let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
@@ -181,7 +181,7 @@ fn rounded(error: f64) -> f64 {
 /// What a perfect model would leave: where noise remembers, more than neighbouring samples show.
 fn noise_floor(rest: Rest, score: &Score) -> f64 {
     match rest {
-        Rest::NoiseWithMemory => score.error_fit.max(NOISE_FLOOR),
+        Rest::NoiseWithMemory | Rest::RandomForces => score.error_fit.max(NOISE_FLOOR),
         Rest::Noise | Rest::More => NOISE_FLOOR,
     }
 }

@@ -115,6 +115,19 @@ impl Probe {
         })
     }
 
+    /// Share of the squared error in every other window that a force along `axis`, as the windows between show it,
+    /// explains there, 0 to 1; `None` where the record is too short to tell.
+    pub fn foretold(&self, axis: &[f64]) -> Option<f64> {
+        let [shown, others] = [0, 1].map(|odd| self.of_windows(|window| window % 2 == odd));
+        let parts = shown.steps(axis, Place::Force)?.parts;
+        let at = |a: &f64| parts.partition_point(|part| part.to <= *a);
+        let force = |a: &f64| parts.get(at(a)).or(parts.last()).map_or(0.0, |p| p.value);
+        let force: Vec<f64> = axis.iter().map(force).collect();
+        let fit = others.regress(&[&force])?;
+        let follows = fit.coefficients[0] > 0.0;
+        Some(if follows { 1.0 - fit.left } else { 0.0 })
+    }
+
     /// Answer of the outputs in a window to each part.
     fn columns(
         &self,

@@ -1,6 +1,6 @@
-//! Values with their uncertainty, as they are read in the app and on the terminal.
+//! Values with their uncertainty, as they are read in a verdict, a report, the app and on the terminal.
 
-use hysteron_core::effect::shown_unit;
+use crate::effect::shown_unit;
 
 /// Values from the first to the second of these are written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-3..1e5;
@@ -32,7 +32,7 @@ impl Notation {
         let power = if PLAIN.contains(&size) && readable {
             0
         } else {
-            size.log10().floor() as i32
+            libm::log10(size).floor() as i32
         };
         let spread = error / 10_f64.powi(power);
         if !spread.is_finite() {
@@ -119,7 +119,7 @@ fn alone(value: f64) -> String {
         };
     }
     let decimals = if size > 0.0 {
-        DIGITS - 1 - size.log10().floor() as i32
+        DIGITS - 1 - libm::log10(size).floor() as i32
     } else {
         0
     };
