@@ -86,8 +86,8 @@ pub(super) fn model(kind: Kind, values: &[f64]) -> Model {
 /// Inertia and time constant stay within this factor of the first guess.
 pub(super) const GUESS_FACTOR: f64 = 1e4;
 
-/// Longest time constant, in record lengths: a longer one cannot be told from an integrator.
-const LONGEST_SHARE: f64 = 10.0;
+/// Longest time constant, in record lengths: a longer one is an integrator to all intents.
+const LONGEST_SHARE: f64 = 1e4;
 
 /// Values moved into what is physically possible.
 pub(super) fn clamp(kind: Kind, values: &mut [f64], scales: &Scales) {

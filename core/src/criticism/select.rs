@@ -50,6 +50,9 @@ const NOISE_CORRELATION: f64 = 2.0;
 /// held-back part.
 const FITTED_NOISE_ERROR: f64 = 1.3;
 
+/// Standard deviations by which the size of a residual of few values may differ from that of the noise.
+const CHANCE: f64 = 3.0;
+
 /// Error up to which what is left is noise even if it is correlated.
 const SURE_NOISE_ERROR: f64 = 1.05;
 
@@ -183,10 +186,17 @@ pub(super) fn outweighs(before: f64, after: f64) -> bool {
     explained > after.powi(2) - 1.0
 }
 
+/// Error up to which a residual of so many values may be noise, where it may be up to `usual` in a long record: its size
+/// and that of the noise, of as many values, are each known to so much only.
+fn noise_error(usual: f64, count: f64) -> f64 {
+    usual.max(1.0 + CHANCE * (1.0 / count).sqrt())
+}
+
 /// Whether what is left looks like noise in itself.
 pub(super) fn is_plain_noise(score: &Score) -> bool {
-    let uncorrelated = score.error < NOISE_ERROR && score.correlation < NOISE_CORRELATION;
-    score.error_fit < FITTED_NOISE_ERROR
+    let most = noise_error(NOISE_ERROR, score.held_count);
+    let uncorrelated = score.error < most && score.correlation < NOISE_CORRELATION;
+    score.error_fit < noise_error(FITTED_NOISE_ERROR, score.fit_count)
         && (score.error < SURE_NOISE_ERROR || score.within_counts || uncorrelated)
 }
 

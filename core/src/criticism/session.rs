@@ -408,7 +408,9 @@ impl Session {
         } else {
             SMALL_SHARE
         };
-        if is_noise(&scored.score, self.first(scored), small) {
+        if self.is_too_heavy(&scored.fit) {
+            Rest::More
+        } else if is_noise(&scored.score, self.first(scored), small) {
             Rest::Noise
         } else if scored.score.error < MOST_REMEMBERED && remembers() {
             Rest::NoiseWithMemory
@@ -417,6 +419,13 @@ impl Session {
         } else {
             Rest::More
         }
+    }
+
+    /// Whether all that the input gave in the whole record could not have brought a body as heavy as that of a fit to its
+    /// usual speed: such a model explains a motion by where its windows begin, and nothing by the input.
+    fn is_too_heavy(&self, fit: &Fit) -> bool {
+        let (scales, body) = (&self.scales, fit.values[0]);
+        self.kind() == Kind::Drive && body * scales.speed > scales.force * scales.duration
     }
 
     /// Whether small random forces leave what a fit of the whole record leaves.

@@ -357,7 +357,17 @@ fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
     let Some(id) = class.first() else {
         return String::new();
     };
-    let main = parameters.iter().find(|p| p.effect == Some(*id));
+    let telling = effect::find(*id).map_or(1, Effect::telling);
+    let own = parameters.iter().filter(|p| p.effect == Some(*id));
+    // Of several that may tell of an effect, that which does; the first of equals.
+    let sureness = |p: &Parameter| (p.value / p.std_error).abs();
+    let main = own.take(telling).reduce(|best, other| {
+        if sureness(other) > sureness(best) {
+            other
+        } else {
+            best
+        }
+    });
     main.map_or_else(
         || name_of(*id).to_owned(),
         |p| {

@@ -201,10 +201,15 @@ impl ParameterSpec {
         )
     }
 
-    /// Whether a wave is at the end of its range: the record shows too little of it to tell that it repeats.
+    /// Whether a wave is at the end of its range, so that the record shows too little of it to tell that it repeats, or a
+    /// displacement over which friction builds up is most of the way, so that it may as well be a spring.
     pub fn is_too_long(&self, value: f64, scales: &Scales) -> bool {
         let longest = SEEN_TURN * scales.of(self.dimension);
-        self.range == Range::Repeating && value <= AT_END * longest
+        match self.range {
+            Range::Repeating => value <= AT_END * longest,
+            Range::Long => value >= MOST_OF_THE_WAY * scales.travel,
+            _ => false,
+        }
     }
 
     /// `value` moved into the range.
@@ -239,6 +244,9 @@ impl ParameterSpec {
         }
     }
 }
+
+/// Share of the travel from which on a displacement is most of the way.
+const MOST_OF_THE_WAY: f64 = 0.3;
 
 /// Typical sizes of one experiment, from which effects take their starting values.
 #[derive(Clone, Copy, Debug, PartialEq)]

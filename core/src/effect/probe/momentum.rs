@@ -22,6 +22,9 @@ const LONGEST: usize = 512;
 const NOISE: f64 = 0.1;
 const LEAST: usize = 40;
 
+/// Stretches at least of a body that rests for most of the record: whether they are enough is asked of what they tell.
+const FEW: usize = 12;
+
 /// Standard deviations of its noise above which a velocity is one.
 const MOVES: f64 = 3.0;
 
@@ -99,14 +102,14 @@ impl Stretches {
 
     /// Those in which the body moves one way throughout, if there are enough: dry friction holds a body at rest with any
     /// force up to its level.
-    fn in_motion(&self) -> Option<Self> {
+    fn in_motion(&self, least: usize) -> Option<Self> {
         let still = MOVES * self.noise;
         let moves = |from: &usize| {
             let part = &self.velocity[*from..=from + self.samples];
             part.iter().all(|v| *v > still) || part.iter().all(|v| *v < -still)
         };
         let kept: Vec<bool> = self.begins.iter().map(moves).collect();
-        let enough = kept.iter().filter(|k| **k).count() >= LEAST;
+        let enough = kept.iter().filter(|k| **k).count() >= least;
         enough.then(|| Self {
             begins: only(&kept, &self.begins),
             impulse: only(&kept, &self.impulse),
@@ -218,7 +221,7 @@ impl Probe {
     /// The body as it moves, whatever dry friction there is beside, where that contradicts an inertia of `present`: all that
     /// the input gave could not have moved it so.
     pub fn other_body(&self, present: f64) -> Option<Rubbing> {
-        let moving = self.in_stretches(LOOKED_AT)?.in_motion()?;
+        let moving = self.in_stretches(LOOKED_AT)?.in_motion(FEW)?;
         let dry = moving.sums(self.scales.step, |k| moving.velocity[k].signum());
         let [gain, way, duration] = &moving.known;
         let (told, left) = moving.shared_among(&[gain, way, duration, &dry])?;
@@ -237,7 +240,7 @@ impl Probe {
     /// Body and a missing force of this signature while the body moves, where that leaves clearly less than no force.
     pub fn balanced_in_motion(&self, force: impl Fn(f64, f64) -> f64) -> Option<Balance> {
         let all = self.in_stretches(LOOKED_AT)?;
-        let stretches = all.in_motion().unwrap_or(all);
+        let stretches = all.in_motion(LEAST).unwrap_or(all);
         let at = |k: usize| force(self.position[k], stretches.velocity[k]);
         let alone = stretches.balance(&[])?;
         let sums = stretches.sums(self.scales.step, at);
