@@ -4,7 +4,9 @@
 //! errors that are widened by what the model leaves.
 
 use super::score::Score;
-use super::select::{fall, helps, is_plain_noise, matters, same, suffices, usual_fall};
+use super::select::{
+    fall, helps, is_all_that_counters_show, is_plain_noise, matters, same, suffices, usual_fall,
+};
 use super::session::Scored;
 use crate::effect::Effect;
 use crate::measurement::Kind;
@@ -70,7 +72,8 @@ pub(super) fn helps_clearly(model: &Scored, with: &Scored, first: &Score) -> boo
     let Some((last, _)) = effects.split_last() else {
         return false;
     };
-    helps(&model.score, &with.score)
+    !is_all_that_counters_show(&model.score)
+        && helps(&model.score, &with.score)
         && with.score.fit_cost < model.score.fit_cost
         && (last.is_of_record() || matters(&model.score, &with.score, first))
         && is_seen(model, with, effects.len() - 1)

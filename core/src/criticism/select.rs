@@ -200,6 +200,12 @@ pub(super) fn is_plain_noise(score: &Score) -> bool {
         && (score.error < SURE_NOISE_ERROR || score.within_counts || uncorrelated)
 }
 
+/// Whether a model says all that counters show: what is left lies within their steps, which repeat with the motion, so that
+/// any effect may lower it a little.
+pub(super) fn is_all_that_counters_show(score: &Score) -> bool {
+    score.within_counts && score.error < 1.0 && score.error_fit < 1.0
+}
+
 /// Whether what is left is noise, or a `small` share of what the baseline left at first.
 pub(super) fn is_noise(score: &Score, first: &Score, small: f64) -> bool {
     is_plain_noise(score)

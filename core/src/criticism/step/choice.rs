@@ -93,12 +93,19 @@ impl StepJob {
                 && outweighs(without.error, model.score.error)
         };
         let idle = |without: &Score| !helps(without, &model.score) && !explains(without);
+        // Of two that do the same between them, the one of which nothing is seen.
+        let unseen = |place: usize, without: &Scored| {
+            is_plain_noise(&without.score) && !is_certain(without, model, place)
+        };
         let shows = |e: &dyn Effect| model.shows_marks_of(e, &self.session.scales);
         self.wanted
             .iter()
             .zip(&self.without)
-            .filter(|(e, without)| idle(&without.score) || !shows(**e))
-            .map(|(e, _)| e.id())
+            .enumerate()
+            .filter(|(place, (e, without))| {
+                idle(&without.score) || !shows(**e) || unseen(*place, without)
+            })
+            .map(|(_, (e, _))| e.id())
             .partition(|id| self.session.knowledge.has(*id))
     }
 

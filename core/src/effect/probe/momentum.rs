@@ -23,7 +23,7 @@ const NOISE: f64 = 0.1;
 const LEAST: usize = 40;
 
 /// Stretches at least of a body that rests for most of the record: whether they are enough is asked of what they tell.
-const FEW: usize = 12;
+const FEW: usize = 6;
 
 /// Standard deviations of its noise above which a velocity is one.
 const MOVES: f64 = 3.0;
