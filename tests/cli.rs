@@ -43,14 +43,36 @@ fn written(name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-#[test]
+/// The program where no window can be opened.
 #[cfg(target_os = "linux")]
-fn without_a_display_it_says_so_and_shows_a_diagnosis() {
+fn blind() -> Command {
     let mut command = hysteron();
     for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
         command.env_remove(name);
     }
-    let output = command.output().unwrap();
+    command
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_a_file_is_diagnosed() {
+    let (good, bad) = (data("drive-02.csv"), written("none.csv", b""));
+    let output = blind().args([&good, &bad]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("no display"), "{said}");
+    let shown = String::from_utf8_lossy(&output.stdout);
+    assert!(shown.contains("Missing: Coulomb friction"), "{shown}");
+    let output = blind().arg(&bad).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("none.csv"), "{said}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_it_says_so_and_shows_a_diagnosis() {
+    let output = blind().output().unwrap();
     let (said, shown) = (
         String::from_utf8_lossy(&output.stderr),
         String::from_utf8_lossy(&output.stdout),
@@ -97,7 +119,11 @@ fn bad_input_is_one_line_and_code_2() {
 fn wrong_arguments_are_one_line_and_code_2() {
     let run = |arguments: &[&str]| hysteron().args(arguments).output().unwrap();
     refused(&run(&["diagnose"]), &["FILE.csv", "--help"]);
-    refused(&run(&["frobnicate"]), &["frobnicate"]);
+    refused(
+        &run(&["frobnicate"]),
+        &["frobnicate", "no such file or command"],
+    );
+    refused(&run(&["no-such-file.csv"]), &["no-such-file.csv"]);
     refused(&run(&["diagnose", "a.csv", "--format", "xml"]), &["xml"]);
     refused(
         &run(&["diagnose", "a.csv", "--kind", "rocket"]),

@@ -130,6 +130,39 @@ fn wait(harness: &mut App, what: &str, holds: impl Fn(&Value) -> bool) {
     panic!("no {what}: {}", state(harness));
 }
 
+/// The app, from another page, with this file named on the command line, as soon as the state is so.
+fn started_with(name: &str, bytes: &[u8], what: &str, holds: impl Fn(&Value) -> bool) -> App {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, bytes).expect("a file");
+    let mut harness = app("backlash", WIDE);
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open_path(&ctx, &path);
+    wait(&mut harness, what, holds);
+    harness
+}
+
+#[test]
+fn a_file_of_the_command_line_is_opened_in_compare() {
+    let drive = drive();
+    let harness = started_with("given.csv", drive.as_bytes(), "file", |state| {
+        state["file"] == "given.csv"
+    });
+    assert_eq!(state(&harness)["page"], "compare");
+    assert_eq!(found(&harness), expected());
+    // One that does not say what its columns are.
+    let harness = started_with("given.mat", &matrix(), "form", |state| {
+        state["mapping"].is_object()
+    });
+    assert_eq!(state(&harness)["page"], "compare");
+    let harness = started_with("given-bad.csv", &[0xff, 0xfe, 0], "sentence", |state| {
+        state["message"].is_string()
+    });
+    let message = state(&harness)["message"].clone();
+    let message = message.as_str().expect("a sentence");
+    assert!(message.contains("given-bad.csv"), "{message}");
+    assert!(texts(&harness).iter().any(|t| t == message), "{message}");
+}
+
 #[test]
 fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     let expected = expected();

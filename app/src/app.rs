@@ -14,6 +14,8 @@ use crate::bar::{self, Bar};
 use crate::document::{Document, not_enclosed};
 #[cfg(target_arch = "wasm32")]
 use crate::edges;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::files;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
@@ -121,6 +123,16 @@ impl HysteronApp {
     pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
         if let Some(page) = self.go_to_files() {
             page.open(ctx, name, bytes);
+        }
+    }
+
+    /// Opens a measurement from where it is in the file system, as the user does by a dialog.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn open_path(&mut self, ctx: &egui::Context, path: &std::path::Path) {
+        let file: egui::DroppedFileHandle = std::sync::Arc::new(files::Given::new(path));
+        self.go("compare");
+        if let Some(page) = self.pages.get_mut(self.front) {
+            page.open_dropped(ctx, &file);
         }
     }
 

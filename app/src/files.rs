@@ -1,5 +1,7 @@
-//! Files that a user opens: by a dialog, by dropping them on the window, or once more, natively and on the web.
+//! Files that a user opens: by a dialog, by dropping them on the window, by the command line, or once more, natively and on the web.
 
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -61,6 +63,30 @@ impl Read {
             bytes,
             reading: Reading::default(),
         }
+    }
+}
+
+/// A file that is named on the command line: it is opened like one that is dropped.
+#[cfg(not(target_arch = "wasm32"))]
+#[derive(Debug)]
+pub struct Given(PathBuf);
+
+#[cfg(not(target_arch = "wasm32"))]
+impl Given {
+    /// The file at `path`, which is found from elsewhere too the next time.
+    pub fn new(path: &Path) -> Self {
+        Self(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()))
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+impl egui::DroppedFile for Given {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|e| e.to_string())
     }
 }
 

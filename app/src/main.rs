@@ -2,12 +2,13 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> std::process::ExitCode {
-    if let Some(code) = hysteron::cli::run(std::env::args_os()) {
-        return code;
-    }
-    match hysteron::run_native() {
+    let file = match hysteron::cli::run(std::env::args_os()) {
+        hysteron::cli::Outcome::Ended(code) => return code,
+        hysteron::cli::Outcome::Window(file) => file,
+    };
+    match hysteron::run_native(file.clone()) {
         Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(line) => hysteron::cli::without_display(&line),
+        Err(line) => hysteron::cli::without_display(&line, file.as_deref()),
     }
 }
 

@@ -1,5 +1,8 @@
 //! How the app starts: a window on a native machine, a canvas on the web.
 
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::PathBuf;
+
 use crate::HysteronApp;
 #[cfg(target_arch = "wasm32")]
 use crate::language::{self, Language, tr};
@@ -9,14 +12,14 @@ use crate::theme;
 /// What to say where no window can be opened.
 #[cfg(not(target_arch = "wasm32"))]
 const NO_DISPLAY: &str = "no display to open a window on: use the web page (cargo xtask web && cargo xtask serve) \
-     or the command line (hysteron diagnose FILE.csv), as here with a measurement of its own";
+     or the command line (hysteron diagnose FILE.csv), as here";
 
-/// Opens the window and returns when it is closed.
+/// Opens the window, with this file if there is one, and returns when it is closed.
 ///
 /// # Errors
 /// One line for the terminal where no window can be opened.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn run_native() -> Result<(), String> {
+pub fn run_native(file: Option<PathBuf>) -> Result<(), String> {
     if !display_exists() {
         return Err(NO_DISPLAY.to_owned());
     }
@@ -33,7 +36,13 @@ pub fn run_native() -> Result<(), String> {
     eframe::run_native(
         "hysteron",
         options,
-        Box::new(|context| Ok(Box::new(HysteronApp::restored(context)))),
+        Box::new(|context| {
+            let mut app = HysteronApp::restored(context);
+            if let Some(file) = file {
+                app.open_path(&context.egui_ctx, &file);
+            }
+            Ok(Box::new(app))
+        }),
     )
     .map_err(|e| format!("{NO_DISPLAY} ({})", one_line(&e.to_string())))
 }

@@ -11,18 +11,22 @@ mod limit_cycle_drive;
 mod simulate;
 mod text;
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
 
 pub use text::render;
 
-/// A laboratory for relay feedback systems. Without a command, the app opens.
+/// A laboratory for relay feedback systems. Without a command, the app opens, with a measurement if one is given.
 #[derive(Debug, Parser)]
-#[command(name = "hysteron", version)]
+#[command(name = "hysteron", version, args_conflicts_with_subcommands = true)]
 struct Arguments {
+    /// A measurement to open in the app, as CSV or MATLAB file; of many the first
+    #[arg(value_name = "FILE.csv")]
+    files: Vec<PathBuf>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -57,26 +61,46 @@ fn dispatch(command: &Command) -> ExitCode {
     }
 }
 
-/// Runs the subcommand in `arguments` (the first of which is the program); `None` if there is
-/// none, so that the app should start.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Option<ExitCode> {
-    Some(match Arguments::try_parse_from(arguments) {
-        Ok(Arguments { command: None }) => return None,
+/// What becomes of the program's arguments.
+#[derive(Debug)]
+pub enum Outcome {
+    /// All was done.
+    Ended(ExitCode),
+    /// The app should start, with this file if there is one.
+    Window(Option<PathBuf>),
+}
+
+/// Runs the subcommand in `arguments`, the first of which is the program.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Outcome {
+    Outcome::Ended(match Arguments::try_parse_from(arguments) {
         Ok(Arguments {
             command: Some(command),
+            ..
         }) => dispatch(&command),
+        Ok(Arguments { files, .. }) => match files.into_iter().next() {
+            // A command that is misspelled is no file either.
+            Some(file) if !file.exists() => {
+                let name = file.display();
+                let line = format!("{name}: there is no such file or command; see hysteron --help");
+                fail(&line, 2)
+            }
+            file => return Outcome::Window(file),
+        },
         // Help and version are asked for, not errors.
         Err(error) if !error.use_stderr() => finish(Ok(error.to_string())),
         Err(error) => finish(Err(usage_error(&error))),
     })
 }
 
-/// What the program does where there is no display: says so, and diagnoses a measurement that comes with it.
-pub fn without_display(line: &str) -> ExitCode {
+/// What the program does where there is no display: says so, and diagnoses `file`, or a measurement that comes with it.
+pub fn without_display(line: &str, file: Option<&Path>) -> ExitCode {
     complain(line);
-    let arguments = Arguments::try_parse_from(["hysteron", "diagnose", "built-in"]);
-    match arguments.map(|a| a.command) {
-        Ok(Some(Command::Diagnose(arguments))) => finish(diagnose::of_built_in(&arguments)),
+    let name = file.map_or(OsStr::new("built-in"), Path::as_os_str);
+    let diagnose = ["hysteron", "diagnose", "--"].map(OsStr::new);
+    let arguments = Arguments::try_parse_from(diagnose.into_iter().chain([name]));
+    match (arguments.map(|a| a.command), file) {
+        (Ok(Some(command)), Some(_)) => dispatch(&command),
+        (Ok(Some(Command::Diagnose(arguments))), None) => finish(diagnose::of_built_in(&arguments)),
         _ => ExitCode::from(2),
     }
 }
