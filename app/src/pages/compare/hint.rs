@@ -21,8 +21,7 @@ impl Compare {
         };
         if let Some(effect) = report.suggestion {
             let with = [self.effects.as_slice(), &[effect]].concat();
-            let name = name_of(effect);
-            return set_effects(format!("{name} helps most: add it."), &with);
+            return set_effects(helps_most(report, effect), &with);
         }
         if let Some(effect) = report.needless.first() {
             let mut without = self.effects.clone();
@@ -115,6 +114,24 @@ impl Compare {
         }
         let sentence = "A drive that answers late: there one effect is not enough.";
         Hint::open(sentence, "v1;compare;compare.file=drive-12")
+    }
+}
+
+/// What helps most, and what does so as well.
+fn helps_most(report: &StepReport, effect: EffectId) -> String {
+    let name = name_of(effect);
+    let mut candidates = report.step.candidates.iter();
+    let card = candidates.find(|c| c.effects == [effect]);
+    match card.map_or(&[][..], |c| &c.equivalent_to) {
+        [] => format!("{name} helps most: add it."),
+        [other] => format!(
+            "{name} or {} helps most; this record cannot tell which.",
+            name_of(*other)
+        ),
+        others => format!(
+            "{name} or one of {} others helps most; this record cannot tell which.",
+            others.len()
+        ),
     }
 }
 
