@@ -60,7 +60,11 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
 /// What the other kinds of experiment would do.
 fn other_experiments(out: &mut String, proposal: &NextExperiment) {
     if !proposal.others.is_empty() {
-        paragraph(out, "  ", "Other experiments would leave:");
+        paragraph(
+            out,
+            "  ",
+            "In other experiments the models would differ by:",
+        );
     }
     for other in &proposal.others {
         let times = other.times_noise();

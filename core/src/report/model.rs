@@ -59,7 +59,7 @@ pub(super) fn experiments(proposal: &NextExperiment) -> String {
     let mut out = String::new();
     table(
         &mut out,
-        &["Experiment", "The wrong one leaves (times the noise)"],
+        &["Experiment", "The models differ by (times the noise)"],
         &rows,
     );
     out

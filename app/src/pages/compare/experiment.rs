@@ -130,7 +130,9 @@ fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::Ui) {
     egui::CollapsingHeader::new(tr("What other experiments would tell"))
         .id_salt(("trials", index))
         .show(ui, |ui| {
-            ui.small(tr("What the wrong one would leave, in units of the noise."));
+            ui.small(tr(
+                "By how much the models would differ, in units of the noise.",
+            ));
             for trial in &trials {
                 ui.horizontal(|ui| {
                     // Below the noise nothing is seen, far above it all is: a logarithmic bar from 0.01.

@@ -32,8 +32,8 @@ pub(super) fn text(proposal: &NextExperiment) -> String {
     }
     if !proposal.sufficient {
         return format!(
-            "No experiment within the limits tells {names} apart. The best of those tried is {program}: the wrong one \
-             would leave only {} times the noise. A larger input or a longer record would help.",
+            "No experiment within the limits tells {names} apart. The best of those tried is {program}: the models \
+             would differ by only {} times the noise. A larger input or a longer record would help.",
             times(proposal.separation)
         );
     }
@@ -47,8 +47,8 @@ pub(super) fn text(proposal: &NextExperiment) -> String {
         format!(" Measure for {} s.", short(proposal.duration))
     };
     format!(
-        "To tell {names} apart, measure again with {program}. The wrong one would then leave {} times the noise; in this \
-         record it leaves {}.{enough}",
+        "To tell {names} apart, measure again with {program}. The models would then differ by {} times the noise; in \
+         this record they differ by {}.{enough}",
         times(proposal.separation),
         times(proposal.today),
     )
