@@ -59,8 +59,28 @@ fn what_cannot_be_told_apart_comes_with_an_experiment_that_opens_in_explore() {
         "{relay}"
     );
     assert_eq!(number(&relay, "bias"), 0.0);
-    click(&mut harness, "Compare");
+    // It says what it is for, until something else is shown there.
+    let purpose =
+        "Experiment that tells Gain asymmetry and Constant load apart, for drive-05. Here if it is";
+    harness.get_by_label(&format!("{purpose} Gain asymmetry."));
+    picture(&mut harness, "explore_experiment");
+    click(&mut harness, "Back to Compare");
+    assert_eq!(state(&harness)["page"], "compare");
+    // What has stood for a while is gone back to.
+    harness.run_steps(90);
     let relay = asymmetric(&mut harness, 3);
+    harness.get_by_label(&format!("{purpose} Constant load."));
+    press(&mut harness, "Undo");
+    assert_eq!(state(&harness)["page"], "compare");
+    assert!(state(&harness)["purpose"].is_null());
+    asymmetric(&mut harness, 3);
+    press(&mut harness, "Dismiss");
+    assert!(
+        harness
+            .query_by_label_contains("Experiment that tells")
+            .is_none()
+    );
+    assert_eq!(state(&harness)["page"], "explore");
     assert!(number(&relay, "bias").abs() > 0.01, "{relay}");
     assert_eq!(number(&relay, "asymmetry"), 0.0);
 }

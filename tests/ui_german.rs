@@ -294,6 +294,11 @@ fn what_a_record_cannot_decide_is_said_in_german() {
         ],
     );
     english.look(&mut harness);
+    unfold(&mut harness, &["Ausprobieren"]);
+    harness.get_by_label("Zurück zum Vergleich");
+    harness.get_by_label_contains(
+        "Versuch zur Unterscheidung (Verstärkungsasymmetrie und Konstante Last), für drive-05.",
+    );
     english.assert_none();
 }
 

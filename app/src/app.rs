@@ -22,7 +22,7 @@ use crate::notice::{self, Notice};
 use crate::pages::{Command, Desk, Hint, View, chart_menu, chart_zoom, registry, typed};
 use crate::shortcuts;
 use crate::theme::{self, Look};
-use crate::{lessons, link};
+use crate::{lessons, link, purpose};
 
 /// Width of a window below which it is taken for a phone's, points.
 const PHONE: f32 = 500.0;
@@ -156,8 +156,9 @@ impl HysteronApp {
         let opened = Document::read(text, &self.untouched)
             .and_then(|document| document.check_shape(&self.untouched).map(|()| document))
             .and_then(|document| self.apply(ctx, &document.within(&present)));
-        if let Err(sentence) = &opened {
-            self.notice = Some(Notice::refused(sentence));
+        match &opened {
+            Ok(()) => self.desk.purpose = None,
+            Err(sentence) => self.notice = Some(Notice::refused(sentence)),
         }
         opened
     }
@@ -217,6 +218,7 @@ impl HysteronApp {
             egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, hint, desk));
         }
         let foot = ui.available_rect_before_wrap().bottom();
+        purpose::ui(ui, &present.page, desk);
         if let Some(page) = self.pages.get_mut(self.front) {
             desk.zooms.follow(page.id(), &present.settings[page.id()]);
             chart_zoom::begin(ui.ctx(), desk.zooms.of(page.id()));
@@ -342,8 +344,13 @@ impl HysteronApp {
                 let _ = self.open_link(ctx, &text);
             }
             Command::Go(id) => self.go(id),
-            Command::SetLoop(input) => self.desk.relay_loop = *input,
+            Command::SetLoop(input) => {
+                self.desk.relay_loop = *input;
+                self.desk.purpose = None;
+            }
+            Command::SetPurpose(purpose) => self.desk.purpose = purpose,
             Command::Set(page, field, value) => {
+                self.desk.purpose.take_if(|purpose| purpose.page == page);
                 let page = self.pages.iter_mut().find(|p| p.id() == page);
                 let refused = page.and_then(|page| {
                     let mut settings = page.settings();
@@ -370,6 +377,9 @@ impl HysteronApp {
         {
             self.notice = Some(Notice::refused(sentence));
         }
+        // What opened the experiment is taken back.
+        let page = self.document().page;
+        self.desk.purpose.take_if(|purpose| purpose.page != page);
     }
 
     fn choose_look(&mut self, ctx: &egui::Context, look: Look) {
@@ -420,6 +430,12 @@ impl HysteronApp {
         state["link"] = self.link().into();
         state["notice"] = self.notice.as_ref().map(Notice::text).into();
         state["size"] = serde_json::json!(self.size);
+        state["purpose"] = self
+            .desk
+            .purpose
+            .as_ref()
+            .map(|p| p.sentence.clone())
+            .into();
         state["plots"] = serde_json::json!(self.plots);
         state["targets"] = self.desk.targets.to_json();
         state

@@ -25,6 +25,7 @@ mod motion;
 mod notice;
 mod packed;
 mod pages;
+mod purpose;
 mod reading;
 mod recent;
 mod save;

@@ -28,6 +28,7 @@ use crate::hook::Targets;
 use crate::language::Language;
 use crate::layout::Side;
 use crate::lessons::Study;
+use crate::purpose::Purpose;
 use crate::recent::{Recent, Recents};
 use crate::save::Document;
 use crate::theme::Look;
@@ -116,6 +117,8 @@ pub struct Desk {
     pub study: Study,
     /// Files that were opened before.
     pub recent: Recents,
+    /// What the experiment is for that one of them shows.
+    pub purpose: Option<Box<Purpose>>,
     /// What of the plots is in view.
     pub zooms: AllZooms,
     /// How wide someone has made the panel beside the plots.
@@ -157,6 +160,8 @@ pub enum Command {
     Go(&'static str),
     /// Sets the loop that the pages are about.
     SetLoop(Box<ExploreInput>),
+    /// Says what the experiment that was just set is for, or no more.
+    SetPurpose(Option<Box<Purpose>>),
     /// Sets one field of what is set on the page with this id.
     Set(&'static str, &'static str, serde_json::Value),
     /// Puts the link to what is on the screen on the clipboard.

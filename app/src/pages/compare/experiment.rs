@@ -1,6 +1,6 @@
 //! What these data cannot tell apart, and the experiment that can.
 
-use hysteron_core::criticism::{Limits, NextExperiment, Opening, Program, Trial};
+use hysteron_core::criticism::{FittedModel, Limits, NextExperiment, Opening, Program, Trial};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
 
@@ -9,6 +9,7 @@ use crate::hook::Targets;
 use crate::language::tr;
 use crate::pages;
 use crate::pages::typed::Typed;
+use crate::purpose::Purpose;
 use crate::theme;
 
 /// Width of the widest bar, points.
@@ -37,48 +38,56 @@ pub(super) fn ui(
             ui.strong(tr("Try this experiment"));
         }
         ui.label(tr(&proposal.text));
-        opening_ui(index, proposal, ui, targets, commands);
+        opening_ui(page, index, proposal, ui, targets, commands);
         trials_ui(index, proposal, ui);
         limits_ui(page, index, proposal, ui, targets, commands);
     });
 }
 
 /// What shows the experiment with the first model at its largest gain.
-pub(super) fn preview(proposal: &NextExperiment) -> Option<Vec<pages::Command>> {
+pub(super) fn preview(page: &Compare, proposal: &NextExperiment) -> Option<Vec<pages::Command>> {
     let Program::Relay { gains, .. } = &proposal.program else {
         return None;
     };
     let (model, gain) = (proposal.models.first()?, gains.last()?);
     let opening = proposal.opening(model, *gain);
     let opening = opening.filter(|_| proposal.sufficient)?;
-    Some(opened(opening).1)
+    Some(opened(opening, purpose(page, proposal, model)).1)
 }
 
-/// The page that shows a loop, and what opens it there.
-fn opened(opening: Opening) -> (&'static str, Vec<pages::Command>) {
-    match opening {
-        Opening::Loop(input) => (
-            "Explore",
-            vec![
-                pages::Command::SetLoop(input),
-                pages::Command::Go("explore"),
-            ],
-        ),
+/// What the experiment is for, with one of the models.
+fn purpose(page: &Compare, proposal: &NextExperiment, model: &FittedModel) -> String {
+    let names: Vec<&str> = proposal.class.iter().map(|id| name_of(*id)).collect();
+    let file = page.measurement.as_ref().map_or("", |m| m.name.as_str());
+    format!(
+        "Experiment that tells {} apart, for {file}. Here if it is {}.",
+        names.join(" and "),
+        name_of(model.effect)
+    )
+}
+
+/// The page that shows a loop, and what opens it there and says its purpose.
+fn opened(opening: Opening, sentence: String) -> (&'static str, Vec<pages::Command>) {
+    let (page, title, set) = match opening {
+        Opening::Loop(input) => ("explore", "Explore", pages::Command::SetLoop(input)),
         Opening::Drive(run) => {
             let run = serde_json::to_value(*run).unwrap_or_default();
-            (
-                "Backlash",
-                vec![
-                    pages::Command::Set("backlash", "run", run),
-                    pages::Command::Go("backlash"),
-                ],
-            )
+            let set = pages::Command::Set("backlash", "run", run);
+            ("backlash", "Backlash", set)
         }
-    }
+    };
+    let purpose = Purpose {
+        page,
+        sentence,
+        from: ("compare", "Back to Compare"),
+    };
+    let say = pages::Command::SetPurpose(Some(Box::new(purpose)));
+    (title, vec![set, say, pages::Command::Go(page)])
 }
 
 /// One row for each model: its loop under the relay at each gain.
 fn opening_ui(
+    page: &Compare,
     index: usize,
     proposal: &NextExperiment,
     ui: &mut egui::Ui,
@@ -105,7 +114,7 @@ fn opening_ui(
                 let Some(opening) = proposal.opening(model, *gain) else {
                     continue;
                 };
-                let (place, command) = opened(opening);
+                let (place, command) = opened(opening, purpose(page, proposal, model));
                 let unit = if proposal.input_unit == "1" {
                     String::new()
                 } else {

@@ -42,7 +42,10 @@ impl Compare {
             return Hint::say(format!("Correct the known {name} in your model."));
         }
         if verdict.missing.iter().any(|class| class.len() > 1) {
-            let preview = verdict.experiments.iter().find_map(experiment::preview);
+            let preview = verdict
+                .experiments
+                .iter()
+                .find_map(|proposal| experiment::preview(self, proposal));
             return match preview {
                 Some(commands) => Hint {
                     sentence:
