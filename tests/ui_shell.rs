@@ -294,6 +294,68 @@ fn a_panel_that_was_made_wider_is_so_at_the_next_start() {
 }
 
 #[test]
+fn what_stands_in_a_panel_does_not_move_its_edge() {
+    let path = format!("{}/../tests/data/drive-05.csv", env!("CARGO_MANIFEST_DIR"));
+    let bytes = std::fs::read(path).expect("a file of the tests");
+    for (size, look) in [
+        (WIDE, "Dark"),
+        ([1000.0, 700.0], "Dark"),
+        ([760.0, 700.0], "Dark"),
+        ([1000.0, 700.0], "Projector"),
+    ] {
+        let mut harness = app("compare", size);
+        if look != "Dark" {
+            harness.run_steps(2);
+            for label in ["More", look] {
+                if let Some(found) = harness.query_by_label(label) {
+                    found.click();
+                    harness.run_steps(5);
+                }
+            }
+        }
+        let ctx = harness.ctx.clone();
+        let name = "a-drive-with-a-long-name-of-the-tenth-of-may.csv";
+        harness.state_mut().open(&ctx, name, &bytes);
+        let mut edges = Vec::new();
+        let mut look = |harness: &App, what: &str| {
+            let found = harness.query_by_label("Load model ...");
+            edges.extend(found.map(|button| (what.to_owned(), button.rect().left())));
+        };
+        while state(&harness)["busy"] == true {
+            harness.step();
+            look(&harness, "busy");
+        }
+        finish(&mut harness);
+        look(&harness, "done");
+        for label in [
+            "Fingerprints",
+            "An effect of your own",
+            "Add Gain asymmetry",
+            "Limits of the experiment",
+            "What other experiments would tell",
+            "Set a limit",
+            "Equation",
+            "Over time",
+            "Effects that do not help",
+            "Explore with gain",
+            "Back to Compare",
+        ] {
+            let found = harness.query_all_by_label_contains(label).last();
+            found.inspect(egui_kittest::Node::click_accesskit);
+            for _ in 0..5 {
+                harness.step();
+                look(&harness, label);
+            }
+            finish(&mut harness);
+            look(&harness, label);
+        }
+        let first = edges.first().expect("a panel").1;
+        let moved = edges.iter().find(|(_, edge)| (edge - first).abs() > 0.5);
+        assert!(moved.is_none(), "{first} {moved:?}");
+    }
+}
+
+#[test]
 fn the_app_opens_as_it_was_left() {
     let mut harness = app("tune", WIDE);
     finish(&mut harness);

@@ -1,5 +1,7 @@
 //! How a page divides its window.
 
+use crate::theme;
+
 /// Width below which everything stands in one column, points.
 pub const NARROW: f32 = 700.0;
 
@@ -42,6 +44,17 @@ impl Side {
             self.chosen = Some(width);
         }
     }
+}
+
+/// What stands at the side of a page and scrolls: whatever is in it, the edge of its panel stays where it is.
+pub fn side_ui(ui: &mut egui::Ui, name: &str, content: impl FnOnce(&mut egui::Ui)) {
+    theme::scroll(name).show(ui, |ui| {
+        let mut room = ui.available_rect_before_wrap();
+        let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(room));
+        content(&mut inner);
+        room.max.y = inner.min_rect().bottom();
+        ui.advance_cursor_after_rect(room);
+    });
 }
 
 /// Whether two plots have room side by side.

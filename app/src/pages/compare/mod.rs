@@ -290,8 +290,9 @@ impl Compare {
                     .default_size(desk.side.width(ui, 400.0))
                     .min_size(320.0)
                     .show(ui, |ui| {
-                        theme::scroll("compare_side")
-                            .show(ui, |ui| side::ui(self, ui, targets, &mut commands));
+                        layout::side_ui(ui, "compare_side", |ui| {
+                            side::ui(self, ui, targets, &mut commands);
+                        });
                     });
                 desk.side.note(ui, whole - ui.available_width());
                 egui::CentralPanel::default().show(ui, |ui| {
