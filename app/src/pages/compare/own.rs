@@ -33,16 +33,26 @@ impl Typed {
 
     /// As the command line takes it.
     pub fn line(&self) -> String {
-        format!("{}: {}", self.name.trim(), self.formula.trim())
+        format!("{}: {}", self.id(), self.formula.trim())
+    }
+
+    /// The name as files and links have it: in small letters, with `_` between words.
+    fn id(&self) -> String {
+        let words: Vec<&str> = self
+            .name
+            .split([' ', '-'])
+            .filter(|w| !w.is_empty())
+            .collect();
+        words.join("_").to_lowercase()
     }
 
     /// Names of the parameters, or what is wrong.
     fn check(&self) -> Result<Vec<String>, String> {
-        if EffectId::own(self.name.trim()).is_none() {
+        if EffectId::own(&self.id()).is_none() {
             return Err(format!("name: {}", EffectId::OWN_NAMES));
         }
         let formula = Formula {
-            name: self.name.trim().to_owned(),
+            name: self.id(),
             text: self.formula.trim().to_owned(),
         };
         formula.parameters(self.kind).map_err(|e| e.to_string())
@@ -89,6 +99,10 @@ pub(super) fn ui(
             ui.end_row();
         });
         let checked = typed.check();
+        let id = typed.id();
+        if checked.is_ok() && id != typed.name {
+            ui.label(tr(format!("In the model it is called {id}.")));
+        }
         match &checked {
             Ok(names) => ui.label(tr(format!("To be fitted: {}", names.join(", ")))),
             Err(error) => ui.colored_label(ui.visuals().warn_fg_color, tr(error)),
@@ -102,5 +116,24 @@ pub(super) fn ui(
     });
     if typed != before {
         commands.push(Command::Type(typed));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_as_one_writes_it_becomes_one_of_files() {
+        let named = |name: &str| Typed {
+            name: name.to_owned(),
+            ..Typed::example(Kind::Drive)
+        };
+        let line = named(" Bump at  the-stop 2 ").line();
+        assert_eq!(line, "bump_at_the_stop_2: -a*exp(-((x-b)/c)^2)");
+        assert!(named("Bump at the stop").check().is_ok());
+        for name in ["", "2nd", "a:b", "größer", "Coulomb friction"] {
+            assert!(named(name).check().is_err(), "{name}");
+        }
     }
 }
