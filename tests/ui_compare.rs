@@ -165,6 +165,35 @@ fn the_finding_that_is_shaded_lies_in_the_plots() {
 }
 
 #[test]
+fn in_a_low_window_each_plot_is_scrolled_to_with_its_axis() {
+    let size = [1000.0, 700.0];
+    let mut harness = opened("drive-05", size);
+    let last = "Plot: v1 - model [rad/s] over time [s]";
+    let plot = |harness: &App| harness.get_by_label(last).rect();
+    assert!(plot(&harness).height() >= 60.0, "{}", plot(&harness));
+    harness.hover_at(egui::pos2(300.0, 400.0));
+    harness.step();
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: egui::vec2(0.0, -2000.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    });
+    harness.run_steps(60);
+    // Beneath it are the labels of time, and the hint.
+    assert!(
+        plot(&harness).bottom() < size[1] - 60.0,
+        "{}",
+        plot(&harness)
+    );
+    // All four are in view then.
+    let first = harness.get_by_label("Plot: x1 [rad] over time [s]").rect();
+    assert!(first.top() > 60.0, "{first}");
+    picture(&mut harness, "compare_low");
+}
+
+#[test]
 fn a_narrow_window_shows_the_next_experiment_too() {
     let mut harness = opened("drive-05", NARROW);
     press(&mut harness, "Add Gain asymmetry");
@@ -204,7 +233,12 @@ fn the_hint_follows_what_is_open_and_what_was_found() {
     says(&harness, "helps most: add it");
     // What no data of it can decide.
     let mut harness = opened("drive-05", WIDE);
-    press(&mut harness, "Add Gain asymmetry");
+    says(
+        &harness,
+        "Gain asymmetry or Constant load helps most; this record cannot tell which",
+    );
+    press(&mut harness, "Try it");
+    assert_eq!(state(&harness)["effects"][1], "gain_asymmetry");
     says(&harness, "Only another experiment");
     press(&mut harness, "Try it");
     assert_eq!(state(&harness)["page"], "explore");

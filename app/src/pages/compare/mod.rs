@@ -298,9 +298,9 @@ impl Compare {
                 egui::CentralPanel::default().show(ui, |ui| {
                     self.answer_ui(ui);
                     self.message_ui(ui, &mut commands);
-                    self.findings_ui(ui, &mut commands);
-                    self.looks_ui(ui, targets, &mut commands);
                     theme::scroll("compare").show(ui, |ui| {
+                        self.findings_ui(ui, &mut commands);
+                        self.looks_ui(ui, targets, &mut commands);
                         let height = ui.available_height();
                         self.evidence_ui(ui, height, targets, &mut commands);
                     });
