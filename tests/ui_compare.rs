@@ -4,7 +4,7 @@
 mod ui;
 
 use egui_kittest::kittest::Queryable as _;
-use ui::{App, NARROW, WIDE, app, click, finish, picture, show, state, texts};
+use ui::{App, NARROW, WIDE, app, click, finish, picture, show, state, texts, type_over};
 
 /// Compare with a measurement of the tests, after the first fit.
 fn opened(file: &str, size: [f32; 2]) -> App {
@@ -162,6 +162,20 @@ fn the_finding_that_is_shaded_lies_in_the_plots() {
     finish(&mut harness);
     marked(&harness, "41");
     picture(&mut harness, "compare_finding");
+}
+
+#[test]
+fn an_effect_of_ones_own_is_named_as_one_writes() {
+    let mut harness = opened("drive-05", WIDE);
+    press(&mut harness, "An effect of your own");
+    harness.get_by_label("Add your effect").scroll_to_me();
+    finish(&mut harness);
+    type_over(&mut harness, "Name", "Bump at the stop");
+    finish(&mut harness);
+    harness.get_by_label("In the model it is called bump_at_the_stop.");
+    picture(&mut harness, "compare_own_effect");
+    press(&mut harness, "Add your effect");
+    assert_eq!(state(&harness)["effects"][1], "bump_at_the_stop");
 }
 
 #[test]
