@@ -256,6 +256,11 @@ impl Session {
         self.baseline.as_ref().unwrap_or(&scored.score)
     }
 
+    /// Whether models are compared on a part of the record.
+    pub fn is_thinned(&self) -> bool {
+        self.full.is_some()
+    }
+
     /// The whole record.
     pub fn whole(&self) -> &Data {
         self.full.as_ref().unwrap_or(&self.data)

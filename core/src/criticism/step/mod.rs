@@ -322,6 +322,7 @@ impl StepJob {
             }
             Stage::Try(race) => {
                 self.tried = self.scored_all(race);
+                self.drop_what_the_whole_denies();
                 self.contradicted = self.contradictions();
                 self.revisit_stage()
             }
@@ -376,6 +377,21 @@ impl StepJob {
             scored.shows_marks_of(*effect, &self.session.scales)
         };
         tried.filter(shows).collect()
+    }
+
+    /// Of a long record all decides: what would be added by a part of it, and leaves more on the whole, is not tried.
+    fn drop_what_the_whole_denies(&mut self) {
+        let Some(model) = self.model.as_ref().filter(|_| self.session.is_thinned()) else {
+            return;
+        };
+        let present = self.session.completed(model).score.error;
+        while let Some((effect, with)) = self.suggestion(model) {
+            if self.session.completed(with).score.error < present {
+                break;
+            }
+            let denied = effect.id();
+            self.tried.retain(|(effect, _)| effect.id() != denied);
+        }
     }
 
     /// Whether the effect at `place` is part of the user's model.
