@@ -18,7 +18,11 @@ fn tank(seed: u64, rate: f64, time_constant: f64, switched: usize, samples: usiz
     let mut level = 0.0;
     let mut csv = "t [s],u [%],y [m]\n".to_owned();
     for k in 0..samples {
-        let u = if k / switched % 2 == 0 { 20.0 } else { -20.0 };
+        let u = if (k / switched).is_multiple_of(2) {
+            20.0
+        } else {
+            -20.0
+        };
         let shown = level + NOISE * random.normal();
         writeln!(csv, "{},{u},{shown:.5}", 10 * k).unwrap();
         for _ in 0..100 {
