@@ -5,10 +5,9 @@ mod support;
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
-use hysteron_core::measurement::import_csv;
 use hysteron_core::rig::Random;
-use support::diagnosis::{classes, finish};
+use support::diagnosis::classes;
+use support::file::diagnose;
 
 const INERTIA: f64 = 8e-4;
 const VISCOUS: f64 = 6e-3;
@@ -50,10 +49,6 @@ fn record(seed: u64, force: Force) -> String {
         }
     }
     csv
-}
-
-fn diagnose(csv: &str) -> Diagnosis {
-    finish(DiagnosisJob::new(&import_csv("pushed", csv.as_bytes(), None).unwrap()).unwrap())
 }
 
 const SAID: &str = "small random forces";

@@ -4,9 +4,8 @@ mod support;
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
-use hysteron_core::measurement::import_csv;
-use support::diagnosis::{classes, finish};
+use support::diagnosis::classes;
+use support::file::diagnose;
 use support::value::check_value;
 
 const INERTIA: f64 = 4e-3;
@@ -54,10 +53,6 @@ fn indexing(level: f64) -> String {
         }
     }
     csv
-}
-
-fn diagnose(csv: &str) -> Diagnosis {
-    finish(DiagnosisJob::new(&import_csv("table", csv.as_bytes(), None).unwrap()).unwrap())
 }
 
 #[test]

@@ -4,15 +4,15 @@ mod support;
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
-use hysteron_core::measurement::import_csv;
+use hysteron_core::criticism::Diagnosis;
 use hysteron_core::rig::Random;
-use support::diagnosis::{classes, finish};
+use support::diagnosis::classes;
+use support::file::diagnose;
 
 const NOISE: f64 = 0.05;
 
-/// A tank that fills at `gain` over `time_constant` per second and unit of its input, switched every so many samples, with so
-/// many in all, ten seconds apart, as a file.
+/// A tank that fills at this `rate` per second and unit of its input, and empties with this time constant, s; its input is
+/// `switched` every so many of its samples, ten seconds apart. As a file.
 fn tank(seed: u64, rate: f64, time_constant: f64, switched: usize, samples: usize) -> String {
     let mut random = Random::new(seed);
     let mut level = 0.0;
@@ -30,10 +30,6 @@ fn tank(seed: u64, rate: f64, time_constant: f64, switched: usize, samples: usiz
         }
     }
     csv
-}
-
-fn diagnose(csv: &str) -> Diagnosis {
-    finish(DiagnosisJob::new(&import_csv("tank", csv.as_bytes(), None).unwrap()).unwrap())
 }
 
 fn check_nothing_is_missing(d: &Diagnosis) {

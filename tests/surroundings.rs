@@ -4,11 +4,12 @@ mod support;
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepJob};
+use hysteron_core::criticism::{Diagnosis, Progress, StepJob};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::import_csv;
 use hysteron_core::rig::Random;
-use support::diagnosis::{classes, finish};
+use support::diagnosis::classes;
+use support::file::diagnose;
 use support::value::check_value;
 
 const DELAY: EffectId = EffectId::new("input_delay");
@@ -59,10 +60,6 @@ fn heater(seed: u64, wall: f64, dead_time: f64, off: usize) -> String {
         }
     }
     csv
-}
-
-fn diagnose(csv: &str) -> Diagnosis {
-    finish(DiagnosisJob::new(&import_csv("heater", csv.as_bytes(), None).unwrap()).unwrap())
 }
 
 fn check(d: &Diagnosis, missing: &[&[&str]], parameters: &[(&str, f64)]) {

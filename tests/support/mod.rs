@@ -14,6 +14,7 @@
 pub mod case;
 pub mod diagnosis;
 pub mod drive_cases;
+pub mod file;
 pub mod parameter;
 pub mod process_cases;
 pub mod proposed;
