@@ -50,7 +50,7 @@ pub(super) fn is_left_by_random_forces(
     let mut shown = data.outputs.iter().zip(&walks);
     let seen = shown.any(|(output, walks)| output.is_velocity && *walks == Some(true));
     seen && !walks.contains(&Some(false)) && {
-        let probe = probe();
+        let [shown, others] = probe().halves();
         let axes = [
             &data.time,
             &data.velocity_estimate(),
@@ -59,7 +59,7 @@ pub(super) fn is_left_by_random_forces(
         ];
         let beyond = (1.0 - 1.0 / (error * error)).max(f64::MIN_POSITIVE);
         let told = |axis: &&Vec<f64>| {
-            let told = probe.foretold(axis);
+            let told = shown.foretells(&others, axis);
             told.is_none_or(|share| share > FORETOLD * beyond)
         };
         !axes.iter().any(told)

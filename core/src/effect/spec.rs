@@ -183,6 +183,9 @@ pub const SEEN_TURN: f64 = 0.75 * TAU;
 /// A wave within this factor of the longest is at the end of its range.
 const AT_END: f64 = 1.001;
 
+/// Share of the travel from which on a displacement is most of the way.
+const MOST_OF_THE_WAY: f64 = 0.3;
+
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
 
@@ -204,9 +207,8 @@ impl ParameterSpec {
     /// Whether a wave is at the end of its range, so that the record shows too little of it to tell that it repeats, or a
     /// displacement over which friction builds up is most of the way, so that it may as well be a spring.
     pub fn is_too_long(&self, value: f64, scales: &Scales) -> bool {
-        let longest = SEEN_TURN * scales.of(self.dimension);
         match self.range {
-            Range::Repeating => value <= AT_END * longest,
+            Range::Repeating => value <= AT_END * (SEEN_TURN * scales.of(self.dimension)),
             Range::Long => value >= MOST_OF_THE_WAY * scales.travel,
             _ => false,
         }
@@ -244,9 +246,6 @@ impl ParameterSpec {
         }
     }
 }
-
-/// Share of the travel from which on a displacement is most of the way.
-const MOST_OF_THE_WAY: f64 = 0.3;
 
 /// Typical sizes of one experiment, from which effects take their starting values.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -115,11 +115,15 @@ impl Probe {
         })
     }
 
-    /// Share of the squared error in every other window that a force along `axis`, as the windows between show it,
-    /// explains there, 0 to 1; `None` where the record is too short to tell.
-    pub fn foretold(&self, axis: &[f64]) -> Option<f64> {
-        let [shown, others] = [0, 1].map(|odd| self.of_windows(|window| window % 2 == odd));
-        let parts = shown.steps(axis, Place::Force)?.parts;
+    /// Every other window, and the windows between.
+    pub fn halves(&self) -> [Self; 2] {
+        [0, 1].map(|odd| self.of_windows(|window| window % 2 == odd))
+    }
+
+    /// Share of the squared error in `others` that a force along `axis`, as the windows here show it, explains there, 0 to 1;
+    /// `None` where the record is too short to tell.
+    pub fn foretells(&self, others: &Self, axis: &[f64]) -> Option<f64> {
+        let parts = self.steps(axis, Place::Force)?.parts;
         let at = |a: &f64| parts.partition_point(|part| part.to <= *a);
         let force = |a: &f64| parts.get(at(a)).or(parts.last()).map_or(0.0, |p| p.value);
         let force: Vec<f64> = axis.iter().map(force).collect();
