@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use hysteron_core::criticism::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
 use hysteron_core::effect::{EffectId, name_of, shown_unit};
 use hysteron_core::measurement::Kind;
-
 use hysteron_core::uncertain;
 
 const WIDTH: usize = 80;

@@ -2,12 +2,12 @@
 
 use hysteron_core::criticism::StepReport;
 use hysteron_core::effect::{self, EffectId, name_of};
+use hysteron_core::uncertain::with_error;
 use hysteron_core::user_model::UserModel;
 
 use super::{Command, Compare};
 use crate::language::tr;
 use crate::theme;
-use hysteron_core::uncertain::with_error;
 
 impl Compare {
     pub(super) fn message_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

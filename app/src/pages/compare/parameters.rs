@@ -2,10 +2,10 @@
 
 use hysteron_core::criticism::{Parameter, StepReport};
 use hysteron_core::effect::name_of;
+use hysteron_core::uncertain::{interval, with_error};
 
 use crate::language::tr;
 use crate::theme;
-use hysteron_core::uncertain::{interval, with_error};
 
 /// Size of the bar that shows an interval, points.
 const BAR: egui::Vec2 = egui::vec2(70.0, 12.0);

@@ -3,6 +3,7 @@
 use egui::RichText;
 use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
+use hysteron_core::uncertain::{with_error, written_like};
 
 use super::{Command, Compare};
 use crate::hook::Targets;
@@ -11,7 +12,6 @@ use crate::language::tr;
 use crate::motion;
 use crate::tasks::RevealTask;
 use crate::theme;
-use hysteron_core::uncertain::{with_error, written_like};
 
 /// Width that the table of numbers needs, points; in a narrower window each is a line of its own.
 const TABLE: f32 = 600.0;

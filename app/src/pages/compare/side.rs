@@ -5,6 +5,7 @@ use hysteron_core::criticism::{Candidate, StepReport};
 use hysteron_core::effect;
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
+use hysteron_core::uncertain::with_error;
 
 use super::parts::Part;
 use super::waterfall::{BAR_WIDTH, bar_ui};
@@ -13,7 +14,6 @@ use crate::bar;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
-use hysteron_core::uncertain::with_error;
 
 pub(super) fn ui(
     page: &Compare,
