@@ -1,0 +1,71 @@
+//! Every page in every look and in a phone's window: pictures to be looked at.
+
+use crate::support::ui::{App, app, click, finish, picture, show};
+use hysteron::HysteronApp;
+use hysteron::language::Language;
+
+/// A small window and a phone's, points.
+const SMALL: [f32; 2] = [1100.0, 720.0];
+const PHONE: [f32; 2] = [390.0, 844.0];
+
+/// Shows a page in a state in which it has something to show and nothing moves.
+fn still(harness: &mut App, page: &str) {
+    let more = match page {
+        "start" => ";start.paused=20",
+        "explore" => ";explore.paused=20;explore.margin=true",
+        "backlash" => ";backlash.paused=1",
+        "compare" => ";compare.file=drive-02",
+        "tune" => ";tune.step=loops",
+        _ => "",
+    };
+    show(harness, &format!("v1;{page}{more}"));
+}
+
+/// Pictures of these pages, under names that begin so.
+fn pictures(harness: &mut App, pages: &[&str], name: &str) {
+    for page in pages {
+        still(harness, page);
+        picture(harness, &format!("{name}_{page}"));
+    }
+}
+
+fn every_page(look: &str) {
+    let mut harness = app("start", SMALL);
+    click(&mut harness, "Look");
+    click(&mut harness, look);
+    let name = format!("look_{}", look.to_lowercase());
+    pictures(&mut harness, &HysteronApp::default().page_ids(), &name);
+}
+
+#[test]
+fn dark() {
+    every_page("Dark");
+}
+
+#[test]
+fn light() {
+    every_page("Light");
+}
+
+#[test]
+fn projector() {
+    every_page("Projector");
+}
+
+#[test]
+fn on_a_phone() {
+    let mut harness = app("start", PHONE);
+    pictures(&mut harness, &HysteronApp::default().page_ids(), "phone");
+}
+
+#[test]
+fn on_a_phone_in_german() {
+    let mut harness = app("start", PHONE);
+    harness.state_mut().speak(Language::German);
+    finish(&mut harness);
+    pictures(
+        &mut harness,
+        &["start", "explore", "compare"],
+        "phone_german",
+    );
+}

@@ -1,0 +1,24 @@
+//! The app as a user works it; one module a page or habit.
+
+#[path = "../support"]
+mod support {
+    pub mod mat;
+    pub mod source;
+    pub mod ui;
+}
+
+mod access;
+mod backlash;
+mod care;
+mod compare;
+mod german;
+mod habits;
+mod lessons;
+mod links;
+mod looks;
+mod mapping;
+mod mystery;
+mod pages;
+mod plots;
+mod shell;
+mod tune;

@@ -1,0 +1,94 @@
+//! The tuning page, as a user works it: from the relay to the tuned loop.
+
+use crate::support::ui::{App, NARROW, WIDE, answer, app, click, finish, picture, show, state};
+use egui_kittest::kittest::Queryable as _;
+use hysteron::language::Language;
+
+fn page(size: [f32; 2]) -> App {
+    let mut harness = app("tune", size);
+    finish(&mut harness);
+    harness
+}
+
+/// The paper's third-order lag under the relay k = 1, eps = 0.1: period 4.788 s and amplitude 0.2857
+/// exactly, hence `Ku = 4/(pi sqrt(a^2 - eps^2)) = 4.758`; true are 8 and `2 pi/sqrt(3) = 3.628` s.
+#[test]
+fn the_experiment_leads_step_by_step_from_the_relay_to_the_tuned_loop() {
+    let mut harness = page(WIDE);
+    assert_eq!(
+        answer(&harness),
+        "It oscillates: period 4.788 s, amplitude 0.2857."
+    );
+    picture(&mut harness, "tune_relay");
+
+    click(&mut harness, "Next step");
+    let said = answer(&harness);
+    for number in [
+        "Ku = 4.758",
+        "4.788 s",
+        "8.000",
+        "3.628 s",
+        "40.5 % too low",
+    ] {
+        assert!(said.contains(number), "{number}: {said}");
+    }
+    picture(&mut harness, "tune_ultimate");
+
+    for step in ["adaptation", "model", "rules", "loops"] {
+        click(&mut harness, "Next step");
+        assert_eq!(state(&harness)["step"], step);
+        assert!(state(&harness)["message"].is_null());
+    }
+    assert!(
+        answer(&harness).starts_with("A load leaves"),
+        "{}",
+        answer(&harness)
+    );
+    assert!(
+        harness.query_by_label("Next step").is_none(),
+        "there is no step after the last"
+    );
+    picture(&mut harness, "tune_loops");
+}
+
+#[test]
+fn another_rule_changes_the_controller_and_the_loop() {
+    let mut harness = page(WIDE);
+    click(&mut harness, "5 Rule");
+    assert!(answer(&harness).starts_with("AMIGO PID"));
+    click(&mut harness, "Ziegler-Nichols PI");
+    let said = answer(&harness);
+    // 0.45 Ku and Tu/1.2 of the relay's 4.758 and 4.788 s.
+    assert!(
+        said.contains("K = 2.141") && said.contains("Ti = 3.990 s"),
+        "{said}"
+    );
+    picture(&mut harness, "tune_rules");
+    click(&mut harness, "6 Before and after");
+    let worse = answer(&harness);
+    click(&mut harness, "5 Rule");
+    click(&mut harness, "Tyreus-Luyben PI");
+    click(&mut harness, "6 Before and after");
+    assert_ne!(answer(&harness), worse, "the loop follows the rule");
+}
+
+#[test]
+fn a_narrow_window_shows_the_same_experiment() {
+    let mut harness = page(NARROW);
+    assert!(answer(&harness).starts_with("It oscillates"));
+    click(&mut harness, "6 Before and after");
+    picture(&mut harness, "tune_narrow");
+}
+
+#[test]
+fn the_table_of_rules_has_room_in_a_smaller_window() {
+    for language in [Language::English, Language::German] {
+        let mut harness = app("tune", [1024.0, 800.0]);
+        harness.state_mut().speak(language);
+        show(&mut harness, "v1;tune;tune.step=rules");
+        harness.run_steps(3);
+        let last = ["load error [s]", "Lastfehler [s]"].map(|name| harness.query_by_label(name));
+        let last = last.into_iter().flatten().next().expect("the last column");
+        assert!(last.rect().right() <= 1024.0, "{:?}", last.rect());
+    }
+}

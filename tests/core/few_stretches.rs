@@ -1,0 +1,54 @@
+//! A slow process that was looked at for a few of its time constants: what is left hangs together, so that a record of
+//! a thousand samples holds a handful of independent stretches.
+
+use crate::support::diagnosis::{classes, finish};
+use crate::support::parameter::parameter;
+use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::rig::process::{Excitation, ProcessRig, Stranger};
+
+/// A process of two minutes that is watched for three, with a load that swings as slowly besides.
+fn diagnose(constant_load: f64, swing: f64, period: f64) -> Diagnosis {
+    let rig = ProcessRig {
+        time_constant: 120.0,
+        samples: 1000,
+        excitation: Excitation::Staircase { top: 1.0 },
+        constant_load,
+        stranger: Some(Stranger::Swing {
+            amplitude: swing,
+            period,
+        }),
+        ..ProcessRig::default()
+    };
+    finish(DiagnosisJob::new(&rig.measure()).unwrap())
+}
+
+#[test]
+fn what_takes_away_nearly_all_is_named_though_the_rest_hangs_together() {
+    let d = diagnose(1.5, 0.3, 180.0);
+    assert_eq!(classes(&d), [["constant_load"]], "{}", d.verdict.text);
+    assert!(d.verdict.unknown, "the load swings as well");
+    let load = parameter(&d, "F0");
+    assert!(
+        (load.value - 1.5).abs() < 2.0 * load.std_error,
+        "{} +- {}",
+        load.value,
+        load.std_error
+    );
+}
+
+#[test]
+fn what_may_be_chance_is_said_as_that() {
+    let d = diagnose(0.0, 0.4, 120.0);
+    assert!(
+        d.verdict.missing.is_empty() && d.verdict.unknown,
+        "{}",
+        d.verdict.text
+    );
+    assert!(
+        d.verdict.text.contains("Perhaps ") && d.verdict.text.contains("to rule out chance"),
+        "{}",
+        d.verdict.text
+    );
+    let candidates = &d.steps.last().unwrap().candidates;
+    assert!(candidates.iter().any(|c| c.promising && !c.significant));
+}

@@ -1,0 +1,41 @@
+//! What the core promises, from import to verdict, checked from outside; one module a subject.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod at_rest;
+mod blind_bench;
+mod describing_function;
+mod drive;
+mod drive_contact;
+mod drive_figures;
+mod drive_measured;
+mod drive_random;
+mod few_stretches;
+mod figures;
+mod fingerprints;
+mod gap;
+mod hidden_effects;
+mod import;
+mod import_mat;
+mod limit_cycles;
+mod lost_rows;
+mod missing_force;
+mod mystery;
+mod next_experiment;
+mod other_machines;
+mod own_effect;
+mod parameter_maps;
+mod plants;
+mod random_forces;
+mod real_drive;
+mod report;
+mod rests;
+mod scenario_text;
+mod sensors;
+mod simulation;
+mod slow_and_short;
+mod surroundings;
+mod tuning;
+mod tuning_loop;
+mod user_model;
