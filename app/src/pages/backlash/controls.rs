@@ -6,9 +6,9 @@ use super::scene::MILLI;
 use super::{Backlash, SPEED};
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};
-use crate::pages::controls::{reset_asked, slider};
-use crate::pages::typed::{DECIMALS, Typed};
 use crate::recent::Recents;
+use crate::widgets::controls::{reset_asked, slider};
+use crate::widgets::typed::{DECIMALS, Typed};
 
 /// Width below which the playback stands in two rows, points.
 const NARROW_PLAYBACK: f32 = 520.0;

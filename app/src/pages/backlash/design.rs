@@ -4,8 +4,8 @@ use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design
 
 use super::scene::MILLI;
 use crate::language::tr;
-use crate::pages::controls::reset_asked;
-use crate::pages::typed::{DECIMALS, Typed};
+use crate::widgets::controls::reset_asked;
+use crate::widgets::typed::{DECIMALS, Typed};
 
 /// What is asked for, and the last proposal.
 pub struct Design {

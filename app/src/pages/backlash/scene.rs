@@ -8,7 +8,7 @@ use hysteron_core::figures::Check;
 use hysteron_core::measurement::{Measurement, Quantity};
 
 use super::words::lesson;
-use crate::pages::chart::{envelope, extremes};
+use crate::widgets::chart::{envelope, extremes};
 
 /// Most points of a curve over the whole run.
 const CURVE_POINTS: usize = 1800;

@@ -7,8 +7,8 @@ use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
 use super::Compare;
 use super::parts::Part;
 use crate::language::tr;
-use crate::pages::chart::{Chart, Pen, Shape, caption_ui};
 use crate::theme;
+use crate::widgets::chart::{Chart, Pen, Shape, caption_ui};
 
 /// Least width of a picture, and its height, points.
 const WIDTH: f32 = 260.0;

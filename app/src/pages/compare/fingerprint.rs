@@ -10,8 +10,8 @@ use super::parts::Part;
 use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};
-use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
+use crate::widgets::chart::{Chart, Shape, caption_ui};
 
 /// Height of a plot over time, and width of its labels, points.
 const HEIGHT: f32 = 170.0;

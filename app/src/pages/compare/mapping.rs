@@ -7,9 +7,9 @@ use super::choice::{Channel, Choice, Chosen};
 use super::{Command, Compare};
 use crate::hook::Targets;
 use crate::language::tr;
-use crate::pages::chart::significant;
 use crate::recent::Recent;
 use crate::theme;
+use crate::widgets::chart::significant;
 use hysteron_work::content::Content;
 
 /// Widths of the names of channels, and of the lists of columns and of units, points.

@@ -31,16 +31,16 @@ use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
 use serde::{Deserialize, Serialize};
 
-use super::{Desk, Hint, View};
-pub use settings::is_built_in;
+use crate::desk::Desk;
+use crate::page::{Hint, View};
 
-use crate::document::parsed;
 use crate::export::Table;
 use crate::files::{Files, MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::recent::Recent;
 use crate::save::save;
 use crate::theme;
@@ -191,7 +191,7 @@ enum Command {
     /// Opens the seal.
     Reveal,
     /// What the app is to do.
-    Desk(Vec<super::Command>),
+    Desk(Vec<crate::command::Command>),
     Cancel,
     Shade(usize),
     Dismiss,

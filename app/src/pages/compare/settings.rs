@@ -37,11 +37,6 @@ pub(super) struct Settings {
     fingerprint: Option<String>,
 }
 
-/// Whether a measurement of this name comes with the page.
-pub fn is_built_in(name: &str) -> bool {
-    BUILT_IN.iter().any(|b| b.file.id == name)
-}
-
 /// What a link sets as soon as its measurement is open.
 #[derive(Clone)]
 pub(super) struct Awaited {
@@ -135,7 +130,7 @@ impl Compare {
                 let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
                 let file = built_in.map(|b| Held::from(&b.file));
                 let file = file.or_else(|| self.files.held(name).cloned());
-                let file = file.ok_or_else(|| crate::document::not_enclosed(name))?;
+                let file = file.ok_or_else(|| crate::link::not_enclosed(name))?;
                 Ok(Some(file))
             }
             (None, Some(text)) if settings.mystery != present.mystery => {
@@ -166,7 +161,7 @@ impl Compare {
             Some(name) => {
                 let model = self.held_model(name)?.clone();
                 let fits = (model.kind == kind).then_some(model);
-                fits.ok_or_else(|| crate::document::not_enclosed(name))?
+                fits.ok_or_else(|| crate::link::not_enclosed(name))?
             }
             None if settings.own.is_empty() => return Ok(None),
             None => UserModel::blank(kind),
@@ -179,7 +174,7 @@ impl Compare {
 
     fn held_model(&self, name: &str) -> Result<&UserModel, String> {
         let model = self.files.held_model(name);
-        model.ok_or_else(|| crate::document::not_enclosed(name))
+        model.ok_or_else(|| crate::link::not_enclosed(name))
     }
 
     /// Sets what was to be set as soon as the measurement is open, which it is now.

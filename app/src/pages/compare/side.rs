@@ -10,7 +10,6 @@ use hysteron_core::uncertain::with_error;
 use super::parts::Part;
 use super::waterfall::{BAR_WIDTH, bar_ui};
 use super::{Command, Compare, Look, experiment, missing, own, parameters, times_noise, waterfall};
-use crate::bar;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
@@ -133,7 +132,7 @@ pub(super) fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<
     if page.job.is_some() {
         ui.horizontal(|ui| {
             // What it is doing is a sentence.
-            let width = ui.available_width() - bar::button(ui, "Cancel");
+            let width = ui.available_width() - theme::button_width(ui, "Cancel");
             let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(width);
             ui.add(bar.text(tr(page.progress.1.clone())));
             if ui.button(tr("Cancel")).clicked() {

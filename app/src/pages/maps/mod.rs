@@ -7,13 +7,15 @@ mod side;
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
+use crate::page::{Hint, View};
 use crate::theme;
 use hysteron_work::tasks::MapTask;
 use picture::Picture;

@@ -8,7 +8,7 @@ use super::side::stability;
 use super::{axis_title, number, with_unit};
 use crate::colors::viridis;
 use crate::language::{tr, tr_number};
-use crate::pages::chart::Chart;
+use crate::widgets::chart::Chart;
 
 /// Pixels of the texture along a cell, so that hatching shows.
 const PIXELS: usize = 4;

@@ -5,8 +5,8 @@ use hysteron_core::maps::{Axis, Parameter, Quantity};
 
 use super::{Command, Maps, axis_title, with_unit};
 use crate::language::tr;
-use crate::pages::controls::reset_asked;
-use crate::pages::typed::{DECIMALS, Typed};
+use crate::widgets::controls::reset_asked;
+use crate::widgets::typed::{DECIMALS, Typed};
 
 impl Maps {
     /// Axes and quantity.

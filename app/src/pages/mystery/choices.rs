@@ -5,9 +5,9 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
+use crate::desk::Desk;
 use crate::language::tr;
-use crate::pages::Desk;
-use crate::pages::typed::{DECIMALS, Typed};
+use crate::widgets::typed::{DECIMALS, Typed};
 
 /// Name and story of an experiment.
 fn words(experiment: Experiment) -> (&'static str, &'static str) {

@@ -5,13 +5,14 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Mystery, columns};
 
 use super::Asked;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::language::tr;
 use crate::link::VERSION;
-use crate::pages::chart::{Shape, caption_ui, curve, envelope, still};
-use crate::pages::{Command, Desk};
 use crate::save::Document;
 use crate::theme;
+use crate::widgets::chart::{Shape, caption_ui, curve, envelope, still};
 use hysteron_work::tasks::Made;
 
 /// Longest link that is offered, characters: browsers take more, but not every message does.

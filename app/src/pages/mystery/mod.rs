@@ -10,13 +10,15 @@ use hysteron_core::report::sha256;
 use serde::{Deserialize, Serialize};
 use web_time::SystemTime;
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
+use crate::page::{Hint, View};
 use crate::theme;
 use choices::MACHINES;
 use hysteron_work::tasks::MysteryTask;

@@ -9,8 +9,8 @@ use super::draw::{
 use super::{Seen, Stage};
 use crate::export::Table;
 use crate::language::tr;
-use crate::pages::chart::{Key, Shape, caption_ui, sparse};
 use crate::theme;
+use crate::widgets::chart::{Key, Shape, caption_ui, sparse};
 
 pub const STAGE: Stage = Stage {
     id: "loops",

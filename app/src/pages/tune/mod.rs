@@ -13,13 +13,15 @@ mod ultimate;
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{TuningInput, TuningReport};
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
+use crate::page::{Hint, View};
 use crate::theme;
 use hysteron_work::tasks::TuneTask;
 
