@@ -2,7 +2,7 @@
 
 use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 
-use super::scene::MILLI;
+use super::units::MILLI;
 use super::{Backlash, SPEED};
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};

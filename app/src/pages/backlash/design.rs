@@ -2,7 +2,7 @@
 
 use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
 
-use super::scene::MILLI;
+use super::units::MILLI;
 use crate::language::tr;
 use crate::widgets::controls::reset_asked;
 use crate::widgets::typed::{DECIMALS, Typed};

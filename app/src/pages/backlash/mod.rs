@@ -3,11 +3,13 @@
 mod built_in;
 mod controls;
 mod design;
+mod drift;
 mod picture;
 mod plots;
 mod scene;
 mod settings;
 mod side;
+mod units;
 mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};

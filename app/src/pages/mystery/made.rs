@@ -2,9 +2,8 @@
 
 use egui_plot::Line;
 use hysteron_core::measurement::Kind;
-use hysteron_core::mystery::{Mystery, columns};
+use hysteron_core::mystery::{Choice, Experiment, Mystery, columns};
 
-use super::Asked;
 use crate::command::Command;
 use crate::desk::Desk;
 use crate::export::Table;
@@ -20,6 +19,9 @@ const LONGEST: usize = 16_384;
 
 /// Most points of a curve.
 const MOST_POINTS: usize = 4000;
+
+/// What is measured and what is hidden in it.
+pub(super) type Asked = (Experiment, Choice);
 
 /// A mystery, ready to be shown.
 pub(super) struct Product {

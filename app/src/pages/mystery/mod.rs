@@ -1,6 +1,7 @@
 //! Which effect is hidden? A bench that makes a measurement whose truth is sealed.
 
 mod choices;
+mod machines;
 mod made;
 mod picture;
 
@@ -20,9 +21,10 @@ use crate::link::parsed;
 use crate::motion;
 use crate::page::{Hint, View};
 use crate::theme;
-use choices::MACHINES;
+
 use hysteron_work::tasks::MysteryTask;
-use made::Product;
+use machines::MACHINES;
+use made::{Asked, Product};
 
 /// The page. What is chosen and the word are no settings: a link of this page tells neither.
 #[derive(Default)]
@@ -44,9 +46,6 @@ pub struct Bench {
     /// Mysteries that were made since the app started.
     count: u32,
 }
-
-/// What is measured and what is hidden in it.
-type Asked = (Experiment, Choice);
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

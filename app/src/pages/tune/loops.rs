@@ -6,7 +6,7 @@ use hysteron_core::tuning::{LoopReport, Response, TuningReport};
 use super::draw::{
     AFTER, BEFORE, CAPTION, beside, controller, curve, maybe, number, plot, series, table,
 };
-use super::{Seen, Stage};
+use super::stage::{Seen, Stage};
 use crate::export::Table;
 use crate::language::tr;
 use crate::theme;
