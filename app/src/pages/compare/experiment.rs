@@ -4,7 +4,8 @@ use hysteron_core::criticism::{FittedModel, Limits, NextExperiment, Opening, Pro
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
 
-use super::{Command, Compare};
+use super::command::Command;
+use super::state::Compare;
 use crate::command;
 use crate::hook::Targets;
 use crate::language::tr;

@@ -6,8 +6,9 @@ use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Measurement;
 
 use super::atlas::{draw, grid_ui, small, words};
+use super::command::Command;
 use super::parts::Part;
-use super::{Command, Compare};
+use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};
 use crate::theme;

@@ -8,8 +8,8 @@ use egui_plot::{
 use hysteron_core::criticism::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
-use super::Compare;
 use super::parts::Part;
+use super::state::Compare;
 use crate::language::{self, tr};
 use crate::theme;
 use crate::widgets::chart::{Chart, Key, Pen, Shape, caption_ui, envelope, extremes};

@@ -7,9 +7,13 @@ use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
 use hysteron_core::uncertain::with_error;
 
+use super::answer::times_noise;
+use super::command::Command;
+use super::look::Look;
 use super::parts::Part;
+use super::state::Compare;
 use super::waterfall::{BAR_WIDTH, bar_ui};
-use super::{Command, Compare, Look, experiment, missing, own, parameters, times_noise, waterfall};
+use super::{experiment, missing, own, parameters, waterfall};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;

@@ -4,7 +4,9 @@ use egui::Color32;
 use hysteron_core::criticism::StepReport;
 use hysteron_core::effect::name_of;
 
-use super::{Command, Compare, times_noise};
+use super::answer::times_noise;
+use super::command::Command;
+use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::motion;
