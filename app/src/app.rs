@@ -215,10 +215,12 @@ impl HysteronApp {
         let now = ui.input(|i| i.time);
         self.history.feed_state(now, &present);
         shortcuts::pressed(ui.ctx(), &self.page_ids(), &mut self.desk.commands);
-        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present));
+        let front = self.pages.get(self.front).map(|p| p.view.offer());
+        let offer = front.map(|offer| (offer.hint, offer.tables.names));
+        let (hint, tables) = offer.unwrap_or_default();
+        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present, &tables));
         let desk = &mut self.desk;
         desk.study.ui(ui, &mut desk.targets, &mut desk.commands);
-        let hint = self.pages.get(self.front).and_then(|p| p.view.offer().hint);
         if let Some(hint) = hint
             && desk.study.lesson.is_none()
         {
@@ -323,13 +325,11 @@ impl HysteronApp {
         state
     }
 
-    fn bar_ui(&mut self, ui: &mut egui::Ui, present: &Document) {
+    fn bar_ui(&mut self, ui: &mut egui::Ui, present: &Document, tables: &[&'static str]) {
         let pages: Vec<_> = self.pages.iter().map(|p| (p.id, p.title)).collect();
-        let front = self.pages.get(self.front);
-        let tables: Vec<_> = front.map_or_else(Vec::new, |p| p.view.offer().tables.names);
         let bar = Bar {
             pages: &pages,
-            tables: &tables,
+            tables,
             front: self.front,
             undo: [
                 self.history.has_undo(present),
