@@ -8,10 +8,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use hysteron_core::measurement::Kind;
 use hysteron_core::user_model::UserModel;
 
-use crate::content::Content;
-use crate::enclosed::Enclosed;
-use crate::reading::Reading;
 use crate::recent::Recent;
+use hysteron_work::content::Content;
+use hysteron_work::enclosed::Enclosed;
+use hysteron_work::reading::Reading;
 
 /// A file that has been read.
 pub struct Arrival {

@@ -18,7 +18,6 @@ use super::{Desk, Hint, View};
 use built_in::BuiltIn;
 pub use settings::is_built_in;
 
-use crate::content::Content;
 use crate::document::parsed;
 use crate::export::Table;
 use crate::files::{Files, Held, MEASUREMENT};
@@ -27,11 +26,12 @@ use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::pages::controls::claim_ui;
-use crate::reading::Reading;
 use crate::recent::{Recent, Recents, measurement};
-use crate::tasks::{GapReport, GapTask, ReadTask};
 use crate::theme;
 use design::Design;
+use hysteron_work::content::Content;
+use hysteron_work::reading::Reading;
+use hysteron_work::tasks::{GapReport, GapTask, ReadTask};
 use scene::{Scene, Shown};
 
 /// Speed of the playback, times real time.

@@ -5,7 +5,7 @@ use hysteron_core::effect::EffectId;
 
 use super::Compare;
 use crate::jobs::{Job, News};
-use crate::tasks::ExperimentTask;
+use hysteron_work::tasks::ExperimentTask;
 
 impl Compare {
     /// Every effect that was added, those that were taken back last.

@@ -5,12 +5,12 @@ use hysteron_core::measurement::{FoundColumn, Kind};
 
 use super::choice::{Channel, Choice, Chosen};
 use super::{Command, Compare};
-use crate::content::Content;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::pages::chart::significant;
 use crate::recent::Recent;
 use crate::theme;
+use hysteron_work::content::Content;
 
 /// Widths of the names of channels, and of the lists of columns and of units, points.
 const TITLE_WIDTH: f32 = 104.0;

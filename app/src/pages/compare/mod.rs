@@ -41,12 +41,12 @@ use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
-use crate::reading::Reading;
 use crate::recent::Recent;
 use crate::save::save;
-use crate::tasks::{ExperimentTask, Source};
 use crate::theme;
 use answer::times_noise;
+use hysteron_work::reading::Reading;
+use hysteron_work::tasks::{ExperimentTask, Source};
 use welcome::{BUILT_IN, BuiltIn};
 
 /// Height of the plots over time in a narrow window, points.

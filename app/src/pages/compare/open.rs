@@ -9,12 +9,12 @@ use super::mapping::Form;
 use super::reveal::Sealed;
 use super::settings::Awaited;
 use super::{Compare, Look, own};
-use crate::content::Content;
 use crate::files::Held;
 use crate::jobs::{Job, News};
-use crate::reading::Reading;
 use crate::recent::Recent;
-use crate::tasks::{Opened, ReadReport, ReadTask};
+use hysteron_work::content::Content;
+use hysteron_work::reading::Reading;
+use hysteron_work::tasks::{Opened, ReadReport, ReadTask};
 
 /// A file that is being read.
 pub(super) struct Opening {

@@ -10,8 +10,8 @@ use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::motion;
-use crate::tasks::RevealTask;
 use crate::theme;
+use hysteron_work::tasks::RevealTask;
 
 /// Width that the table of numbers needs, points; in a narrower window each is a line of its own.
 const TABLE: f32 = 600.0;

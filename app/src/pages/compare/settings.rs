@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use super::open::Opening;
 use super::{BUILT_IN, Command, Compare, Look};
-use crate::content::Content;
 use crate::files::Held;
-use crate::reading::Reading;
+use hysteron_work::content::Content;
+use hysteron_work::reading::Reading;
 
 /// Effects that a link may add.
 const MOST_EFFECTS: usize = 12;

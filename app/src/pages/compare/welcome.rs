@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::{Command, Compare};
-use crate::enclosed::{self, Enclosed};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::layout;
 use crate::recent::{Recents, measurement};
 use crate::theme;
+use hysteron_work::enclosed::{self, Enclosed};
 
 /// Height of the picture on a card, points, and as a share of the window; how often the input switches in it, and most
 /// samples.

@@ -14,8 +14,8 @@ use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::motion;
-use crate::tasks::MapTask;
 use crate::theme;
+use hysteron_work::tasks::MapTask;
 use picture::Picture;
 
 /// The page: what is asked for, what is known of it, and what is drawn.

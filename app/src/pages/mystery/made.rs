@@ -11,8 +11,8 @@ use crate::link::VERSION;
 use crate::pages::chart::{Shape, caption_ui, curve, envelope, still};
 use crate::pages::{Command, Desk};
 use crate::save::Document;
-use crate::tasks::Made;
 use crate::theme;
+use hysteron_work::tasks::Made;
 
 /// Longest link that is offered, characters: browsers take more, but not every message does.
 const LONGEST: usize = 16_384;

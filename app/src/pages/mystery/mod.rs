@@ -17,9 +17,9 @@ use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::motion;
-use crate::tasks::MysteryTask;
 use crate::theme;
 use choices::MACHINES;
+use hysteron_work::tasks::MysteryTask;
 use made::Product;
 
 /// The page. What is chosen and the word are no settings: a link of this page tells neither.

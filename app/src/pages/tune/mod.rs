@@ -20,8 +20,8 @@ use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::motion;
-use crate::tasks::TuneTask;
 use crate::theme;
+use hysteron_work::tasks::TuneTask;
 
 /// What a step shows.
 #[derive(Clone, Copy)]

@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn what_is_packed_is_the_very_file() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/measurements");
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/measurements");
         for enclosed in [DRIVE_02, DRIVE_03, DRIVE_10, DRIVE_12, PROCESS_02] {
             let file = std::fs::read(format!("{folder}/{}.csv", enclosed.id)).expect("the file");
             assert!(enclosed.csv() == file, "{}", enclosed.id);

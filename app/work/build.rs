@@ -25,7 +25,7 @@ fn main() -> Result<()> {
     println!("cargo::rerun-if-changed=src/packed.rs");
     let out = std::env::var("OUT_DIR").map_err(Error::other)?;
     for name in NAMES {
-        let csv = format!("../assets/measurements/{name}.csv");
+        let csv = format!("../../assets/measurements/{name}.csv");
         println!("cargo::rerun-if-changed={csv}");
         let text = std::fs::read_to_string(csv)?;
         let packed = miniz_oxide::deflate::compress_to_vec(&table(&text)?, LEVEL);

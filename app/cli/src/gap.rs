@@ -7,7 +7,8 @@ use hysteron_core::backlash::{BacklashMap, GapEstimate, backlash_map, estimate_g
 use hysteron_core::measurement::{ImportOptions, Mapping, Quantity, TorqueConstant};
 use serde_json::json;
 
-use super::Format;
+use crate::output::Format;
+use crate::read::read;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
@@ -16,7 +17,7 @@ const SCHEMA: u32 = 1;
 const LISTED: usize = 12;
 
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Drifting test: CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file
     #[arg(value_name = "FILE.csv")]
     file: PathBuf,
@@ -32,13 +33,13 @@ pub(super) struct Arguments {
 }
 
 /// The estimate, or one line that says what is wrong with the input.
-pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
+pub fn run(arguments: &Arguments) -> Result<String, String> {
     let options = ImportOptions {
         kind: None,
         mapping: arguments.map.clone().unwrap_or_default(),
         torque_constant: arguments.torque_constant,
     };
-    let (measurement, _) = super::diagnose::read(&arguments.file, &options)?;
+    let (measurement, _) = read(&arguments.file, &options)?;
     let name = &measurement.name;
     let estimate = estimate_gap(&measurement).map_err(|e| format!("{name}: {e}"))?;
     let has_load = measurement

@@ -11,7 +11,7 @@ use hysteron_core::simulate::{Cut, Noise, Trajectory};
 const SETTLED: f64 = 1e-3;
 
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Loop or drive to run: tables [plant] or [drive], [relay] and [run]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
 }
 
 /// What happened in words, or one line that says what is wrong with the input.
-pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
+pub fn run(arguments: &Arguments) -> Result<String, String> {
     let shown = arguments.file.display();
     let (mut text, table, samples) = match read(&arguments.file)? {
         AnyScenario::Loop(scenario) => {
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
 }
 
 /// Reads a scenario file.
-pub(super) fn read(path: &Path) -> Result<AnyScenario, String> {
+pub fn read(path: &Path) -> Result<AnyScenario, String> {
     let shown = path.display();
     if path.is_dir() {
         return Err(format!("{shown} is a directory; expected a TOML file"));

@@ -1,30 +1,6 @@
 //! The page's worker: it computes off the page's main thread. It uses the core and no interface, so
 //! that its module stays small.
 
-#[cfg(target_arch = "wasm32")]
-#[path = "../content.rs"]
-mod content;
-
-#[cfg(target_arch = "wasm32")]
-#[path = "../packed.rs"]
-mod packed;
-
-#[cfg(target_arch = "wasm32")]
-#[path = "../reading.rs"]
-mod reading;
-
-#[cfg(target_arch = "wasm32")]
-#[path = "../tasks.rs"]
-mod tasks;
-
-#[cfg(target_arch = "wasm32")]
-#[path = "../wire.rs"]
-mod wire;
-
-#[cfg(target_arch = "wasm32")]
-#[path = "../work.rs"]
-mod work;
-
 #[cfg(not(target_arch = "wasm32"))]
 fn main() {
     println!("This is the worker of the web page; the app is `hysteron`.");
@@ -41,12 +17,12 @@ mod web {
     use wasm_bindgen::prelude::*;
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
-    use crate::tasks::{
+    use hysteron_work::tasks::{
         ExperimentTask, GapTask, MapTask, MysteryTask, News, READY, ReadTask, RevealTask, StepTask,
         Task as _, TuneTask,
     };
-    use crate::wire::{pack, unpack};
-    use crate::work::Work;
+    use hysteron_work::wire::{pack, unpack};
+    use hysteron_work::work::Work;
 
     /// Share of progress below which nothing new is said.
     const PROGRESS_STEP: f64 = 0.01;

@@ -11,7 +11,7 @@ use serde_json::json;
 const SCHEMA: u32 = 1;
 
 /// What is predicted and simulated, of the motor's velocity.
-pub(super) struct DriveReport {
+pub struct DriveReport {
     cycle: Option<DriftingCycle>,
     /// Period and amplitude of the last simulated cycle, wherever the motor is then.
     simulated: Option<(f64, f64)>,

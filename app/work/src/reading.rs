@@ -16,8 +16,6 @@ pub struct Reading {
     pub torque_constant: String,
 }
 
-// The page needs one of these, its worker the other.
-#[cfg_attr(target_arch = "wasm32", allow(dead_code))]
 impl Reading {
     /// What the importer needs.
     ///

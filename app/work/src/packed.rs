@@ -29,8 +29,6 @@ pub enum Kind {
 }
 
 /// The file of a packed table.
-// On the web the worker reads files, not the page.
-#[cfg_attr(target_arch = "wasm32", allow(dead_code))]
 pub fn unpack(deflated: &[u8]) -> Option<Vec<u8>> {
     unpack_rows(deflated, usize::MAX)
 }

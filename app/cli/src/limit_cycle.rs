@@ -10,8 +10,9 @@ use hysteron_core::scenario::{AnyScenario, Scenario};
 use hysteron_core::simulate::Options;
 use serde_json::json;
 
-use super::Format;
-use super::limit_cycle_drive::DriveReport;
+use crate::limit_cycle_drive::DriveReport;
+use crate::output::Format;
+use crate::simulate;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
@@ -23,7 +24,7 @@ const PERIODS: f64 = 200.0;
 const SETTLED: f64 = 1e-6;
 
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Loop or drive to predict: tables [plant] or [drive], and [relay]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
@@ -45,9 +46,9 @@ struct Report {
 }
 
 /// The report, or one line that says what is wrong with the input.
-pub(super) fn run(arguments: &Arguments) -> Result<String, String> {
+pub fn run(arguments: &Arguments) -> Result<String, String> {
     let located = |e| format!("{}: {e}", arguments.file.display());
-    Ok(match super::simulate::read(&arguments.file)? {
+    Ok(match simulate::read(&arguments.file)? {
         AnyScenario::Loop(scenario) => {
             let report = report(&scenario).map_err(located)?;
             match arguments.format {

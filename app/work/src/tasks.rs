@@ -31,10 +31,6 @@ pub enum News<R = StepReport> {
 /// A long computation.
 pub trait Task: Serialize + DeserializeOwned + Send + 'static {
     /// Its name in messages.
-    #[cfg_attr(
-        not(target_arch = "wasm32"),
-        expect(dead_code, reason = "a thread needs no messages")
-    )]
     const NAME: &'static str;
     /// What it hands over.
     type Report: Serialize + DeserializeOwned + Send + 'static;

@@ -13,8 +13,9 @@ use std::sync::{Mutex, PoisonError, mpsc};
 
 use serde::Serialize;
 
-use super::Format;
-use super::diagnose::{Arguments, Report, Setup, one};
+use crate::arguments::Arguments;
+use crate::one::{Report, Setup, one};
+use crate::output::{Format, complain, fail, write_error};
 
 /// A file that could not be diagnosed, as a line of JSON.
 #[derive(Serialize)]
@@ -25,11 +26,11 @@ struct BadFile<'a> {
 }
 
 /// Diagnoses all files, some at a time.
-pub(super) fn run(setup: &Setup) -> ExitCode {
+pub fn run(setup: &Setup) -> ExitCode {
     match Batch::new(setup.arguments).and_then(|batch| batch.run(setup)) {
         Ok(code) => code,
-        Err(Stop::BadInput(line)) => super::fail(&line, 2),
-        Err(Stop::Output(error)) => super::write_error(&error),
+        Err(Stop::BadInput(line)) => fail(&line, 2),
+        Err(Stop::Output(error)) => write_error(&error),
     }
 }
 
@@ -287,7 +288,7 @@ impl Progress {
 
     fn line(&self, text: &str) {
         self.clear();
-        super::complain(text);
+        complain(text);
     }
 
     fn clear(&self) {
