@@ -56,8 +56,8 @@ const ROOMS: [&str; 34] = [
     "scenario",
     // the app
     "app: work",
-    "app: parts",
     "app: command line",
+    "app: parts",
     "app: pages",
     "app: shell",
 ];
@@ -80,7 +80,6 @@ const KNOWN_CIRCLES: &[&str] = &[
     "report",
     "mystery",
     "app: parts",
-    "app: command line",
     "app: pages",
     "app: shell",
 ];
@@ -105,7 +104,7 @@ const KNOWN_PAGES: &[&str] = &[
     "start",
     "tune",
 ];
-const KNOWN_EFFECTS: &[&str] = &["effect", "mystery"];
+const KNOWN_EFFECTS: &[&str] = &[];
 
 /// Where the app's pages stand, a folder each, and the files there that are no page.
 const PAGES: &str = "app/src/pages/";
@@ -117,13 +116,12 @@ fn room(file: &str) -> Option<&str> {
         let room = inside.split(['/', '.']).next();
         return room.filter(|room| *room != "lib");
     }
-    let is_shell = |f: &str| {
-        f.starts_with("app/src/app") || f.starts_with("app/src/bin/") || f == "app/src/main.rs"
-    };
+    let is_shell =
+        |f: &str| f.starts_with("app/src/app/") || f == "app/src/app.rs" || f == "app/src/main.rs";
     let room = match file {
         f if f.ends_with("/lib.rs") => return None,
         f if f.starts_with("app/work/") => "app: work",
-        f if f.starts_with("app/cli/") || f.starts_with("app/src/cli/") => "app: command line",
+        f if f.starts_with("app/cli/") => "app: command line",
         f if page(f).is_some() => "app: pages",
         f if REGISTRY.contains(&f) || is_shell(f) => "app: shell",
         _ => "app: parts",
