@@ -7,11 +7,11 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::util::undoer::Undoer;
 
-pub use give::GivenFile;
-
 use crate::address;
-use crate::bar::{self, Bar};
-use crate::document::{Document, not_enclosed};
+use crate::bar::Bar;
+use crate::command::Command;
+use crate::desk::Desk;
+use crate::document::Document;
 #[cfg(target_arch = "wasm32")]
 use crate::edges;
 #[cfg(not(target_arch = "wasm32"))]
@@ -19,10 +19,13 @@ use crate::files;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
-use crate::pages::{Command, Desk, Hint, View, chart_menu, chart_zoom, registry, typed};
+use crate::page::{Hint, View};
+use crate::pages::registry;
+use crate::save::GivenFile;
 use crate::shortcuts;
 use crate::theme::{self, Look};
-use crate::{lessons, link, purpose};
+use crate::widgets::{chart_menu, chart_zoom, typed};
+use crate::{lessons, link, purpose_line};
 
 /// Width of a window below which it is taken for a phone's, points.
 const PHONE: f32 = 500.0;
@@ -199,7 +202,7 @@ impl HysteronApp {
             page.update(ui.ctx());
             for recent in page.opened() {
                 // A link that was refused for want of this file.
-                let wanted = not_enclosed(&recent.name);
+                let wanted = link::not_enclosed(&recent.name);
                 self.notice.take_if(|notice| notice.text() == wanted);
                 self.desk.recent.note(recent);
             }
@@ -218,7 +221,7 @@ impl HysteronApp {
             egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, hint, desk));
         }
         let foot = ui.available_rect_before_wrap().bottom();
-        purpose::ui(ui, &present.page, desk);
+        purpose_line::ui(ui, &present.page, desk);
         if let Some(page) = self.pages.get_mut(self.front) {
             desk.zooms.follow(page.id(), &present.settings[page.id()]);
             chart_zoom::begin(ui.ctx(), desk.zooms.of(page.id()));
@@ -529,7 +532,7 @@ fn hint_ui(ui: &mut egui::Ui, hint: Hint, desk: &mut Desk) {
     }
     ui.horizontal(|ui| {
         // The sentence breaks beside the button, which stays on the screen.
-        let room = ui.available_width() - bar::button(ui, "Try it");
+        let room = ui.available_width() - theme::button_width(ui, "Try it");
         ui.scope(|ui| {
             ui.set_max_width(room);
             ui.add(egui::Label::new(sentence).wrap());

@@ -1,12 +1,13 @@
 //! Everything that is set in the app, as one plain value: links, undo and the autosave hold nothing else.
 
 use hysteron_core::explore::ExploreInput;
-use serde::de::DeserializeOwned;
+use hysteron_work::enclosed::is_enclosed;
 use serde_json::{Value, json};
 
+use crate::desk::Desk;
 use crate::lessons::find;
-use crate::link;
-use crate::pages::{Desk, View};
+use crate::link::{self, parsed};
+use crate::page::View;
 use crate::zoom::Zooms;
 
 /// Key of the loop that several pages share.
@@ -56,9 +57,7 @@ impl Document {
     pub fn files(&self) -> Vec<&str> {
         let named = ["file", "model"].map(|key| self.settings[&self.page][key].as_str());
         let named = named.into_iter().flatten();
-        named
-            .filter(|name| !crate::pages::is_built_in(name))
-            .collect()
+        named.filter(|name| !is_enclosed(name)).collect()
     }
 
     /// As a text that keeps everything.
@@ -113,7 +112,9 @@ impl Document {
             ));
         };
         let relay_loop: ExploreInput = parsed(&self.settings[LOOP])?;
-        check(&relay_loop)?;
+        relay_loop
+            .validate()
+            .map_err(|e| format!("This loop cannot be: {e}."))?;
         let lesson: Option<String> = parsed(&self.settings[LESSON])?;
         if lesson.as_deref().is_some_and(|id| find(id).is_none()) {
             return Err("This link is about a lesson that does not exist.".to_owned());
@@ -145,8 +146,8 @@ impl Document {
         front: &mut usize,
         desk: &mut Desk,
     ) {
-        if let Ok(relay_loop) = parsed(&self.settings[LOOP])
-            && check(&relay_loop).is_ok()
+        if let Ok(relay_loop) = parsed::<ExploreInput>(&self.settings[LOOP])
+            && relay_loop.validate().is_ok()
         {
             desk.relay_loop = relay_loop;
         }
@@ -162,38 +163,4 @@ impl Document {
             *front = index;
         }
     }
-}
-
-/// Settings of a page from their plain value.
-///
-/// # Errors
-/// One sentence.
-pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
-    // What serde says is about Rust, and in English.
-    T::deserialize(value).map_err(|_| "These settings cannot be read.".to_owned())
-}
-
-/// Whether a loop can be computed.
-pub fn check(input: &ExploreInput) -> Result<(), String> {
-    let sentence = |e: &dyn std::fmt::Display| format!("This loop cannot be: {e}.");
-    input.validate().map_err(|e| sentence(&e))?;
-    match input.noise {
-        Some(noise) if !(noise.std_dev >= 0.0 && noise.std_dev.is_finite()) => {
-            Err(sentence(&"its noise must be 0 or more"))
-        }
-        Some(noise) if !(LEAST_INTERVAL..=MOST_INTERVAL).contains(&noise.interval) => {
-            Err(sentence(&"its noise must change every 0.001 to 1000 s"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Times between two values of the noise that are taken, s: shorter ones take minutes to simulate.
-const LEAST_INTERVAL: f64 = 1e-3;
-const MOST_INTERVAL: f64 = 1e3;
-
-/// Why a link cannot show what is about a file of the user's.
-pub fn not_enclosed(name: &str) -> String {
-    let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
-    format!("This link is about the file {name}, which is not part of it: open that file here.")
 }

@@ -4,6 +4,8 @@ mod address;
 mod app;
 mod bar;
 mod colors;
+mod command;
+mod desk;
 mod document;
 #[cfg(any(test, target_arch = "wasm32"))]
 mod edges;
@@ -17,19 +19,23 @@ pub mod lessons;
 pub mod link;
 mod motion;
 mod notice;
+mod page;
 mod pages;
 #[cfg(not(target_arch = "wasm32"))]
 mod program;
 mod purpose;
+mod purpose_line;
 mod recent;
 mod save;
 mod shortcuts;
 mod start;
 mod theme;
+mod widgets;
 mod zoom;
 
-pub use app::{GivenFile, HysteronApp};
+pub use app::HysteronApp;
 #[cfg(not(target_arch = "wasm32"))]
 pub use program::run;
+pub use save::GivenFile;
 #[cfg(target_arch = "wasm32")]
 pub use start::run_web;

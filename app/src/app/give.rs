@@ -6,11 +6,8 @@ use egui::{Context, Rect};
 
 use super::HysteronApp;
 use crate::export::{self, Table};
-use crate::pages::chart_menu::{self, Form, Given};
-use crate::save;
-
-/// A file that was given away: its name and its bytes.
-pub type GivenFile = (String, Vec<u8>);
+use crate::save::{self, GivenFile};
+use crate::widgets::chart_menu::{self, Form, Given};
 
 /// Where files go.
 #[derive(Clone)]

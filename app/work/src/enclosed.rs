@@ -32,6 +32,14 @@ pub const DRIVE_10: Enclosed = enclosed!(Drive, "drive-10");
 pub const DRIVE_12: Enclosed = enclosed!(Drive, "drive-12");
 pub const PROCESS_02: Enclosed = enclosed!(Process, "process-02");
 
+/// All of them.
+const ALL: [Enclosed; 5] = [DRIVE_02, DRIVE_03, DRIVE_10, DRIVE_12, PROCESS_02];
+
+/// Whether a measurement of this name comes with the app.
+pub fn is_enclosed(name: &str) -> bool {
+    ALL.iter().any(|enclosed| enclosed.id == name)
+}
+
 impl Enclosed {
     /// Its text.
     #[cfg(not(target_arch = "wasm32"))]
@@ -59,7 +67,7 @@ mod tests {
     #[test]
     fn what_is_packed_is_the_very_file() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/measurements");
-        for enclosed in [DRIVE_02, DRIVE_03, DRIVE_10, DRIVE_12, PROCESS_02] {
+        for enclosed in ALL {
             let file = std::fs::read(format!("{folder}/{}.csv", enclosed.id)).expect("the file");
             assert!(enclosed.csv() == file, "{}", enclosed.id);
             let five = file.split_inclusive(|b| *b == b'\n').take(6);

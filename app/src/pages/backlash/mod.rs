@@ -3,31 +3,33 @@
 mod built_in;
 mod controls;
 mod design;
+mod drift;
 mod picture;
 mod plots;
 mod scene;
 mod settings;
 mod side;
+mod units;
 mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 use hysteron_core::measurement::Kind;
 
-use super::playback::Playback;
-use super::{Desk, Hint, View};
+use crate::desk::Desk;
+use crate::page::{Hint, View};
+use crate::widgets::playback::Playback;
 use built_in::BuiltIn;
-pub use settings::is_built_in;
 
-use crate::document::parsed;
 use crate::export::Table;
 use crate::files::{Files, Held, MEASUREMENT};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
-use crate::pages::controls::claim_ui;
+use crate::link::parsed;
 use crate::recent::{Recent, Recents, measurement};
 use crate::theme;
+use crate::widgets::controls::claim_ui;
 use design::Design;
 use hysteron_work::content::Content;
 use hysteron_work::reading::Reading;
@@ -418,7 +420,7 @@ impl View for Backlash {
             return Some(Hint {
                 sentence: "Is the gap all that is missing? Drop the file on Compare too."
                     .to_owned(),
-                commands: vec![super::Command::Go("compare")],
+                commands: vec![crate::command::Command::Go("compare")],
             });
         }
         let motor = &self.input.drive.motor;

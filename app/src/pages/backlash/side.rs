@@ -5,7 +5,7 @@ use hysteron_core::drive::{Command, drifting_test};
 
 use super::Backlash;
 use super::built_in::BUILT_IN;
-use super::scene::MILLI;
+use super::units::MILLI;
 use crate::files::MEASUREMENT;
 use crate::hook::Targets;
 use crate::language::{tr, tr_number, tr_sentence};

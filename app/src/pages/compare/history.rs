@@ -3,7 +3,7 @@
 use hysteron_core::criticism::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 
-use super::Compare;
+use super::state::Compare;
 use crate::jobs::{Job, News};
 use hysteron_work::tasks::ExperimentTask;
 

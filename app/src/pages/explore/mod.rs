@@ -4,7 +4,6 @@ mod controls;
 mod hint;
 mod nyquist;
 mod plant_editor;
-pub mod plots;
 mod settings;
 mod table;
 
@@ -13,14 +12,16 @@ use std::collections::VecDeque;
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks, figures};
 
-use super::playback::Playback;
-use super::{Desk, Hint, View};
-use crate::document::parsed;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::language::tr;
 use crate::layout;
-use crate::pages::controls::claim_ui;
+use crate::link::parsed;
+use crate::page::{Hint, View};
 use crate::theme;
+use crate::widgets::controls::claim_ui;
+use crate::widgets::playback::Playback;
+use crate::widgets::relay_loop::{self, TABLES, tables};
 use nyquist::Nyquist;
 use plant_editor::PlantEditor;
 
@@ -268,13 +269,13 @@ impl Explore {
             return;
         };
         let relay = &mut self.input.relay;
-        let amplitude = plots::swing_at(data, self.playback.clock);
+        let amplitude = relay_loop::swing_at(data, self.playback.clock);
         self.line_at = Some(self.nyquist.ui(ui, relay, data, amplitude, height));
     }
 
     fn phase_ui(&self, ui: &mut egui::Ui, height: f32) {
         if let Some((data, _)) = self.data() {
-            plots::phase_ui(ui, data, self.playback.clock, height);
+            relay_loop::phase_ui(ui, data, self.playback.clock, height);
         }
     }
 
@@ -282,30 +283,6 @@ impl Explore {
         let Some((data, _)) = self.data() else {
             return;
         };
-        plots::time_ui(ui, &self.input.relay, data, self.playback.clock, height);
+        relay_loop::time_ui(ui, &self.input.relay, data, self.playback.clock, height);
     }
-}
-
-/// Names of [`tables`].
-pub const TABLES: [&str; 5] = [
-    "time series",
-    "relay input",
-    "phase portrait",
-    "limit cycle",
-    "Nyquist curve",
-];
-
-/// The numbers behind the plots.
-pub fn tables(data: &ExploreData) -> Vec<Table> {
-    let [y, rate] = ["output y", "its rate dy/dt [1/s]"];
-    vec![
-        Table::new(TABLES[0])
-            .with("time [s]", data.time.iter().copied())
-            .with(y, data.output.iter().copied()),
-        Table::curve(TABLES[1], ["time [s]", "input u"], &data.input),
-        Table::curve(TABLES[2], [y, rate], &data.phase),
-        Table::curve(TABLES[3], [y, rate], &data.cycle),
-        Table::curve(TABLES[4], ["real part", "imaginary part"], &data.nyquist)
-            .with("frequency [rad/s]", data.nyquist_frequency.iter().copied()),
-    ]
 }

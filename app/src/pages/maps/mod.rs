@@ -3,20 +3,24 @@
 mod picture;
 mod settings;
 mod side;
+mod words;
 
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
+use crate::page::{Hint, View};
 use crate::theme;
 use hysteron_work::tasks::MapTask;
 use picture::Picture;
+use words::{axis_title, number, with_unit};
 
 /// The page: what is asked for, what is known of it, and what is drawn.
 #[derive(Default)]
@@ -267,36 +271,5 @@ impl View for Maps {
             "message": self.message,
             "answer": self.answer(),
         })
-    }
-}
-
-/// Four digits that mean something.
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if size >= 1000.0 {
-        format!("{value:.0}")
-    } else if size >= 100.0 {
-        format!("{value:.1}")
-    } else if size >= 10.0 {
-        format!("{value:.2}")
-    } else {
-        format!("{value:.3}")
-    }
-}
-
-fn with_unit(value: f64, unit: &str) -> String {
-    if unit.is_empty() {
-        number(value)
-    } else {
-        format!("{} {unit}", number(value))
-    }
-}
-
-/// Name with its unit, for axes.
-fn axis_title(label: &str, unit: &str) -> String {
-    if unit.is_empty() {
-        label.to_owned()
-    } else {
-        format!("{label} [{unit}]")
     }
 }

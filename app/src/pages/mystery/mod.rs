@@ -1,6 +1,7 @@
 //! Which effect is hidden? A bench that makes a measurement whose truth is sealed.
 
 mod choices;
+mod machines;
 mod made;
 mod picture;
 
@@ -10,17 +11,20 @@ use hysteron_core::report::sha256;
 use serde::{Deserialize, Serialize};
 use web_time::SystemTime;
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
+use crate::page::{Hint, View};
 use crate::theme;
-use choices::MACHINES;
+
 use hysteron_work::tasks::MysteryTask;
-use made::Product;
+use machines::MACHINES;
+use made::{Asked, Product};
 
 /// The page. What is chosen and the word are no settings: a link of this page tells neither.
 #[derive(Default)]
@@ -42,9 +46,6 @@ pub struct Bench {
     /// Mysteries that were made since the app started.
     count: u32,
 }
-
-/// What is measured and what is hidden in it.
-type Asked = (Experiment, Choice);
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

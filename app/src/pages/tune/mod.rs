@@ -8,41 +8,24 @@ mod model;
 mod oscillation;
 mod rules;
 mod settings;
+mod stage;
 mod ultimate;
 
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{TuningInput, TuningReport};
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
+use crate::page::{Hint, View};
 use crate::theme;
 use hysteron_work::tasks::TuneTask;
-
-/// What a step shows.
-#[derive(Clone, Copy)]
-struct Seen<'a> {
-    input: &'a TuningInput,
-    report: &'a TuningReport,
-}
-
-/// A step of the experiment: one file each.
-struct Stage {
-    /// Its name in tests.
-    id: &'static str,
-    /// What its button says.
-    title: &'static str,
-    question: &'static str,
-    answer: fn(Seen<'_>) -> String,
-    /// What the next step does.
-    next: &'static str,
-    /// Draws it in about this height; may choose another rule.
-    ui: fn(&mut egui::Ui, Seen<'_>, f32, &mut String),
-}
+use stage::{Seen, Stage};
 
 /// The experiment, in its order.
 const STAGES: [Stage; 6] = [

@@ -4,15 +4,17 @@ use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::relay::Relay;
 use serde::{Deserialize, Serialize};
 
-use super::controls::slider;
-use super::explore::{TABLES, plots, tables};
-use super::playback::Playback;
-use super::{Command, Desk, View};
-use crate::document::parsed;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
+use crate::page::View;
 use crate::theme;
+use crate::widgets::controls::slider;
+use crate::widgets::playback::Playback;
+use crate::widgets::relay_loop::{self, TABLES, tables};
 
 /// Simulated periods that are played in a second.
 const PERIODS_PER_SECOND: f64 = 0.6;
@@ -175,14 +177,20 @@ impl Start {
             Some(Ok(data)) => {
                 ui.strong(tr(&data.text));
                 if ui.available_width() < layout::NARROW {
-                    plots::time_ui(ui, relay, data, self.playback.clock, 200.0);
+                    relay_loop::time_ui(ui, relay, data, self.playback.clock, 200.0);
                 } else {
                     // The doors beneath stay in view.
                     let window = ui.ctx().content_rect().height();
                     let height = (window - REST).min(0.42 * window).max(150.0);
                     ui.columns(2, |columns| {
-                        plots::time_ui(&mut columns[0], relay, data, self.playback.clock, height);
-                        plots::phase_ui(&mut columns[1], data, self.playback.clock, height);
+                        relay_loop::time_ui(
+                            &mut columns[0],
+                            relay,
+                            data,
+                            self.playback.clock,
+                            height,
+                        );
+                        relay_loop::phase_ui(&mut columns[1], data, self.playback.clock, height);
                     });
                 }
             }

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use hysteron_core::figures::Check;
 
 use crate::language::tr;
-use crate::pages::typed::{DECIMALS, Typed};
 use crate::theme;
+use crate::widgets::typed::{DECIMALS, Typed};
 
 /// A slider over `value * scale`, reset by a double click or by Delete. A value from elsewhere (a map, a dragged line, a
 /// link) may lie beyond the slider and stays.

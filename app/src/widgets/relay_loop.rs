@@ -1,13 +1,14 @@
-//! Time series and phase portrait, with the place that the playback has reached.
+//! The plots of a relay loop, with the place that the playback has reached, and the numbers behind them.
 
 use egui_plot::{HLine, Line, LineStyle, PlotPoints, VLine};
 use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
+use crate::export::Table;
 use crate::language::tr;
-use crate::pages::chart::{Shape, caption_ui, curve, dot, still};
-use crate::pages::chart_cursor::{mark_ui, point, pointed};
 use crate::theme;
+use crate::widgets::chart::{Shape, caption_ui, curve, dot, still};
+use crate::widgets::chart_cursor::{mark_ui, point, pointed};
 
 /// Index of the sample at a time.
 fn index_at(data: &ExploreData, clock: f64) -> usize {
@@ -118,4 +119,28 @@ pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64,
             plot.points(dot("now", [*t, *y]));
         }
     });
+}
+
+/// Names of [`tables`].
+pub const TABLES: [&str; 5] = [
+    "time series",
+    "relay input",
+    "phase portrait",
+    "limit cycle",
+    "Nyquist curve",
+];
+
+/// The numbers behind the plots.
+pub fn tables(data: &ExploreData) -> Vec<Table> {
+    let [y, rate] = ["output y", "its rate dy/dt [1/s]"];
+    vec![
+        Table::new(TABLES[0])
+            .with("time [s]", data.time.iter().copied())
+            .with(y, data.output.iter().copied()),
+        Table::curve(TABLES[1], ["time [s]", "input u"], &data.input),
+        Table::curve(TABLES[2], [y, rate], &data.phase),
+        Table::curve(TABLES[3], [y, rate], &data.cycle),
+        Table::curve(TABLES[4], ["real part", "imaginary part"], &data.nyquist)
+            .with("frequency [rad/s]", data.nyquist_frequency.iter().copied()),
+    ]
 }

@@ -1,9 +1,11 @@
 //! What can be learned here: the lessons, in the order of the course.
 
-use super::{Command, Desk, View};
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::language::tr;
 use crate::layout;
 use crate::lessons::{self, Lesson};
+use crate::page::View;
 use crate::theme;
 
 /// The page.
