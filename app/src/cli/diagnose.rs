@@ -6,10 +6,12 @@ use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::Instant;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Limits, Progress};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::{Diagnosis, Limits};
 use hysteron_core::measurement::{
     self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
 };
+use hysteron_core::progress::Progress;
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 

@@ -1,6 +1,6 @@
 //! A new step comes onto the screen part by part, a frame for each: what all of it takes at once, a browser feels.
 
-use hysteron_core::criticism::StepReport;
+use hysteron_core::diagnosis::StepReport;
 use hysteron_core::effect::EffectId;
 
 use super::Compare;
