@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
+use hysteron_core::diagnosis::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
 use hysteron_core::effect::{EffectId, name_of, shown_unit};
 use hysteron_core::measurement::Kind;
 use hysteron_core::uncertain;

@@ -1,8 +1,8 @@
 //! Units and names of what a session speaks of.
 
 use super::session::Session;
-use super::{CriticismError, baseline};
-use crate::effect::{Dimension, Effect, Motion};
+use crate::diagnosis::CriticismError;
+use crate::effect::{Dimension, Effect, Motion, baseline};
 use crate::measurement::Quantity;
 
 impl Session {

@@ -2,6 +2,7 @@
 
 mod actuator_lag;
 mod backlash;
+pub(crate) mod baseline;
 mod cogging;
 mod constant_load;
 mod coulomb_friction;

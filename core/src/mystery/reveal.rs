@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Hidden, MysteryError, Truth, seal};
-use crate::criticism::Parameter;
+use crate::diagnosis::Parameter;
 use crate::effect::{Dimension, Effect, EffectId, Motion, VISCOUS_FRICTION, find};
 use crate::measurement::Kind;
 

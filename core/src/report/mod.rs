@@ -11,7 +11,7 @@ mod svg;
 
 use std::fmt::Write as _;
 
-use crate::criticism::{Profile, Step, StepReport, Verdict};
+use crate::diagnosis::{Profile, Step, StepReport, Verdict};
 use crate::measurement::{Kind, Measurement};
 use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
