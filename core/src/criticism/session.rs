@@ -19,10 +19,10 @@ use super::split::hold_back;
 use crate::crew::Crew;
 use crate::diagnosis::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::effect::{
-    self, Dimension, Effect, EffectId, Motion, ParameterSpec, Probe, ProbeInput, ProbeOutput,
-    Range, Rubbing, Scales, SeenGap, baseline,
+    self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
+    Rubbing, Scales, SeenGap, baseline,
 };
-use crate::measurement::{Kind, Measurement, Quantity};
+use crate::measurement::{Kind, Measurement, Motion, Quantity};
 use crate::user_model::{Status, UserModel};
 
 /// A fit with its score.

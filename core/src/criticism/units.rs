@@ -2,8 +2,8 @@
 
 use super::session::Session;
 use crate::diagnosis::CriticismError;
-use crate::effect::{Dimension, Effect, Motion, baseline};
-use crate::measurement::Quantity;
+use crate::effect::{Dimension, Effect, baseline};
+use crate::measurement::{Motion, Quantity};
 
 impl Session {
     /// Checks the units that the user's model says, its effects being among `effects`.

@@ -8,8 +8,8 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
-use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
-use crate::uncertain::{with_error, written_like};
+use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
+use crate::uncertain::{shown_unit, with_error, written_like};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;

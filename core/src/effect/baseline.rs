@@ -1,8 +1,8 @@
 //! The models that effects are added to: a drive with viscous friction, a first-order process.
 
 use super::id::{EffectId, VISCOUS_FRICTION};
-use super::spec::{Dimension, Motion, Scales};
-use crate::measurement::Kind;
+use super::spec::{Dimension, Scales};
+use crate::measurement::{Kind, Motion};
 use crate::model::Model;
 
 /// A parameter of a baseline: symbol, words, and the unit by kind of motion.

@@ -28,7 +28,7 @@ pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub use id::{EffectId, VISCOUS_FRICTION};
 pub use probe::{GapLoad, Place, Rubbing, SeenGap, StepPart, Steps};
 pub use probe::{Probe, ProbeInput, ProbeOutput, Regression};
-pub use spec::{Dimension, Motion, ParameterSpec, Range, Scales, shown_unit};
+pub use spec::{Dimension, ParameterSpec, Range, Scales};
 
 use crate::measurement::Kind;
 use crate::model::Model;

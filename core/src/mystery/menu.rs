@@ -5,8 +5,8 @@ mod process;
 
 use super::make::Bench;
 use super::{Experiment, Hidden, MysteryError};
-use crate::effect::{Effect, EffectId, Motion, find, name_of};
-use crate::measurement::Kind;
+use crate::effect::{Effect, EffectId, find, name_of};
+use crate::measurement::{Kind, Motion};
 use crate::rig::process::ProcessRig;
 use crate::rig::{DriveRig, Random};
 

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Hidden, MysteryError, Truth, seal};
 use crate::diagnosis::Parameter;
-use crate::effect::{Dimension, Effect, EffectId, Motion, VISCOUS_FRICTION, find};
-use crate::measurement::Kind;
+use crate::effect::{Dimension, Effect, EffectId, VISCOUS_FRICTION, find};
+use crate::measurement::{Kind, Motion};
 
 /// Points for the effects and for the numbers; together 100.
 const EFFECT_POINTS: f64 = 70.0;

@@ -30,7 +30,7 @@ impl Limits {
             || position.map_or(0.0, |x| fastest(x, step)),
             |c| largest(&c.values),
         );
-        let slides = measurement.motion() == crate::effect::Motion::Translational;
+        let slides = measurement.motion() == crate::measurement::Motion::Translational;
         Self {
             input: largest(&measurement.input.values),
             duration,
