@@ -27,6 +27,8 @@ pub struct Desk {
     pub side: Side,
     /// Where the buttons are.
     pub targets: Targets,
+    /// Whether to play or to pause was asked for: the page in front takes it, if something moves on it.
+    pub play: bool,
     /// What is to be done after this frame.
     pub commands: Vec<Command>,
 }

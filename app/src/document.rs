@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::desk::Desk;
 use crate::lessons::find;
 use crate::link::{self, parsed};
-use crate::page::View;
+use crate::page::Page;
 use crate::zoom::Zooms;
 
 /// Key of the loop that several pages share.
@@ -28,17 +28,17 @@ pub struct Document {
 
 impl Document {
     /// What is set now.
-    pub fn of(pages: &[Box<dyn View>], front: usize, desk: &Desk) -> Self {
-        let ids = pages.iter().map(|p| p.id());
+    pub fn of(pages: &[Page], front: usize, desk: &Desk) -> Self {
+        let ids = pages.iter().map(|p| p.id);
         let zooms = ids.map(|id| (id.to_owned(), json!(desk.zooms.of(id).text())));
         let shared = [
             (LOOP.to_owned(), json!(desk.relay_loop)),
             (LESSON.to_owned(), json!(desk.study.lesson)),
             (ZOOM.to_owned(), link::object(zooms)),
         ];
-        let own = pages.iter().map(|p| (p.id().to_owned(), p.settings()));
+        let own = pages.iter().map(|p| (p.id.to_owned(), p.view.settings()));
         Self {
-            page: pages.get(front).map_or("", |p| p.id()).to_owned(),
+            page: pages.get(front).map_or("", |p| p.id).to_owned(),
             settings: link::object(shared.into_iter().chain(own)),
         }
     }
@@ -100,12 +100,12 @@ impl Document {
     pub fn apply(
         &self,
         ctx: &egui::Context,
-        pages: &mut [Box<dyn View>],
+        pages: &mut [Page],
         front: &mut usize,
         desk: &mut Desk,
     ) -> Result<(), String> {
-        let Some(index) = pages.iter().position(|p| p.id() == self.page) else {
-            let known: Vec<&str> = pages.iter().map(|p| p.id()).collect();
+        let Some(index) = pages.iter().position(|p| p.id == self.page) else {
+            let known: Vec<&str> = pages.iter().map(|p| p.id).collect();
             return Err(format!(
                 "This link is about a page that does not exist; there are {}.",
                 known.join(", ")
@@ -121,18 +121,18 @@ impl Document {
         }
         let zooms = pages
             .iter()
-            .map(|p| Zooms::read(&self.settings[ZOOM][p.id()]));
+            .map(|p| Zooms::read(&self.settings[ZOOM][p.id]));
         let zooms: Vec<Zooms> = zooms.collect::<Result<_, _>>()?;
         desk.relay_loop = relay_loop;
         desk.study.lesson = lesson;
         for page in pages.iter_mut() {
-            let settings = &self.settings[page.id()];
-            if page.settings() != *settings {
-                page.set(ctx, settings, desk)?;
+            let settings = &self.settings[page.id];
+            if page.view.settings() != *settings {
+                page.view.set(ctx, settings, desk)?;
             }
         }
         for (page, zooms) in pages.iter().zip(zooms) {
-            desk.zooms.set(page.id(), zooms, &page.settings());
+            desk.zooms.set(page.id, zooms, &page.view.settings());
         }
         *front = index;
         Ok(())
@@ -142,7 +142,7 @@ impl Document {
     pub fn restore(
         &self,
         ctx: &egui::Context,
-        pages: &mut [Box<dyn View>],
+        pages: &mut [Page],
         front: &mut usize,
         desk: &mut Desk,
     ) {
@@ -155,11 +155,11 @@ impl Document {
         desk.study.lesson = lesson.filter(|id| find(id).is_some());
         for page in pages.iter_mut() {
             // A page whose settings are of another day begins anew.
-            let _ = page.set(ctx, &self.settings[page.id()], desk);
-            let zooms = Zooms::read(&self.settings[ZOOM][page.id()]).unwrap_or_default();
-            desk.zooms.set(page.id(), zooms, &page.settings());
+            let _ = page.view.set(ctx, &self.settings[page.id], desk);
+            let zooms = Zooms::read(&self.settings[ZOOM][page.id]).unwrap_or_default();
+            desk.zooms.set(page.id, zooms, &page.view.settings());
         }
-        if let Some(index) = pages.iter().position(|p| p.id() == self.page) {
+        if let Some(index) = pages.iter().position(|p| p.id == self.page) {
             *front = index;
         }
     }

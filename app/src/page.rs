@@ -1,63 +1,76 @@
 //! What a page is to the app around it.
 
+use serde_json::Value;
+
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::Table;
-use crate::recent::Recent;
+use crate::export::Tables;
+use crate::files::Door;
 
-/// A page.
-pub trait View {
+/// A page, and what is known of it whatever is on it.
+pub struct Page {
     /// Its name in links and tests.
-    fn id(&self) -> &'static str;
+    pub id: &'static str,
     /// What its tab says.
-    fn title(&self) -> &'static str;
-    /// Takes in what its jobs have found; also called while another page is in front.
+    pub title: &'static str,
+    /// The page itself.
+    pub view: Box<dyn View>,
+    /// Where files come in, if it takes any.
+    pub door: Option<Door>,
+}
+
+impl Page {
+    /// A page that takes no files.
+    pub fn new(id: &'static str, title: &'static str, view: impl View + 'static) -> Self {
+        Self {
+            id,
+            title,
+            view: Box::new(view),
+            door: None,
+        }
+    }
+
+    /// A page that takes the files that come in by this door.
+    pub fn with_door(self, door: Door) -> Self {
+        Self {
+            door: Some(door),
+            ..self
+        }
+    }
+}
+
+/// What a page does.
+pub trait View: Settable {
+    /// Takes in what its jobs and files have brought; also called while another page is in front.
     fn update(&mut self, _ctx: &egui::Context) {}
     /// Draws it.
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk);
-    /// What is set on it, as a plain value: what links, undo and the autosave keep.
-    fn settings(&self) -> serde_json::Value;
-    /// Sets it; what cannot be is refused in one sentence.
-    fn set(
-        &mut self,
-        ctx: &egui::Context,
-        settings: &serde_json::Value,
-        desk: &Desk,
-    ) -> Result<(), String>;
+    /// What the app around it can offer now.
+    fn offer(&self) -> Offer<'_> {
+        Offer::default()
+    }
     /// What it shows, for tests: an object, with `busy` while a job runs.
-    fn hook_state(&self) -> serde_json::Value;
-    /// The numbers behind what it shows, one table for each of [`Self::table_names`].
-    fn tables(&self) -> Vec<Table> {
-        Vec::new()
-    }
-    /// Names of the tables that it can give now.
-    fn table_names(&self) -> Vec<&'static str> {
-        Vec::new()
-    }
-    /// What to try next on it.
-    fn hint(&self) -> Option<Hint> {
-        None
-    }
-    /// Plays or pauses, if something moves on it.
-    fn toggle_play(&mut self, _ctx: &egui::Context) {}
-    /// Whether files can be opened on it.
-    fn takes_files(&self) -> bool {
-        false
-    }
-    /// What it does with a file that is held over the window.
-    fn drop_hint(&self) -> &'static str {
-        "Drop the measurement to compare it"
-    }
-    /// Files that the user has opened on it since the last call.
-    fn opened(&mut self) -> Vec<Recent> {
-        Vec::new()
-    }
-    /// Opens the bytes of a file.
-    fn open(&mut self, _ctx: &egui::Context, _name: &str, _bytes: &[u8]) {}
-    /// Asks for a file to open on it.
-    fn open_dialog(&self, _ctx: &egui::Context) {}
-    /// Opens a file that was dropped on the window.
-    fn open_dropped(&mut self, _ctx: &egui::Context, _file: &egui::DroppedFileHandle) {}
+    fn hook_state(&self) -> Value;
+}
+
+/// What is set on a page, as a plain value: what links, undo and the autosave keep.
+pub trait Settable {
+    /// What is set.
+    fn settings(&self) -> Value;
+    /// Sets it.
+    ///
+    /// # Errors
+    /// One sentence where it cannot be; then nothing is changed.
+    fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), String>;
+}
+
+/// What the app around a page offers for it.
+#[derive(Default)]
+pub struct Offer<'a> {
+    /// What to try next.
+    pub hint: Option<Hint>,
+    /// The numbers behind what it shows.
+    pub tables: Tables<'a>,
 }
 
 /// What to try next: a sentence, and what does it at a press; some things only the user can do.

@@ -54,7 +54,7 @@ impl HysteronApp {
     /// The numbers behind the page in front.
     pub fn tables(&self) -> Vec<Table> {
         let front = self.pages.get(self.front);
-        front.map_or_else(Vec::new, |p| p.tables())
+        front.map_or_else(Vec::new, |p| p.view.offer().tables.all())
     }
 
     pub(super) fn save_text(&self, ctx: &Context, document: save::Document) {
@@ -115,7 +115,7 @@ impl HysteronApp {
 
     /// Such as `explore-output-y-over-time`.
     fn name_of(&self, given: &Given) -> String {
-        let page = self.pages.get(self.front).map_or("", |p| p.id());
+        let page = self.pages.get(self.front).map_or("", |p| p.id);
         let [x, y] = &given.axes;
         let plain = |axis: &str| {
             let name = axis.split(" [").next().unwrap_or_default();

@@ -10,18 +10,18 @@ mod mystery;
 mod start;
 mod tune;
 
-use crate::page::View;
+use crate::page::Page;
 
 /// All pages, in the order of their tabs; the first is in front when the app starts.
-pub fn registry() -> Vec<Box<dyn View>> {
+pub fn registry() -> Vec<Page> {
     vec![
-        Box::<start::Start>::default(),
-        Box::<lessons::Lessons>::default(),
-        Box::<explore::Explore>::default(),
-        Box::<maps::Maps>::default(),
-        Box::<tune::Tune>::default(),
-        Box::<compare::Compare>::default(),
-        Box::<backlash::Backlash>::default(),
-        Box::<mystery::Bench>::default(),
+        start::page(),
+        lessons::page(),
+        explore::page(),
+        maps::page(),
+        tune::page(),
+        compare::page(),
+        backlash::page(),
+        mystery::page(),
     ]
 }

@@ -76,11 +76,11 @@ impl Backlash {
                 ))
                 .clicked()
             {
-                self.files.open_dialog(ui.ctx(), MEASUREMENT);
+                self.files.entrance.open_dialog(ui.ctx(), MEASUREMENT);
             }
         });
         if let Some(recent) = recent.ui(ui, measurement, targets) {
-            self.files.reopen(ui.ctx(), &recent);
+            self.files.entrance.reopen(ui.ctx(), &recent);
         }
         if let Some(built_in) = chosen {
             self.open_built_in(ui.ctx(), built_in);

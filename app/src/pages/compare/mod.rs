@@ -30,18 +30,15 @@ mod state;
 mod waterfall;
 mod welcome;
 
-use hysteron_work::reading::Reading;
-
 use crate::desk::Desk;
-use crate::export::Table;
+use crate::export::{Table, Tables};
 use crate::files::{MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::link::parsed;
-use crate::page::{Hint, View};
-use crate::recent::Recent;
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::save::save;
 use crate::theme;
 use built_in::{BUILT_IN, BuiltIn};
@@ -230,9 +227,9 @@ impl Compare {
                     self.opening = Some(Opening::new(ctx, file.id, file.content()));
                 }
             }
-            Command::Reopen(recent) => self.files.reopen(ctx, &recent),
-            Command::OpenDialog => self.files.open_dialog(ctx, MEASUREMENT),
-            Command::OpenModel => self.files.open_dialog(ctx, MODEL),
+            Command::Reopen(recent) => self.files.entrance.reopen(ctx, &recent),
+            Command::OpenDialog => self.files.entrance.open_dialog(ctx, MEASUREMENT),
+            Command::OpenModel => self.files.entrance.open_dialog(ctx, MODEL),
             Command::Type(typed) => self.typed = Some(typed),
             Command::AddOwn(typed) => self.add_own(ctx, &typed),
             Command::DropModel => {
@@ -326,15 +323,14 @@ impl Compare {
     }
 }
 
+/// The page.
+pub fn page() -> Page {
+    let mut view = Compare::default();
+    let door = view.files.door("Drop the measurement to compare it");
+    Page::new("compare", "Compare", view).with_door(door)
+}
+
 impl View for Compare {
-    fn id(&self) -> &'static str {
-        "compare"
-    }
-
-    fn title(&self) -> &'static str {
-        "Compare"
-    }
-
     fn update(&mut self, ctx: &egui::Context) {
         Self::update(self, ctx);
     }
@@ -343,10 +339,40 @@ impl View for Compare {
         Self::ui(self, ui, desk);
     }
 
+    fn hook_state(&self) -> serde_json::Value {
+        Self::hook_state(self)
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Compare {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(ctx, &parsed(settings)?)
+    }
+}
+
+impl Compare {
+    /// What to try next.
     fn hint(&self) -> Option<Hint> {
         Some(self.next())
     }
 
+    /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
         self.measurement
             .iter()
@@ -354,6 +380,7 @@ impl View for Compare {
             .collect()
     }
 
+    /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let Some(measurement) = &self.measurement else {
             return Vec::new();
@@ -381,42 +408,5 @@ impl View for Compare {
             );
         }
         vec![table]
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(ctx, &parsed(settings)?)
-    }
-
-    fn hook_state(&self) -> serde_json::Value {
-        Self::hook_state(self)
-    }
-
-    fn takes_files(&self) -> bool {
-        true
-    }
-
-    fn opened(&mut self) -> Vec<Recent> {
-        self.files.opened()
-    }
-
-    fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        self.open_as(ctx, name, bytes.to_vec(), Reading::default());
-    }
-
-    fn open_dialog(&self, ctx: &egui::Context) {
-        self.files.open_dialog(ctx, MEASUREMENT);
-    }
-
-    fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {
-        self.files.open_dropped(ctx, file);
     }
 }

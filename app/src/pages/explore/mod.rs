@@ -13,11 +13,11 @@ use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks, figures};
 
 use crate::desk::Desk;
-use crate::export::Table;
+use crate::export::{Table, Tables};
 use crate::language::tr;
 use crate::layout;
 use crate::link::parsed;
-use crate::page::{Hint, View};
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
 use crate::widgets::controls::claim_ui;
 use crate::widgets::playback::Playback;
@@ -54,18 +54,18 @@ struct Finished {
     data: Result<(ExploreData, Vec<Check>), String>,
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("explore", "Explore", Explore::default())
+}
+
 impl View for Explore {
-    fn id(&self) -> &'static str {
-        "explore"
-    }
-
-    fn title(&self) -> &'static str {
-        "Explore"
-    }
-
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.input.clone_from(&desk.relay_loop);
         self.compute();
+        if std::mem::take(&mut desk.play) {
+            self.playback.toggle(ui.ctx());
+        }
         self.play(ui);
         if ui.available_width() < layout::NARROW {
             self.narrow_ui(ui);
@@ -79,35 +79,6 @@ impl View for Explore {
             desk.relay_loop.clone_from(&self.input);
             ui.ctx().request_repaint();
         }
-    }
-
-    fn toggle_play(&mut self, ctx: &egui::Context) {
-        self.playback.toggle(ctx);
-    }
-
-    fn hint(&self) -> Option<Hint> {
-        self.data().map(|(data, _)| hint::hint(&self.input, data))
-    }
-
-    fn table_names(&self) -> Vec<&'static str> {
-        self.data().map_or_else(Vec::new, |_| TABLES.to_vec())
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        self.data().map_or_else(Vec::new, |(data, _)| tables(data))
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(&parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {
@@ -127,6 +98,45 @@ impl View for Explore {
             "checks": data.map(|(_, all)| all.iter().map(|c| c.holds).collect::<Vec<_>>()),
             "plant_error": self.editor.error(),
         })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Explore {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(&parsed(settings)?)
+    }
+}
+
+impl Explore {
+    /// What to try next.
+    fn hint(&self) -> Option<Hint> {
+        self.data().map(|(data, _)| hint::hint(&self.input, data))
+    }
+
+    /// Names of the tables that can be given now.
+    fn table_names(&self) -> Vec<&'static str> {
+        self.data().map_or_else(Vec::new, |_| TABLES.to_vec())
+    }
+
+    /// The numbers behind what is shown.
+    fn tables(&self) -> Vec<Table> {
+        self.data().map_or_else(Vec::new, |(data, _)| tables(data))
     }
 }
 

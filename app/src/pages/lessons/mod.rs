@@ -5,22 +5,19 @@ use crate::desk::Desk;
 use crate::language::tr;
 use crate::layout;
 use crate::lessons::{self, Lesson};
-use crate::page::View;
+use crate::page::{Page, Settable, View};
 use crate::theme;
 
 /// The page.
 #[derive(Default)]
 pub struct Lessons;
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("lessons", "Lessons", Lessons::default())
+}
+
 impl View for Lessons {
-    fn id(&self) -> &'static str {
-        "lessons"
-    }
-
-    fn title(&self) -> &'static str {
-        "Lessons"
-    }
-
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         egui::CentralPanel::default().show(ui, |ui| {
             theme::scroll("lessons").show(ui, |ui| {
@@ -46,6 +43,12 @@ impl View for Lessons {
         });
     }
 
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({"busy": false})
+    }
+}
+
+impl Settable for Lessons {
     fn settings(&self) -> serde_json::Value {
         serde_json::json!({})
     }
@@ -57,10 +60,6 @@ impl View for Lessons {
         _desk: &Desk,
     ) -> Result<(), String> {
         Ok(())
-    }
-
-    fn hook_state(&self) -> serde_json::Value {
-        serde_json::json!({"busy": false})
     }
 }
 

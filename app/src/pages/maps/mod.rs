@@ -10,13 +10,13 @@ use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::Table;
+use crate::export::{Table, Tables};
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::link::parsed;
 use crate::motion;
-use crate::page::{Hint, View};
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
 use hysteron_work::tasks::MapTask;
 use picture::Picture;
@@ -172,15 +172,12 @@ impl Maps {
     }
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("maps", "Maps", Maps::default())
+}
+
 impl View for Maps {
-    fn id(&self) -> &'static str {
-        "maps"
-    }
-
-    fn title(&self) -> &'static str {
-        "Maps"
-    }
-
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.follow(&desk.relay_loop);
         let commands = &mut desk.commands;
@@ -218,6 +215,41 @@ impl View for Maps {
         });
     }
 
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "share": self.map.share(),
+            "point": self.point,
+            "message": self.message,
+            "answer": self.answer(),
+        })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Maps {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(parsed(settings)?, &desk.relay_loop)
+    }
+}
+
+impl Maps {
+    /// What to try next.
     fn hint(&self) -> Option<Hint> {
         Some(Hint::open(
             "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
@@ -225,10 +257,12 @@ impl View for Maps {
         ))
     }
 
+    /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
         vec!["map"]
     }
 
+    /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let size = self.map.size();
         let known: Vec<_> = (0..size * size)
@@ -248,28 +282,5 @@ impl View for Maps {
             table = table.with(title, values);
         }
         vec![table]
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(parsed(settings)?, &desk.relay_loop)
-    }
-
-    fn hook_state(&self) -> serde_json::Value {
-        serde_json::json!({
-            "busy": self.job.is_some(),
-            "share": self.map.share(),
-            "point": self.point,
-            "message": self.message,
-            "answer": self.answer(),
-        })
     }
 }

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::Table;
+use crate::export::{Table, Tables};
 use crate::language::tr;
 use crate::layout;
 use crate::link::parsed;
-use crate::page::View;
+use crate::page::{Offer, Page, Settable, View};
 use crate::theme;
 use crate::widgets::controls::slider;
 use crate::widgets::playback::Playback;
@@ -77,17 +77,17 @@ struct Settings {
     paused: Option<f64>,
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("start", "Start", Start::default())
+}
+
 impl View for Start {
-    fn id(&self) -> &'static str {
-        "start"
-    }
-
-    fn title(&self) -> &'static str {
-        "Start"
-    }
-
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.compute(&desk.relay_loop);
+        if std::mem::take(&mut desk.play) {
+            self.playback.toggle(ui.ctx());
+        }
         self.play(ui);
         egui::CentralPanel::default().show(ui, |ui| {
             theme::scroll("start").show(ui, |ui| {
@@ -98,21 +98,24 @@ impl View for Start {
         });
     }
 
-    fn toggle_play(&mut self, ctx: &egui::Context) {
-        self.playback.toggle(ctx);
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": false,
+            "answer": self.data().map(|d| d.text.clone()),
+            "clock": self.playback.clock,
+            "playing": self.playback.playing,
+        })
     }
 
-    fn table_names(&self) -> Vec<&'static str> {
-        self.data()
-            .map_or_else(Vec::new, |_| TABLES[..SHOWN].to_vec())
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: None,
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
     }
+}
 
-    fn tables(&self) -> Vec<Table> {
-        let mut tables = self.data().map_or_else(Vec::new, tables);
-        tables.truncate(SHOWN);
-        tables
-    }
-
+impl Settable for Start {
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(Settings {
             paused: self.playback.paused(),
@@ -129,14 +132,20 @@ impl View for Start {
         self.playback.set(paused);
         Ok(())
     }
+}
 
-    fn hook_state(&self) -> serde_json::Value {
-        serde_json::json!({
-            "busy": false,
-            "answer": self.data().map(|d| d.text.clone()),
-            "clock": self.playback.clock,
-            "playing": self.playback.playing,
-        })
+impl Start {
+    /// Names of the tables that can be given now.
+    fn table_names(&self) -> Vec<&'static str> {
+        self.data()
+            .map_or_else(Vec::new, |_| TABLES[..SHOWN].to_vec())
+    }
+
+    /// The numbers behind what is shown.
+    fn tables(&self) -> Vec<Table> {
+        let mut tables = self.data().map_or_else(Vec::new, tables);
+        tables.truncate(SHOWN);
+        tables
     }
 }
 

@@ -16,13 +16,13 @@ use hysteron_core::tuning::{TuningInput, TuningReport};
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::Table;
+use crate::export::{Table, Tables};
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::link::parsed;
 use crate::motion;
-use crate::page::{Hint, View};
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
 use hysteron_work::tasks::TuneTask;
 use stage::{Seen, Stage};
@@ -66,15 +66,12 @@ impl Default for Tune {
     }
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("tune", "Tune", Tune::default())
+}
+
 impl View for Tune {
-    fn id(&self) -> &'static str {
-        "tune"
-    }
-
-    fn title(&self) -> &'static str {
-        "Tune"
-    }
-
     fn update(&mut self, _ctx: &egui::Context) {
         let news = self.job.as_mut().map(Job::news).unwrap_or_default();
         for said in news {
@@ -122,6 +119,42 @@ impl View for Tune {
         });
     }
 
+    fn hook_state(&self) -> serde_json::Value {
+        let stage = STAGES.get(self.stage);
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "step": stage.map(|s| s.id),
+            "rule": self.input.rule,
+            "answer": self.answer(),
+            "message": self.message,
+        })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Tune {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(&parsed(settings)?)
+    }
+}
+
+impl Tune {
+    /// What to try next.
     fn hint(&self) -> Option<Hint> {
         let stage = STAGES.get(self.stage)?;
         let command = STAGES
@@ -135,6 +168,7 @@ impl View for Tune {
         })
     }
 
+    /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
         match self.seen() {
             None => Vec::new(),
@@ -143,6 +177,7 @@ impl View for Tune {
         }
     }
 
+    /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let Some(seen) = self.seen() else {
             return Vec::new();
@@ -163,30 +198,6 @@ impl View for Tune {
                 nyquist,
             ),
         ]
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(&parsed(settings)?)
-    }
-
-    fn hook_state(&self) -> serde_json::Value {
-        let stage = STAGES.get(self.stage);
-        serde_json::json!({
-            "busy": self.job.is_some(),
-            "step": stage.map(|s| s.id),
-            "rule": self.input.rule,
-            "answer": self.answer(),
-            "message": self.message,
-        })
     }
 }
 
