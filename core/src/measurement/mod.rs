@@ -13,8 +13,9 @@ mod header;
 mod kind;
 mod mapping;
 mod mat;
-mod measurement;
+
 mod rates;
+mod record;
 mod size;
 mod split;
 mod table;
@@ -27,6 +28,6 @@ pub use found::FoundColumn;
 pub use guess::{Guess, guess};
 pub use kind::{Kind, Motion, Quantity};
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
-pub use measurement::{Channel, MIN_SAMPLES, Measurement};
+pub use record::{Channel, MIN_SAMPLES, Measurement};
 pub use table::{columns, import};
 pub use unit::{COUNTS, needs_torque_constant, usual_units};

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::html::{Cell, escape, table};
-use super::{ReportInput, short};
+use super::html::{Cell, escape, short, table};
+use super::input::ReportInput;
 use crate::diagnosis::{NextExperiment, Parameter, Step};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
