@@ -25,7 +25,7 @@ pub fn imports(tree: &Tree) -> Imports {
     for (index, module) in tree.modules.iter().enumerate() {
         let needed = all.entry(module.file.clone()).or_default();
         for path in &module.named {
-            let Some(Target::ItemOf(home)) = tree.follow(index, path, &mut Vec::new()) else {
+            let Some(Target::ItemOf(home)) = tree.follow(index, path, &[]) else {
                 continue;
             };
             let file = &tree.modules[home].file;
@@ -40,7 +40,7 @@ pub fn imports(tree: &Tree) -> Imports {
 
 impl Tree {
     /// Follows a path that stands in this module.
-    fn follow(&self, module: usize, path: &Segments, asked: &mut Vec<Asked>) -> Option<Target> {
+    fn follow(&self, module: usize, path: &Segments, asked: &[Asked]) -> Option<Target> {
         let mut at = module;
         for (i, segment) in path.iter().enumerate() {
             let is_last = i + 1 == path.len();
@@ -49,12 +49,12 @@ impl Tree {
                 "super" => self.modules[at].parent,
                 "crate" => Some(self.root_of(at)),
                 name => {
-                    let item = || self.item(at, name, &mut asked.clone());
+                    let item = || self.item(at, name, &mut asked.to_vec());
                     if let Some(home) = item().filter(|_| is_last) {
                         return Some(Target::ItemOf(home));
                     }
                     let named = || self.crates.get(name).copied().filter(|_| i == 0);
-                    let inner = self.module(at, name, &mut asked.clone()).or_else(named);
+                    let inner = self.module(at, name, &mut asked.to_vec()).or_else(named);
                     if inner.is_none() {
                         return item().map(Target::ItemOf);
                     }

@@ -14,6 +14,7 @@ mod made_up;
 mod tree;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -152,7 +153,7 @@ fn circle_text(circle: &[String], imports: &Imports) -> String {
             .filter(|(other, _)| circle.contains(other));
         for (other, names) in needed {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            text += &format!("    {file} -> {other}: {}\n", names.join(", "));
+            let _ = writeln!(text, "    {file} -> {other}: {}", names.join(", "));
         }
     }
     text

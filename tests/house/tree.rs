@@ -334,7 +334,7 @@ fn read_folder(
         let path = format!("{folder}/{name}");
         if entry.file_type().map_err(say)?.is_dir() {
             read_folder(project, &path, texts)?;
-        } else if name == "Cargo.toml" || name.ends_with(".rs") {
+        } else if name == "Cargo.toml" || entry.path().extension().is_some_and(|e| e == "rs") {
             texts.insert(path, std::fs::read_to_string(entry.path()).map_err(say)?);
         }
     }
