@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use hysteron_cli::render;
-use hysteron_core::criticism::Diagnosis;
+use hysteron_core::diagnosis::Diagnosis;
 
 fn hysteron() -> Command {
     Command::new(env!("CARGO_BIN_EXE_hysteron-cli"))

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use hysteron_core::criticism::Limits;
+use hysteron_core::diagnosis::Limits;
 use hysteron_core::measurement::{Mapping, TorqueConstant};
 
 use crate::output::Format;

@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::time::Instant;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Limits, Progress};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::{Diagnosis, Limits};
 use hysteron_core::measurement::{self, ImportOptions, Mapping, Measurement};
+use hysteron_core::progress::Progress;
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 use hysteron_work::cores;

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
-use hysteron_core::effect::{EffectId, name_of, shown_unit};
+use hysteron_core::diagnosis::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
+use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
 use hysteron_core::uncertain;
+use hysteron_core::uncertain::shown_unit;
 
 const WIDTH: usize = 80;
 

@@ -2,7 +2,7 @@
 //! the web it is the worker that does it.
 
 use hysteron_core::backlash::GapEstimate;
-use hysteron_core::criticism::{FittedModel, Limits, NextExperiment, StepReport};
+use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, StepReport};
 use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, Tile};

@@ -6,11 +6,13 @@ use std::fmt;
 
 use hysteron_core::backlash::estimate_gap;
 use hysteron_core::crew::Crew;
-use hysteron_core::criticism::{ExperimentJob, NextExperiment, Progress, StepJob, StepReport};
+use hysteron_core::criticism::{ExperimentJob, StepJob};
+use hysteron_core::diagnosis::{NextExperiment, StepReport};
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
 use hysteron_core::measurement::{ImportError, Measurement, Problem, columns, import};
 use hysteron_core::mystery::{Reveal, make, seal_of};
+use hysteron_core::progress::Progress;
 use hysteron_core::report::sha256;
 use hysteron_core::tuning::{TuningReport, tune};
 use hysteron_core::user_model::UserModel;

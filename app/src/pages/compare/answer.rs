@@ -1,6 +1,6 @@
 //! The page's answer, where the model fails, and messages, in words.
 
-use hysteron_core::criticism::StepReport;
+use hysteron_core::diagnosis::StepReport;
 use hysteron_core::effect::{self, EffectId, name_of};
 use hysteron_core::uncertain::with_error;
 use hysteron_core::user_model::UserModel;

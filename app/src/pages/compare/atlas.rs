@@ -2,7 +2,7 @@
 
 use egui::Color32;
 use egui_plot::{HLine, Line, LineStyle, Points, Span};
-use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
+use hysteron_core::diagnosis::{Finding, Profile, ProfileBin, StepReport};
 
 use super::parts::Part;
 use super::state::Compare;

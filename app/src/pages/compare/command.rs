@@ -1,6 +1,6 @@
 //! What is asked of the page.
 
-use hysteron_core::criticism::Limits;
+use hysteron_core::diagnosis::Limits;
 use hysteron_core::effect::EffectId;
 
 use super::choice::Choice;

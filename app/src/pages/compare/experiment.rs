@@ -1,6 +1,6 @@
 //! What these data cannot tell apart, and the experiment that can.
 
-use hysteron_core::criticism::{FittedModel, Limits, NextExperiment, Opening, Program, Trial};
+use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, Opening, Program, Trial};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
 

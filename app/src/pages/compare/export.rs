@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Program, Step};
+use hysteron_core::diagnosis::{Program, Step};
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 

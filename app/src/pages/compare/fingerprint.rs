@@ -1,7 +1,7 @@
 //! What an effect would leave if it were what is missing, beside what is left.
 
 use egui_plot::{Line, LineStyle};
-use hysteron_core::criticism::{Fingerprint, Profile, StepReport};
+use hysteron_core::diagnosis::{Fingerprint, Profile, StepReport};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Measurement;
 

@@ -1,6 +1,6 @@
 //! What to try next: it follows from what is open, and from what was found.
 
-use hysteron_core::criticism::{StepReport, Verdict};
+use hysteron_core::diagnosis::{StepReport, Verdict};
 use hysteron_core::effect::{EffectId, name_of};
 
 use super::experiment;

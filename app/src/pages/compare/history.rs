@@ -1,6 +1,6 @@
 //! The way from the baseline to the model on screen, back and forth; and proposals that are looked for again.
 
-use hysteron_core::criticism::{Limits, StepReport};
+use hysteron_core::diagnosis::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 
 use super::state::Compare;

@@ -1,7 +1,7 @@
 //! Where no effect explains the rest: what is missing, estimated without a model.
 
 use egui_plot::{HLine, Line, PlotPoints};
-use hysteron_core::criticism::{MissingPart, StepReport};
+use hysteron_core::diagnosis::{MissingPart, StepReport};
 
 use crate::language::tr;
 use crate::theme;

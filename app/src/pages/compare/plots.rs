@@ -5,7 +5,7 @@ use std::ops::Range;
 use egui_plot::{
     HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Span, Text,
 };
-use hysteron_core::criticism::{Finding, ReplayChannel};
+use hysteron_core::diagnosis::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
 use super::parts::Part;

@@ -1,7 +1,7 @@
 //! The side of the page: the file, what the data say, and what could be added.
 
 use egui::RichText;
-use hysteron_core::criticism::{Candidate, StepReport};
+use hysteron_core::diagnosis::{Candidate, StepReport};
 use hysteron_core::effect;
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;

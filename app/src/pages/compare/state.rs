@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use hysteron_core::criticism::{Limits, StepReport};
+use hysteron_core::diagnosis::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;

@@ -1,7 +1,7 @@
 //! How the error fell, step by step: back to any of them, and forth again.
 
 use egui::Color32;
-use hysteron_core::criticism::StepReport;
+use hysteron_core::diagnosis::StepReport;
 use hysteron_core::effect::{EffectId, name_of};
 
 use super::answer::times_noise;

@@ -1,6 +1,7 @@
 //! A proposed relay and a fitted model as a loop that can be looked at.
 
-use super::{FittedModel, NextExperiment, Program};
+use super::experiment::{FittedModel, NextExperiment};
+use super::program::Program;
 use crate::drive::{Body, Command, Drive, DriveInput, VelocityRelay};
 use crate::effect::EffectId;
 use crate::explore::ExploreInput;
@@ -111,8 +112,7 @@ impl NextExperiment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::criticism::{Limits, Parameter};
-    use crate::user_model::Status;
+    use crate::diagnosis::{Limits, Parameter, Status};
 
     #[test]
     fn a_process_with_two_lags_and_a_load_becomes_a_loop() {
