@@ -51,6 +51,7 @@ pub mod progress;
 pub mod relay;
 pub mod report;
 pub mod rig;
+mod root;
 pub mod scenario;
 mod simplex;
 pub mod simulate;
