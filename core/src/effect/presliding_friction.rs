@@ -4,9 +4,11 @@
 //! sample by sample (Maxwell-slip elements along Dahl's curve).
 
 use super::dry_friction::{DAMPING, LEVEL, LONG};
-use super::{BodyStart, Effect, EffectId, ParameterSpec, Probe};
+use super::{BodyStart, Effect, EffectId, ParameterSpec, Probe, coulomb_friction};
 use crate::measurement::Kind;
 use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("presliding_friction");
 
 pub(super) struct PreslidingFriction;
 
@@ -49,7 +51,7 @@ fn long_starts(probe: &Probe, share: f64) -> Vec<BodyStart> {
 
 impl Effect for PreslidingFriction {
     fn id(&self) -> EffectId {
-        EffectId::new("presliding_friction")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -77,7 +79,7 @@ impl Effect for PreslidingFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const { &[EffectId::new("coulomb_friction")] }
+        &[coulomb_friction::ID]
     }
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {

@@ -4,7 +4,9 @@
 
 use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::spec::HARD_CROSSINGS;
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{
+    Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction, presliding_friction,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -70,12 +72,7 @@ impl Effect for StribeckFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const {
-            &[
-                EffectId::new("coulomb_friction"),
-                EffectId::new("presliding_friction"),
-            ]
-        }
+        &[coulomb_friction::ID, presliding_friction::ID]
     }
 
     fn needs_its_parts(&self) -> bool {

@@ -3,9 +3,9 @@
 use hysteron_core::diagnosis::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 
-use super::Compare;
+use super::state::Compare;
 use crate::jobs::{Job, News};
-use crate::tasks::ExperimentTask;
+use hysteron_work::tasks::ExperimentTask;
 
 impl Compare {
     /// Every effect that was added, those that were taken back last.

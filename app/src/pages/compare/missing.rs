@@ -4,8 +4,8 @@ use egui_plot::{HLine, Line, PlotPoints};
 use hysteron_core::diagnosis::{MissingPart, StepReport};
 
 use crate::language::tr;
-use crate::pages::chart::Chart;
 use crate::theme;
+use crate::widgets::chart::Chart;
 
 /// Estimates that are drawn.
 const MOST: usize = 3;
