@@ -3,6 +3,7 @@
 
 use super::error::Problem;
 use super::found::FoundColumn;
+use super::clock::unit_from_1970;
 use super::header::{Field, Role, shorten};
 use super::mapping::ImportOptions;
 use super::unit::{COUNTS, is_bare_counts, parse, usual_units};
@@ -28,8 +29,8 @@ struct Resembling {
 const RESEMBLING: [Resembling; 5] = [
     Resembling {
         role: Role::Time,
-        parts: &["time", "zeit", "tiempo", "second", "sekunde"],
-        words: &["t", "sec"],
+        parts: &["time", "zeit", "tiempo", "second", "sekunde", "elapsed", "uhr"],
+        words: &["t", "sec", "date", "datum", "millis", "micros", "clock"],
     },
     Resembling {
         role: Role::Measured(Quantity::Velocity),
@@ -57,17 +58,21 @@ const RESEMBLING: [Resembling; 5] = [
         parts: &[
             "torque", "moment", "force", "kraft", "current", "strom", "volt", "spannung",
             "command", "stell", "input", "eingang", "power", "leistung", "pwm", "duty", "heater",
-            "heiz", "valve", "ventil", "pump",
+            "heiz", "valve", "ventil", "pump", "control", "manipulated", "actuat", "throttle",
+            "drossel", "burner", "brenner", "cooler", "kühler", "kuehler", "ansteuer", "tastgrad",
         ],
-        words: &["u", "i", "iq", "m", "f", "tau", "q1", "q2"],
+        words: &[
+            "u", "i", "iq", "m", "f", "tau", "q1", "q2", "u1", "uin", "ctrl", "cmd", "mv", "co",
+        ],
     },
     Resembling {
         role: Role::Measured(Quantity::Output),
         parts: &[
             "output", "ausgang", "temp", "press", "druck", "level", "stand", "flow", "fluss",
-            "istwert", "pegel",
+            "istwert", "pegel", "niveau", "regelgr", "humid", "feuchte", "concentr", "konzentr",
+            "response", "antwort",
         ],
-        words: &["y", "t1", "t2"],
+        words: &["y", "t1", "t2", "y1", "yout", "pv", "out"],
     },
 ];
 
@@ -94,7 +99,21 @@ const WANTED: [&str; 10] = [
     "fehler",
 ];
 
+/// Names of a column that has the sampling period and not the times.
+const PERIOD: [&str; 10] = [
+    "ts", "dt", "delta_t", "deltat", "period", "sampling", "sample time", "sample period",
+    "abtastzeit", "abtastintervall",
+];
+
+/// Whether a column of this name may have the sampling period.
+pub(super) fn is_period(name: &str) -> bool {
+    let name = name.to_lowercase().replace('_', " ");
+    let sampled = ["sampling time", "sampling period", "sampling interval", "sample interval"];
+    PERIOD.contains(&name.trim()) || sampled.iter().any(|part| name.contains(part)) || name.trim() == "delta t"
+}
+
 /// How much a column looks like a role by its unit and by its name; both add up.
+const DATES: u32 = 50;
 const BY_UNIT: u32 = 20;
 const BY_NAME: u32 = 10;
 
@@ -131,6 +150,10 @@ impl Resembling {
         }
         if column.known_as == Some(self.role) {
             return 100;
+        }
+        // Dates are times, and nothing else.
+        if column.numbers.dates {
+            return if self.role == Role::Time { DATES } else { 0 };
         }
         let unit = column.unit.as_deref().filter(|u| parse(u).is_some());
         let output = self.role == Role::Measured(Quantity::Output);
@@ -198,8 +221,10 @@ fn lacking(fields: &[Field], options: &ImportOptions) -> Vec<Role> {
     let first = [Role::Time, Role::Measured(Input)];
     let first = first.into_iter().filter(|role| !has(*role));
     let outputs = outputs.iter().map(|q| Role::Measured(*q));
-    // What the mapping speaks of is settled by it.
-    let settled = |role: &Role| options.mapping.entries.iter().any(|e| e.role == *role);
+    // What the mapping speaks of is settled by it, and times by a period.
+    let settled = |role: &Role| {
+        options.mapping.speaks_of(*role) || (*role == Role::Time && options.period.is_some())
+    };
     first.chain(outputs).filter(|role| !settled(role)).collect()
 }
 
@@ -221,7 +246,7 @@ pub(super) fn fill(
         free.filter(|i| resembling.may_be(&columns[*i])).collect()
     };
     let wanted = RESEMBLING.iter().filter(|r| lacking.contains(&r.role));
-    let found: Vec<(&Resembling, Vec<usize>)> = wanted
+    let mut found: Vec<(&Resembling, Vec<usize>)> = wanted
         .map(|r| (r, candidates(r)))
         .filter(|(_, candidates)| !candidates.is_empty())
         .collect();
@@ -230,17 +255,12 @@ pub(super) fn fill(
         all.sort_unstable();
         all.dedup();
         let names: Vec<&str> = all.iter().map(|i| columns[*i].address.as_str()).collect();
-        let example = of.last().and_then(|(r, c)| {
-            let address = &columns[*c.first()?].address;
-            Some(format!("{}={}", r.role.name(), shorten(address)))
-        });
         Problem::Unclear {
             wanted: match of {
                 [(only, _)] => only.role.name(),
                 _ => "x1' / 'y",
             },
             found: names.join(", ").chars().take(200).collect(),
-            example: example.unwrap_or_default().into(),
         }
     };
     // A drive or a process?
@@ -249,7 +269,21 @@ pub(super) fn fill(
     if outputs.iter().any(output) && outputs.len() > 1 {
         return Err(unclear(&outputs));
     }
+    let resolved = lacking.iter().all(|role| !is_output(*role)) || outputs.iter().any(|f| f.1.len() == 1);
+    let left = lacking
+        .contains(&INPUT)
+        .then(|| only_left(&columns, &free, &found))
+        .flatten()
+        .filter(|_| resolved);
+    if let Some(left) = left {
+        found.retain(|f| f.0.role != INPUT);
+        found.extend(RESEMBLING.iter().filter(|r| r.role == INPUT).map(|r| (r, vec![left])));
+    }
     for one in &found {
+        // What nothing else is left for needs no likeness.
+        if left.is_some() && one.0.role == INPUT {
+            continue;
+        }
         let something_else = |i: &usize| {
             let mut others = RESEMBLING.iter().filter(|r| r.role != one.0.role);
             others.any(|r| r.may_be(&columns[*i]))
@@ -271,6 +305,30 @@ pub(super) fn fill(
         }
     }
     Ok(notes)
+}
+
+const INPUT: Role = Role::Measured(Quantity::Input);
+
+fn is_output(role: Role) -> bool {
+    use Quantity::{Output, Position, Velocity};
+    matches!(role, Role::Measured(Output | Position | Velocity))
+}
+
+/// The only column that can still be the input when time and outputs have theirs: one that goes up and down, and was not
+/// only wanted.
+fn only_left(
+    columns: &[FoundColumn],
+    free: &[usize],
+    found: &[(&Resembling, Vec<usize>)],
+) -> Option<usize> {
+    let taken = |i: usize| found.iter().any(|(r, all)| r.role != INPUT && all.contains(&i));
+    let moves = |i: usize| {
+        let (name, numbers) = (columns[i].name.to_lowercase(), &columns[i].numbers);
+        let varies = numbers.range.is_some_and(|[least, largest]| least < largest);
+        varies && !numbers.increase() && !numbers.dates && !WANTED.iter().any(|w| name.contains(w))
+    };
+    let mut left = free.iter().copied().filter(|i| !taken(*i) && moves(*i));
+    left.next().filter(|_| left.next().is_none())
 }
 
 /// A role in a sentence.
@@ -295,6 +353,13 @@ impl FoundColumn {
     pub fn unit_as(&self, role: Role, kind: Kind) -> Option<String> {
         if kind == Kind::Process && role != Role::Time {
             return Some(self.unit.clone().unwrap_or_else(|| "1".to_owned()));
+        }
+        let first = self.numbers.first.first().copied().unwrap_or_default();
+        if role == Role::Time && self.numbers.dates {
+            return Some("s".to_owned());
+        }
+        if role == Role::Time && self.unit.is_none() && let Some(unit) = unit_from_1970(first) {
+            return Some(unit.to_owned());
         }
         let usual = usual_units(role);
         let counted = |unit: &str| usual.contains(&COUNTS) && is_bare_counts(unit);

@@ -2,8 +2,9 @@
 
 use std::str::FromStr;
 
-use super::csv::split_header;
 use super::header::{Role, shorten};
+use super::period::Period;
+use super::text::split_header;
 use super::unit::{self, Measures};
 
 /// How to read a file; the default asks the file itself.
@@ -15,6 +16,8 @@ pub struct ImportOptions {
     pub mapping: Mapping,
     /// What a current, voltage or command as input of a drive becomes; see [`TorqueConstant`].
     pub torque_constant: Option<TorqueConstant>,
+    /// The time from one sample to the next, where the file has no times, or others than these.
+    pub period: Option<Period>,
 }
 
 /// Which column is what, as in `t=time [ms], u=-current [A], x1=enc [counts:4096]`.
@@ -32,6 +35,11 @@ impl Mapping {
     /// Whether it says nothing.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
+    }
+
+    /// Whether it says which column this is, or that none is.
+    pub(super) fn speaks_of(&self, role: Role) -> bool {
+        self.entries.iter().any(|entry| entry.role == role)
     }
 
     /// Whether a column of this name is the one meant where it stands in a mapping.
@@ -94,6 +102,12 @@ pub enum MappingError {
     Twice {
         /// Which.
         name: String,
+    },
+    /// Not a number with a unit of time or frequency.
+    #[error("'{text}' is not a sampling period; expected a number and its unit, such as 4s, 0.5ms, 2min or 100Hz")]
+    NotAPeriod {
+        /// What was found.
+        text: String,
     },
     /// Not a number with a unit of torque or force by current, voltage or command.
     #[error(

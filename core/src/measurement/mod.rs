@@ -4,27 +4,37 @@
 //! Time is strictly increasing and every value is finite: [`import_csv`]
 //! refuses anything else, so that no later module has to check again.
 
+mod advice;
+mod cell;
+mod clock;
 mod csv;
 mod error;
 mod found;
 mod guess;
+mod hdf5;
 mod header;
+mod json;
+mod log;
 mod mapping;
 mod mat;
+mod matlab_objects;
+mod period;
 mod rates;
+mod series;
 mod size;
 mod table;
+mod text;
 mod unit;
 
 use serde::{Deserialize, Serialize};
 
-pub use csv::import_csv;
 pub use error::{ImportError, Problem};
-pub use found::{FoundColumn, columns};
+pub use found::FoundColumn;
 pub use guess::{Guess, guess};
 pub use header::Role;
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
-pub use table::import;
+pub use period::Period;
+pub use table::{columns, import, import_csv};
 pub use unit::{COUNTS, needs_torque_constant, usual_units};
 
 /// What kind of system was measured.

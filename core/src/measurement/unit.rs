@@ -152,6 +152,7 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "s" | "sec" | "secs" | "second" | "seconds" | "sekunde" | "sekunden" => (Time, 1.0),
         "ms" | "msec" | "millis" | "millisec" | "millisecond" | "milliseconds" => (Time, 1e-3),
         "us" | "usec" | "micros" | "microsec" | "microsecond" | "microseconds" => (Time, 1e-6),
+        "ns" | "nsec" | "nanoseconds" => (Time, 1e-9),
         "min" | "mins" | "minute" | "minutes" | "minuten" => (Time, 60.0),
         "h" | "hour" | "hours" => (Time, 3600.0),
         "nm" | "n.m" | "n-m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
