@@ -61,8 +61,8 @@ fn bytes_of(content: &Content) -> Cow<'_, [u8]> {
     }
 }
 
-/// Columns that a measurement has at least: time, input, output.
-const FEWEST: usize = 3;
+/// Columns that a measurement has at least: input and output, and a period if no column has the times.
+const FEWEST: usize = 2;
 
 /// Why a file is not read.
 enum Refused {
@@ -106,7 +106,11 @@ impl ReadTask {
                 Problem::NotMapped { .. } => {
                     "A file of MATLAB does not say what its columns are.".to_owned()
                 }
-                _ => error.to_string(),
+                _ => ImportError {
+                    advice: None,
+                    ..error.clone()
+                }
+                .to_string(),
             },
             columns,
         })

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Limits, Progress};
 use hysteron_core::measurement::{
-    self, ImportOptions, Mapping, Measurement, TorqueConstant, import,
+    self, ImportOptions, Mapping, Measurement, Period, TorqueConstant, import,
 };
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
@@ -19,8 +19,8 @@ use crate::enclosed::DRIVE_02;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file; many files: one
-    /// result each
+    /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], JSON, a log of names with values, or a
+    /// MATLAB file; many files: one result each
     #[arg(value_name = "FILE.csv", required = true)]
     pub files: Vec<PathBuf>,
     /// Kind of system; guessed from the columns if not given
@@ -34,6 +34,9 @@ pub(super) struct Arguments {
     /// multiples of it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     torque_constant: Option<AsWritten<TorqueConstant>>,
+    /// The time from one sample to the next where the file has no times, such as 4s, 0.5ms or 100Hz
+    #[arg(long, value_name = "TIME")]
+    period: Option<AsWritten<Period>>,
     /// For a person or for a program; of many files one block or one line of JSON each
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
@@ -272,6 +275,7 @@ pub(super) fn one(
             .as_ref()
             .map_or_else(Mapping::default, |m| m.value.clone()),
         torque_constant: arguments.torque_constant.as_ref().map(|c| c.value),
+        period: arguments.period.as_ref().map(|p| p.value),
     };
     let (measurement, bytes) = read(file, &options)?;
     of(&measurement, (file, &bytes), setup, show)
@@ -357,6 +361,7 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
             "--torque-constant",
             arguments.torque_constant.as_ref().map(|m| m.text.as_str()),
         ),
+        ("--period", arguments.period.as_ref().map(|m| m.text.as_str())),
         ("--limits", arguments.limits.as_deref()),
     ];
     for (option, value) in options {

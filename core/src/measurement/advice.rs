@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use super::error::ImportError;
 use super::found::FoundColumn;
-use super::guess::guess;
+use super::guess::{guess, resembles};
 use super::header::Role;
 use super::mapping::{ImportOptions, Mapping};
 use super::period::Period;
-use super::table::{columns, read};
+use super::table::{all_columns, read};
 use super::unit::{COUNTS, parse};
 use super::{Kind, Quantity};
 
@@ -23,15 +23,23 @@ pub(super) fn advise(error: ImportError, bytes: &[u8], options: &ImportOptions) 
     if !error.problem.is_about_columns() {
         return error;
     }
-    let Ok(columns) = columns(&error.file, bytes) else {
+    let Ok(columns) = all_columns(bytes) else {
         return error;
     };
+    let called = |role| columns.iter().any(|c| resembles(role, &c.name));
+    let moves = guess(&columns).channels.iter().any(|(r, _)| matches!(*r, POSITION | VELOCITY))
+        || called(POSITION)
+        || called(VELOCITY);
     let kinds = match options.kind {
         Some(kind) => vec![kind],
-        None => vec![guess(&columns).kind, Kind::Process, Kind::Drive],
+        None if moves => vec![Kind::Drive, Kind::Process],
+        None => vec![Kind::Process, Kind::Drive],
     };
-    let words = kinds.into_iter().find_map(|kind| {
-        let words = Words::find(&columns, options, kind)?;
+    let all = kinds.into_iter().filter_map(|kind| Some((kind, Words::find(&columns, options, kind)?)));
+    // A period may stand in the file, so that none is needed.
+    let all = all.flat_map(|(kind, words)| [(kind, words.clone(), false), (kind, words, true)]);
+    let words = all.into_iter().find_map(|(kind, mut words, periodic)| {
+        words.periodic &= periodic;
         let read = read(&error.file, bytes, &words.options(options, kind)?);
         let reads = read.map_or_else(|e| !e.problem.is_about_columns(), |_| true);
         reads.then(|| words.text(options))
@@ -43,6 +51,7 @@ pub(super) fn advise(error: ImportError, bytes: &[u8], options: &ImportOptions) 
 }
 
 /// A column in a mapping.
+#[derive(Clone)]
 struct Word {
     role: Role,
     negative: bool,
@@ -54,6 +63,7 @@ struct Word {
 }
 
 /// A mapping, and whether a period is needed besides.
+#[derive(Clone)]
 struct Words {
     words: Vec<Word>,
     map: String,
@@ -102,10 +112,14 @@ impl Words {
                 continue;
             }
             let free = |i: &usize| places.iter().all(|(_, c, _)| c != i);
-            let left = (0..columns.len()).filter(free).find(|i| may_be(role, &columns[*i]));
+            let free = || (0..columns.len()).filter(free);
+            let named = free().find(|i| resembles(role, &columns[*i].name));
+            let left = named.or_else(|| free().find(|i| may_be(role, &columns[*i])));
+            // What moves has one column of two, the position by anything.
+            let left = left.filter(|_| role != POSITION || named.is_some() || !speeds(columns));
             match left {
                 Some(column) => places.push((role, column, false)),
-                None if role == Role::Time => {}
+                None if matches!(role, Role::Time | POSITION) => {}
                 None => return None,
             }
         }
@@ -200,6 +214,11 @@ impl Words {
         }
         text
     }
+}
+
+/// Whether a column is called as velocities are.
+fn speeds(columns: &[FoundColumn]) -> bool {
+    columns.iter().any(|c| resembles(VELOCITY, &c.name))
 }
 
 /// Whether a column may have this role that resembles nothing.

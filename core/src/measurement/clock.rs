@@ -21,19 +21,18 @@ pub(super) fn unit_from_1970(number: f64) -> Option<&'static str> {
 /// What the times of a column are counted from.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clock {
-    /// Seconds from 1970 of the first date, or of the begin of the day of a time of day.
-    begin: Option<i64>,
+    /// The first date, seconds from 1970 and what is beyond the whole ones; of a time of day from the begin of the day.
+    begin: Option<(i64, f64)>,
     /// The last time of day, s, and the days that have gone by since the first.
     day: Option<(f64, i64)>,
     /// What a clock that counts from 1970 showed first, in its own unit.
-    counts_from: Option<i128>,
+    counts_from: Option<(i128, f64)>,
 }
 
 impl Clock {
     /// A clock that counts from 1970, and begins with this number, so that no digit is lost.
     pub fn from_1970(first: &str) -> Option<Self> {
-        let (whole, _) = parts(first)?;
-        let counts_from = Some(whole);
+        let counts_from = Some(parts(first)?);
         Some(Self {
             counts_from,
             ..Self::default()
@@ -47,9 +46,9 @@ impl Clock {
 
     /// What the clock shows that counts from 1970, from its first number.
     pub fn counted(&self, text: &str) -> Option<f64> {
-        let from = self.counts_from?;
+        let (from, beyond) = self.counts_from?;
         let (whole, fraction) = parts(text)?;
-        Some(whole.checked_sub(from)? as f64 + fraction)
+        Some(whole.checked_sub(from)? as f64 + (fraction - beyond))
     }
 
     /// Seconds from the first date, or time of day, to this one.
@@ -66,8 +65,9 @@ impl Clock {
         }
         let whole = stamp.seconds as i64;
         let seconds = days * SECONDS_OF_DAY + whole - stamp.east;
-        let begin = *self.begin.get_or_insert(seconds);
-        Some((seconds - begin) as f64 + (stamp.seconds - whole as f64))
+        let fraction = stamp.seconds - whole as f64;
+        let (begin, beyond) = *self.begin.get_or_insert((seconds, fraction));
+        Some((seconds - begin) as f64 + (fraction - beyond))
     }
 }
 

@@ -123,6 +123,8 @@ pub enum Problem {
         other: String,
         expected: usize,
     },
+    #[error("there are no numbers in the file; expected times, an input and an output")]
+    NoNumbers,
     #[error("the file begins as JSON does, but is none: {what}")]
     Json { what: String },
     #[error("the HDF5 file is damaged, or has what is not read here: {what}; save it from MATLAB with -v7")]

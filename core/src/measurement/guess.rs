@@ -168,9 +168,10 @@ impl Resembling {
         };
         let name = column.name.to_lowercase();
         let has = |parts: &[&str]| parts.iter().any(|p| name.contains(p));
-        let named = has(self.parts) || words(&name).any(|w| self.words.contains(&w));
+        let named = self.resembles(&column.name);
         let measured = output || self.moves();
-        if (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS)) {
+        let other_time = self.role != Role::Time && column.numbers.increase() && RESEMBLING[0].resembles(&column.name);
+        if other_time || (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS)) {
             return 0;
         }
         // The output of a process may have any unit, which then says nothing.
@@ -180,6 +181,13 @@ impl Resembling {
             _ if other => 0,
             fits => BY_UNIT * u32::from(fits.is_some()) + BY_NAME * u32::from(named),
         }
+    }
+
+    /// Whether a name resembles its names.
+    fn resembles(&self, name: &str) -> bool {
+        let lower = name.to_lowercase();
+        let is_word = |word: &str| self.words.contains(&word.to_lowercase().as_str());
+        self.parts.iter().any(|part| lower.contains(part)) || words(name).any(is_word)
     }
 
     /// Whether it is what moves.
@@ -342,10 +350,22 @@ fn said(role: Role) -> &'static str {
     }
 }
 
-/// The words of a name, such as `motor` and `pos` in `motor_pos`.
+/// Whether a name resembles those of this role.
+pub(super) fn resembles(role: Role, name: &str) -> bool {
+    RESEMBLING.iter().any(|r| r.role == role && r.resembles(name))
+}
+
+/// The words of a name, such as `motor` and `pos` in `motor_pos`, or `u` and `Est` in `uEst`.
 fn words(name: &str) -> impl DoubleEndedIterator<Item = &str> {
-    name.split(|c: char| !c.is_alphanumeric() && c != '/')
-        .filter(|w| !w.is_empty())
+    let parts = name.split(|c: char| !c.is_alphanumeric() && c != '/');
+    parts.filter(|w| !w.is_empty()).flat_map(|part| {
+        // The first small letter before a capital one ends a word.
+        let pairs = part.char_indices().zip(part.char_indices().skip(1));
+        let ends = |((_, one), (_, next)): &((usize, char), (usize, char))| one.is_lowercase() && next.is_uppercase();
+        let end = pairs.filter(ends).map(|(_, (at, _))| at).next();
+        let (first, rest) = part.split_at(end.unwrap_or(part.len()));
+        [first, rest].into_iter().filter(|w| !w.is_empty())
+    })
 }
 
 impl FoundColumn {

@@ -3,7 +3,7 @@
 use super::cell::Mark;
 use super::clock::Clock;
 use super::series::{Builder, Series};
-use super::text::{Located, decoded};
+use super::text::decoded;
 
 /// Lines that are looked at to tell what a file is.
 const LOOKED_AT: usize = 20;
@@ -12,16 +12,14 @@ const LOOKED_AT: usize = 20;
 const FEWEST: usize = 2;
 
 /// The series of a log, by name; `None` where the file is none.
-pub(super) fn read(bytes: &[u8]) -> Result<Option<Vec<Series>>, Located> {
-    let Ok(text) = decoded(bytes) else {
-        return Ok(None);
-    };
+pub(super) fn read(bytes: &[u8]) -> Option<Vec<Series>> {
+    let text = decoded(bytes).ok()?;
     let records = || text.lines().map(pairs).filter(|pairs| pairs.len() >= FEWEST);
     let lines = text.lines().filter(|line| !line.trim().is_empty());
     let first = lines.take(LOOKED_AT).map(|line| pairs(line).len() >= FEWEST);
     let (are, all) = first.fold((0, 0), |(are, all), is| (are + usize::from(is), all + 1));
     if 2 * are <= all {
-        return Ok(None);
+        return None;
     }
     let mut builder = Builder::new(bytes.len());
     for (row, record) in records().enumerate() {
@@ -32,7 +30,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Option<Vec<Series>>, Located> {
             }
         }
     }
-    Ok(Some(builder.finish()))
+    Some(builder.finish())
 }
 
 /// A name with its value.

@@ -19,7 +19,7 @@ const HEADER: usize = 128;
 const LEVEL_4_HEADER: usize = 20;
 
 /// Most bytes that all variables of a file may unpack to, so that a hostile one cannot fill the memory.
-const LARGEST: usize = 256 << 20;
+pub(super) const LARGEST: usize = 256 << 20;
 
 /// Bytes of the tag of an element.
 const TAG: usize = 8;
@@ -28,7 +28,7 @@ const TAG: usize = 8;
 const MOST_PROPERTIES: usize = 20_000;
 
 /// Deepest nesting of structures; logs have three or four levels.
-const DEEPEST: usize = 16;
+pub(super) const DEEPEST: usize = 16;
 
 /// What a file is, by its first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -151,14 +151,13 @@ impl Table {
 
     fn measurement(self, name: &str, options: &ImportOptions) -> Result<Measurement, Located> {
         let whole = |problem| (None, problem);
+        if self.series.is_empty() {
+            return Err(whole(Problem::NoNumbers));
+        }
         let mut fields = self.fields();
         if options.mapping.is_empty() && !self.named {
             let names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
-            let found = if names.is_empty() {
-                "no numbers".to_owned()
-            } else {
-                names.join(", ").chars().take(200).collect()
-            };
+            let found = names.join(", ").chars().take(200).collect();
             return Err(whole(Problem::NotMapped { found }));
         }
         map(&mut fields, &options.mapping).map_err(whole)?;

@@ -81,9 +81,11 @@ fn table(bytes: &[u8]) -> Result<Option<Table>, text::Located> {
         Format::Mat4 => Err(whole(Problem::Mat4)),
         Format::Mat5 => Ok(Some(of_matlab(mat::read(bytes).map_err(whole)?))),
         Format::Other => {
-            let series = match json::read(bytes)? {
-                Some(series) => Some(series),
-                None => log::read(bytes)?,
+            // A log may begin with a bracket, as JSON does.
+            let series = match json::read(bytes) {
+                Ok(Some(series)) => Some(series),
+                Ok(None) => log::read(bytes),
+                Err(no_json) => Some(log::read(bytes).ok_or(no_json)?),
             };
             Ok(series.map(|series| Table {
                 series,
@@ -98,11 +100,16 @@ fn table(bytes: &[u8]) -> Result<Option<Table>, text::Located> {
 /// # Errors
 /// One line that says why the file has none, where it is damaged or of another format.
 pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError> {
-    let fail = |(line, problem)| ImportError::new(name, line, None, problem);
-    let mut found = match table(bytes).map_err(fail)? {
-        Some(table) => table.columns(),
-        None => found::addressed(text::survey(bytes).map_err(fail)?),
-    };
+    let found = all_columns(bytes);
+    let mut found = found.map_err(|(line, p)| ImportError::new(name, line, None, p))?;
     found.retain(|column| column.numbers.count >= MIN_SAMPLES);
     Ok(found)
+}
+
+/// The columns of a file, however short they are.
+pub(super) fn all_columns(bytes: &[u8]) -> Result<Vec<FoundColumn>, text::Located> {
+    Ok(match table(bytes)? {
+        Some(table) => table.columns(),
+        None => found::addressed(text::survey(bytes)?),
+    })
 }

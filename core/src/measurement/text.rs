@@ -182,7 +182,9 @@ impl Begin {
     fn may_be_header(&self, row: &str) -> bool {
         let names = split_header(row, self.separator);
         let said = names.iter().filter(|name| !name.is_empty()).count();
-        names.len() == self.columns && (said > 1 || self.columns < 3)
+        // A separator may end each row.
+        let alike = names.len() == self.columns || names.len() + 1 == self.columns;
+        alike && (said > 1 || self.columns < 3)
     }
 }
 
@@ -191,9 +193,6 @@ fn begin(rows: &[&str], separator: char) -> Option<Begin> {
     let columns = |row: &str| {
         let mut fields = Vec::new();
         split_row(row, separator, &mut fields);
-        if fields.last().is_some_and(|f| f.is_empty()) {
-            fields.pop();
-        }
         let said = fields.iter().filter(|f| !f.is_empty()).count();
         let values = fields.iter().filter(|f| looks_like_a_value(f)).count();
         (values > 1 && 2 * values > said).then_some(fields.len())
