@@ -43,7 +43,10 @@ fn advised(error: &ImportError) -> Option<ImportOptions> {
 fn read_with_advice(bytes: &[u8], words: &str) -> Measurement {
     let error = import("rig", bytes, &ImportOptions::default()).expect_err("must be refused");
     let line = error.to_string();
-    assert!(line.contains(words) && !line.contains('\n'), "expected '{words}' in: {line}");
+    assert!(
+        line.contains(words) && !line.contains('\n'),
+        "expected '{words}' in: {line}"
+    );
     let options = advised(&error).unwrap_or_else(|| panic!("no advice: {line}"));
     import("rig", bytes, &options).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -69,7 +72,11 @@ fn warmth(k: usize) -> f64 {
 fn is_the_heater(m: &Measurement, step: f64) {
     assert_eq!((m.kind, m.len()), (Kind::Process, 40));
     for k in 0..40 {
-        assert!((m.time[k] - k as f64 * step).abs() < 1e-6 * step, "{} at {k}", m.time[k]);
+        assert!(
+            (m.time[k] - k as f64 * step).abs() < 1e-6 * step,
+            "{} at {k}",
+            m.time[k]
+        );
         assert_eq!(m.input.values[k], f64::from(u8::from(on(k))));
         assert_eq!(m.outputs[0].values[k], warmth(k));
     }
@@ -82,23 +89,34 @@ fn times_are_dates_or_counted_from_1970() {
         format!("timestamp,heater,temperature\n{}", rows(40, row))
     };
     let dates: [(&str, &dyn Fn(usize) -> String); 5] = [
-        ("a zone", &|k| format!("2025-01-01T23:59:{:02}.250Z", 10 + k)),
+        ("a zone", &|k| {
+            format!("2025-01-01T23:59:{:02}.250Z", 10 + k)
+        }),
         ("no zone, past midnight", &|k| {
             let (day, second) = if k < 20 { (1, 40 + k) } else { (2, k - 20) };
             let minute = if k < 20 { "23:59" } else { "00:00" };
             format!("2025-01-0{day} {minute}:{second:02}")
         }),
         ("a time of day, past midnight", &|k| {
-            let (minute, second) = if k < 20 { ("23:59", 40 + k) } else { ("00:00", k - 20) };
+            let (minute, second) = if k < 20 {
+                ("23:59", 40 + k)
+            } else {
+                ("00:00", k - 20)
+            };
             format!("{minute}:{second:02}.5")
         }),
         ("seconds", &|k| format!("{}.5", 1_700_000_000 + k)),
-        ("nanoseconds", &|k| format!("{}", 1_700_000_000_000_000_001 + k as u64 * 1_000_000_000)),
+        ("nanoseconds", &|k| {
+            format!("{}", 1_700_000_000_000_000_001 + k as u64 * 1_000_000_000)
+        }),
     ];
     for (habit, time) in dates {
         let m = accepted(&table(time));
         is_the_heater(&m, 1.0);
-        let said = m.warnings.iter().any(|w| w.contains("dates or times of day") || w.contains("from 1970"));
+        let said = m
+            .warnings
+            .iter()
+            .any(|w| w.contains("dates or times of day") || w.contains("from 1970"));
         assert!(said, "{habit}: {:?}", m.warnings);
     }
     let milli = |k: usize| format!("{}", 1_700_000_000_000_u64 + k as u64 * 100);
@@ -108,21 +126,45 @@ fn times_are_dates_or_counted_from_1970() {
     is_the_heater(&accepted(&table(&fast)), 1e-6);
     let german = rows(40, |k| {
         let temperature = format!("{:.1}", warmth(k)).replace('.', ",");
-        format!("31.12.2025 10:00:{k:02};{};{temperature}", if on(k) { "ein" } else { "aus" })
+        format!(
+            "31.12.2025 10:00:{k:02};{};{temperature}",
+            if on(k) { "ein" } else { "aus" }
+        )
     });
-    is_the_heater(&accepted(&format!("Zeit;Heizung;Temperatur\n{german}")), 1.0);
+    is_the_heater(
+        &accepted(&format!("Zeit;Heizung;Temperatur\n{german}")),
+        1.0,
+    );
 }
 
 #[test]
 fn states_are_one_and_zero() {
-    for (one, zero) in [("True", "False"), ("on", "off"), ("YES", "no"), ("open", "closed"), ("ein", "aus")] {
+    for (one, zero) in [
+        ("True", "False"),
+        ("on", "off"),
+        ("YES", "no"),
+        ("open", "closed"),
+        ("ein", "aus"),
+    ] {
         let row = |k| format!("{k},{},{}", if on(k) { one } else { zero }, warmth(k));
-        is_the_heater(&accepted(&format!("time,heater_on,t1\n{}", rows(40, row))), 1.0);
+        is_the_heater(
+            &accepted(&format!("time,heater_on,t1\n{}", rows(40, row))),
+            1.0,
+        );
     }
-    let state = |k| if k == 13 { "maybe" } else { ["off", "on"][usize::from(on(k))] };
+    let state = |k| {
+        if k == 13 {
+            "maybe"
+        } else {
+            ["off", "on"][usize::from(on(k))]
+        }
+    };
     let row = |k| format!("{k},{},{}", state(k), warmth(k));
     let error = read(&format!("time,heater_on,t1\n{}", rows(40, row))).expect_err("no state");
-    assert!(error.to_string().contains("'maybe' is not a number"), "{error}");
+    assert!(
+        error.to_string().contains("'maybe' is not a number"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -134,18 +176,35 @@ fn a_period_stands_for_times() {
             period: Some(period),
             ..ImportOptions::default()
         };
-        import("rig.csv", format!("{head}\n{table}").as_bytes(), &options).unwrap_or_else(|e| panic!("{e}"))
+        import("rig.csv", format!("{head}\n{table}").as_bytes(), &options)
+            .unwrap_or_else(|e| panic!("{e}"))
     };
     is_the_heater(&with("u,y", "4s"), 4.0);
     is_the_heater(&with("u,y", "100Hz"), 0.01);
-    read_with_advice(format!("u,y\n{table}").as_bytes(), "--period 1s --map \"u=u, y=y\" with the true period");
+    read_with_advice(
+        format!("u,y\n{table}").as_bytes(),
+        "--period 1s --map \"u=u, y=y\" with the true period",
+    );
     // A column that has it, in its first row or in all.
     for rest in ["", "4"] {
-        let row = |k| format!("{},{},{}", u8::from(on(k)), warmth(k), if k == 0 { "4" } else { rest });
+        let row = |k| {
+            format!(
+                "{},{},{}",
+                u8::from(on(k)),
+                warmth(k),
+                if k == 0 { "4" } else { rest }
+            )
+        };
         for name in ["Ts", "dt [s]", "sampling time"] {
             let m = accepted(&format!("u,y,{name}\n{}", rows(40, row)));
             is_the_heater(&m, 4.0);
-            assert!(m.warnings.iter().any(|w| w.contains("sampling period, 4 s")), "{:?}", m.warnings);
+            assert!(
+                m.warnings
+                    .iter()
+                    .any(|w| w.contains("sampling period, 4 s")),
+                "{:?}",
+                m.warnings
+            );
         }
         let m = accepted(&format!("u,y,Ts [min]\n{}", rows(40, row)));
         is_the_heater(&m, 240.0);
@@ -158,7 +217,9 @@ fn a_period_stands_for_times() {
 
 #[test]
 fn a_device_says_much_before_its_numbers() {
-    let table = rows(40, |k| format!("{}.0,{}.0,{},0", k * 1000, u8::from(on(k)), warmth(k)));
+    let table = rows(40, |k| {
+        format!("{}.0,{}.0,{},0", k * 1000, u8::from(on(k)), warmth(k))
+    });
     for head in [
         "Recorder 7\nSamples,40\nInterval(ms),1000\nTime,Channel 1,Channel 2,Channel 3\nms,heater,temperature,-\n",
         "Recorder 7,,,\n,,,\nTime [ms],heater,temperature,-\n",
@@ -173,11 +234,15 @@ fn a_device_says_much_before_its_numbers() {
         mapping: "u=Channel 1, y=that".parse().expect("a mapping"),
         ..ImportOptions::default()
     };
-    let m = import("rig.csv", format!("{head}{table}").as_bytes(), &options).unwrap_or_else(|e| panic!("{e}"));
+    let m = import("rig.csv", format!("{head}{table}").as_bytes(), &options)
+        .unwrap_or_else(|e| panic!("{e}"));
     is_the_heater(&m, 1.0);
     // A drive needs the units that stand nowhere.
     let head = "Axis 1\nTime,Analog 1,Analog 2,Analog 3\nms,Torque,Motor speed,Not selected\n";
-    read_with_advice(format!("{head}{table}").as_bytes(), "--map \"t=Time, u=Torque [N m], v1=Motor speed [rad/s]\" with the true units");
+    read_with_advice(
+        format!("{head}{table}").as_bytes(),
+        "--map \"t=Time, u=Torque [N m], v1=Motor speed [rad/s]\" with the true units",
+    );
 }
 
 #[test]
@@ -190,7 +255,10 @@ fn the_only_column_left_is_the_input() {
     is_the_heater(&accepted(&table("time,whatever,temperature")), 1.0);
     is_the_heater(&accepted(&table("Zeit,Stellgröße,Temperatur")), 1.0);
     // What was only wanted is no input.
-    read_with_advice(table("time,setpoint,temperature").as_bytes(), "no column 'u'");
+    read_with_advice(
+        table("time,setpoint,temperature").as_bytes(),
+        "no column 'u'",
+    );
 }
 
 #[test]
@@ -198,7 +266,11 @@ fn rows_that_are_there_twice_are_read_once() {
     let row = |k| format!("{},{},{}", k / 2, u8::from(on(k / 2)), warmth(k / 2));
     let m = accepted(&format!("t [s],u,y\n{}", rows(80, row)));
     is_the_heater(&m, 1.0);
-    assert!(m.warnings.iter().any(|w| w.starts_with("40 rows repeat")), "{:?}", m.warnings);
+    assert!(
+        m.warnings.iter().any(|w| w.starts_with("40 rows repeat")),
+        "{:?}",
+        m.warnings
+    );
     // Other values at the same time are a contradiction.
     let row = |k| format!("{},{},{}", k / 2, u8::from(on(k)), warmth(k));
     assert!(read(&format!("t [s],u,y\n{}", rows(80, row))).is_err());
@@ -207,14 +279,28 @@ fn rows_that_are_there_twice_are_read_once() {
 #[test]
 fn names_keep_their_numbers() {
     let row = |k| format!("{k},{},{},{},1", u8::from(on(k)), warmth(k), warmth(k + 3));
-    let text = format!("t (s),heater (1),temp (5),temp (6),state (1)\n{}", rows(40, row));
-    let names: Vec<String> = columns("rig.csv", text.as_bytes()).unwrap().into_iter().map(|c| c.name).collect();
-    assert_eq!(names, ["t", "heater (1)", "temp (5)", "temp (6)", "state (1)"]);
+    let text = format!(
+        "t (s),heater (1),temp (5),temp (6),state (1)\n{}",
+        rows(40, row)
+    );
+    let names: Vec<String> = columns("rig.csv", text.as_bytes())
+        .unwrap()
+        .into_iter()
+        .map(|c| c.name)
+        .collect();
+    assert_eq!(
+        names,
+        ["t", "heater (1)", "temp (5)", "temp (6)", "state (1)"]
+    );
     let m = read_with_advice(text.as_bytes(), "--map \"t=t, u=heater (1), y=temp (5)\"");
     is_the_heater(&m, 1.0);
     // A plain number is a unit where no other number stands in parentheses.
     let row = |k| format!("{k},{},{}", u8::from(on(k)), warmth(k));
-    assert!(accepted(&format!("t (s),u (1),y (1)\n{}", rows(40, row))).warnings.is_empty());
+    assert!(
+        accepted(&format!("t (s),u (1),y (1)\n{}", rows(40, row)))
+            .warnings
+            .is_empty()
+    );
 }
 
 #[test]
@@ -223,20 +309,41 @@ fn logs_of_names_with_values_are_read() {
     let lines: [Line; 4] = [
         |k| format!("t: {k} u: {} y: {}", u8::from(on(k)), warmth(k)),
         |k| format!("t={k}, u={}, y={}", u8::from(on(k)), warmth(k)),
-        |k| format!("[info] t: {k} s; u: {} %; y: {} degC; state: running", u8::from(on(k)), warmth(k)),
-        |k| format!("time:{k}s heater:{} temp:{}degC", if on(k) { "on" } else { "off" }, warmth(k)),
+        |k| {
+            format!(
+                "[info] t: {k} s; u: {} %; y: {} degC; state: running",
+                u8::from(on(k)),
+                warmth(k)
+            )
+        },
+        |k| {
+            format!(
+                "time:{k}s heater:{} temp:{}degC",
+                if on(k) { "on" } else { "off" },
+                warmth(k)
+            )
+        },
     ];
     for line in lines {
         let m = accepted(&format!("logger 3\n{}", rows(40, line)));
         is_the_heater(&m, 1.0);
     }
     let m = accepted(&rows(40, lines[2]));
-    assert_eq!((m.input.unit.as_str(), m.outputs[0].unit.as_str()), ("%", "degC"));
+    assert_eq!(
+        (m.input.unit.as_str(), m.outputs[0].unit.as_str()),
+        ("%", "degC")
+    );
 }
 
 #[test]
 fn json_is_read_by_lines_rows_or_columns() {
-    let object = |k| format!("{{\"t\": {k}, \"log\": {{\"u\": {}, \"y\": {}}}, \"note\": null}}", on(k), warmth(k));
+    let object = |k| {
+        format!(
+            "{{\"t\": {k}, \"log\": {{\"u\": {}, \"y\": {}}}, \"note\": null}}",
+            on(k),
+            warmth(k)
+        )
+    };
     let list = |value: &dyn Fn(usize) -> String| (0..40).map(value).collect::<Vec<_>>().join(",");
     let plain = |k: usize| format!("{{\"t\": {k}, \"u\": {}, \"y\": {}}}", on(k), warmth(k));
     let series = |value: &dyn Fn(usize) -> String| format!("[{}]", list(value));
@@ -258,7 +365,12 @@ fn json_is_read_by_lines_rows_or_columns() {
     for text in [rows(40, object), format!("[{}]", list(&object))] {
         is_the_heater(&accepted(&text), 1.0);
     }
-    for (text, said) in [("{\"t\": [1,", "is none"), ("[1, 2", "is none"), ("{}", "no numbers"), ("[[[[", "is none")] {
+    for (text, said) in [
+        ("{\"t\": [1,", "is none"),
+        ("[1, 2", "is none"),
+        ("{}", "no numbers"),
+        ("[[[[", "is none"),
+    ] {
         let error = read(text).expect_err("no record").to_string();
         assert!(error.contains(said) && !error.contains('\n'), "{error}");
     }
@@ -291,18 +403,37 @@ fn hdf5_of_matlab_is_read() {
 const FAILING: [(&str, &str); 7] = [
     ("cart-0m20-velocity-printed.csv", ""),
     ("heater-step-plain-header.csv", ""),
-    ("incubator-exp1-original-head.csv", "--map \"t=time [s], u=heater_on, y=t1\""),
-    ("tanks-original-no-time-column.csv", "--map \"u=uEst, y=yEst\""),
-    ("servo-export-preamble.csv", "--map \"t=Time, u=Torque [N m], v1=Servo motor speed [rad/s]\""),
-    ("iso-time-and-numbered-names.csv", "x1=pos (5) [rad], v1=speed (5) [rad/s]\""),
-    ("simulink-timeseries.mat", "--map \"t=sig_speed.Time, u=sig_volt.Data [V], v1=sig_speed.Data [rad/s]\""),
+    (
+        "incubator-exp1-original-head.csv",
+        "--map \"t=time [s], u=heater_on, y=t1\"",
+    ),
+    (
+        "tanks-original-no-time-column.csv",
+        "--map \"u=uEst, y=yEst\"",
+    ),
+    (
+        "servo-export-preamble.csv",
+        "--map \"t=Time, u=Torque [N m], v1=Servo motor speed [rad/s]\"",
+    ),
+    (
+        "iso-time-and-numbered-names.csv",
+        "x1=pos (5) [rad], v1=speed (5) [rad/s]\"",
+    ),
+    (
+        "simulink-timeseries.mat",
+        "--map \"t=sig_speed.Time, u=sig_volt.Data [V], v1=sig_speed.Data [rad/s]\"",
+    ),
 ];
 
 #[test]
 fn files_from_real_work_are_read() {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/failing"));
     if !folder.is_dir() {
-        assert!(std::env::var_os("CI").is_none(), "{} is not there", folder.display());
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "{} is not there",
+            folder.display()
+        );
         println!("skipped: {} is not there", folder.display());
         return;
     }

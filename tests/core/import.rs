@@ -552,10 +552,7 @@ fn what_several_columns_could_be_is_asked() {
             &["line 1", "no column 'u'", ": pwm, Voltage;"],
         ),
         // Of one that could be two things, and of two that have one name.
-        (
-            "t [s],pump flow",
-            &["no column 'u'", ": pump flow"],
-        ),
+        ("t [s],pump flow", &["no column 'u'", ": pump flow"]),
         (
             "t [s],y,duty,duty",
             &["no column 'u'", ": column 3, column 4;", "u=column 3"],

@@ -297,7 +297,12 @@ fn what_is_wrong_is_said_with_what_would_be_right() {
         FLAT,
         "t=time,u=current [A],x1=enc [rad]",
         None,
-        &["column time", "no unit", "time [s]", "--map \"t=time [s], u=current [A], x1=enc [rad]"],
+        &[
+            "column time",
+            "no unit",
+            "time [s]",
+            "--map \"t=time [s], u=current [A], x1=enc [rad]",
+        ],
     );
     refused(FLAT, "t=time [s],u=current [A]", None, &["no column 'x1'"]);
     refused(

@@ -361,7 +361,10 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
             "--torque-constant",
             arguments.torque_constant.as_ref().map(|m| m.text.as_str()),
         ),
-        ("--period", arguments.period.as_ref().map(|m| m.text.as_str())),
+        (
+            "--period",
+            arguments.period.as_ref().map(|m| m.text.as_str()),
+        ),
         ("--limits", arguments.limits.as_deref()),
     ];
     for (option, value) in options {

@@ -27,7 +27,10 @@ pub(super) fn advise(error: ImportError, bytes: &[u8], options: &ImportOptions) 
         return error;
     };
     let called = |role| columns.iter().any(|c| resembles(role, &c.name));
-    let moves = guess(&columns).channels.iter().any(|(r, _)| matches!(*r, POSITION | VELOCITY))
+    let moves = guess(&columns)
+        .channels
+        .iter()
+        .any(|(r, _)| matches!(*r, POSITION | VELOCITY))
         || called(POSITION)
         || called(VELOCITY);
     let kinds = match options.kind {
@@ -35,7 +38,9 @@ pub(super) fn advise(error: ImportError, bytes: &[u8], options: &ImportOptions) 
         None if moves => vec![Kind::Drive, Kind::Process],
         None => vec![Kind::Process, Kind::Drive],
     };
-    let all = kinds.into_iter().filter_map(|kind| Some((kind, Words::find(&columns, options, kind)?)));
+    let all = kinds
+        .into_iter()
+        .filter_map(|kind| Some((kind, Words::find(&columns, options, kind)?)));
     // A period may stand in the file, so that none is needed.
     let all = all.flat_map(|(kind, words)| [(kind, words.clone(), false), (kind, words, true)]);
     let words = all.into_iter().find_map(|(kind, mut words, periodic)| {
@@ -78,7 +83,9 @@ impl Words {
         let mut units: Vec<(Role, String)> = Vec::new();
         for entry in &options.mapping.entries {
             let source = entry.source.as_deref().unwrap_or_default();
-            let named = columns.iter().position(|c| c.address == source || c.name == source);
+            let named = columns
+                .iter()
+                .position(|c| c.address == source || c.name == source);
             if let Some(column) = named {
                 places.push((entry.role, column, entry.negative));
                 units.extend(entry.unit.clone().map(|unit| (entry.role, unit)));
@@ -106,8 +113,13 @@ impl Words {
             }
         }
         for role in needed {
-            let optional = matches!(role, Role::Measured(Quantity::Position | Quantity::Velocity));
-            let moves = places.iter().any(|(r, ..)| matches!(*r, POSITION | VELOCITY));
+            let optional = matches!(
+                role,
+                Role::Measured(Quantity::Position | Quantity::Velocity)
+            );
+            let moves = places
+                .iter()
+                .any(|(r, ..)| matches!(*r, POSITION | VELOCITY));
             if places.iter().any(|(r, ..)| *r == role) || (optional && moves) {
                 continue;
             }
@@ -128,11 +140,17 @@ impl Words {
         places.sort_by_key(|(role, ..)| order.iter().position(|r| r == role));
         let slides = places.iter().any(|(role, column, _)| {
             let unit = columns[*column].unit_as(*role, kind).unwrap_or_default();
-            let unit = units.iter().find(|(r, _)| r == role).map_or(unit, |(_, u)| u.clone());
+            let unit = units
+                .iter()
+                .find(|(r, _)| r == role)
+                .map_or(unit, |(_, u)| u.clone());
             parse(&unit).is_some_and(|(measures, _)| matches!(measures.si(), "N" | "m" | "m/s"))
         });
         let words = places.into_iter().map(|(role, column, negative)| {
-            let said = units.iter().find(|(r, _)| *r == role).map(|(_, unit)| unit.clone());
+            let said = units
+                .iter()
+                .find(|(r, _)| *r == role)
+                .map(|(_, unit)| unit.clone());
             let found = &columns[column];
             let (unit, assumed) = match said.filter(|unit| role.takes(kind, unit)) {
                 Some(unit) => (Some(unit), false),
@@ -173,7 +191,8 @@ impl Words {
         let map = parts.join(", ");
         let special = |c: char| matches!(c, '"' | '$' | '`' | '\\' | '!');
         let quoted = if map.contains(special) { '\'' } else { '"' };
-        (!map.contains('\'') || quoted == '"').then_some(Self {
+        let fits = (!map.contains('\'') || quoted == '"') && !map.contains(char::is_control);
+        fits.then_some(Self {
             words,
             map,
             periodic,
@@ -224,7 +243,9 @@ fn speeds(columns: &[FoundColumn]) -> bool {
 /// Whether a column may have this role that resembles nothing.
 fn may_be(role: Role, column: &FoundColumn) -> bool {
     let numbers = &column.numbers;
-    let varies = numbers.range.is_some_and(|[least, largest]| least < largest);
+    let varies = numbers
+        .range
+        .is_some_and(|[least, largest]| least < largest);
     match role {
         Role::Time => varies && numbers.increase(),
         Role::Measured(_) => varies && !numbers.dates,
@@ -238,7 +259,9 @@ fn unit(role: Role, kind: Kind, column: &FoundColumn, slides: bool) -> (Option<S
         (_, Some(unit)) if counts(&unit) => (Some("counts, 4096/rev".to_owned()), true),
         // What the file says, or what is seen by the times themselves.
         (Some(own), Some(unit)) if *own == unit => (None, false),
-        (_, Some(unit)) if kind == Kind::Process && role != Role::Time && unit == "1" => (None, false),
+        (_, Some(unit)) if kind == Kind::Process && role != Role::Time && unit == "1" => {
+            (None, false)
+        }
         (_, Some(unit)) => (Some(unit), false),
         (_, None) if kind == Kind::Process && role != Role::Time => (None, false),
         (_, None) => (Some(usual(role, &column.name, slides).to_owned()), true),

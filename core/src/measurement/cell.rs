@@ -16,7 +16,10 @@ impl Mark {
 
     /// A number.
     pub fn number(&mut self, text: &str) -> Option<f64> {
-        let here = text.bytes().find(|b| matches!(b, b'.' | b',')).map(char::from);
+        let here = text
+            .bytes()
+            .find(|b| matches!(b, b'.' | b','))
+            .map(char::from);
         if here.is_some() && self.seen.is_some() && here != self.seen {
             return None;
         }

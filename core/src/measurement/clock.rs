@@ -77,7 +77,11 @@ fn parts(text: &str) -> Option<(i128, f64)> {
     if !rest.bytes().all(|b| b.is_ascii_digit()) || whole.len() > 30 {
         return None;
     }
-    let fraction = if rest.is_empty() { 0.0 } else { format!("0.{rest}").parse().ok()? };
+    let fraction = if rest.is_empty() {
+        0.0
+    } else {
+        format!("0.{rest}").parse().ok()?
+    };
     Some((whole.parse().ok()?, fraction))
 }
 
@@ -128,7 +132,8 @@ fn day(text: &str) -> Option<i64> {
     if turned {
         (year, day) = (day, year);
     }
-    let real = (1000..=9999).contains(&year) && (1..=12).contains(&month) && (1..=31).contains(&day);
+    let real =
+        (1000..=9999).contains(&year) && (1..=12).contains(&month) && (1..=31).contains(&day);
     (real && parts.next().is_none()).then(|| days_from_1970(year, month, day))
 }
 
@@ -157,7 +162,14 @@ fn zone(text: &str) -> Option<(&str, i64)> {
         4 => number / 100 * 3600 + number % 100 * 60,
         _ => return None,
     };
-    Some((time, if zone.starts_with('-') { -seconds } else { seconds }))
+    Some((
+        time,
+        if zone.starts_with('-') {
+            -seconds
+        } else {
+            seconds
+        },
+    ))
 }
 
 /// Seconds of a time of day, `09:27`, `09:27:03` or `09:27:03.748`.
@@ -166,7 +178,9 @@ fn time_of_day(text: &str) -> Option<f64> {
     let mut whole = |most| parts.next()?.parse::<u8>().ok().filter(|n| *n <= most);
     let [hours, minutes] = [whole(24)?, whole(59)?];
     let seconds: f64 = match parts.next() {
-        Some(s) if s.starts_with(|c: char| c.is_ascii_digit()) => s.replacen(',', ".", 1).parse().ok()?,
+        Some(s) if s.starts_with(|c: char| c.is_ascii_digit()) => {
+            s.replacen(',', ".", 1).parse().ok()?
+        }
         Some(_) => return None,
         None => 0.0,
     };
@@ -188,10 +202,18 @@ mod tests {
     #[test]
     fn dates_are_seconds_from_the_first() {
         for (first, second, seconds) in [
-            ("2025-01-01T09:27:03.748Z", "2025-01-01T09:27:03.849Z", 0.101),
+            (
+                "2025-01-01T09:27:03.748Z",
+                "2025-01-01T09:27:03.849Z",
+                0.101,
+            ),
             ("2024-02-28 23:59:59", "2024-03-01 00:00:00", 86_401.0),
             ("2023-02-28T23:59:59,5", "2023-03-01T00:00:00", 0.5),
-            ("2025-03-30T01:00:00+01:00", "2025-03-30T03:00:00+02:00", 3600.0),
+            (
+                "2025-03-30T01:00:00+01:00",
+                "2025-03-30T03:00:00+02:00",
+                3600.0,
+            ),
             ("2025-03-30T01:00:00-0330", "2025-03-30T04:30:01Z", 1.0),
             ("31.12.2025 23:59:59", "01.01.2026 00:00:01", 2.0),
             ("2025/01/01 00:00", "2025/01/02 00:00", 86_400.0),
@@ -201,7 +223,15 @@ mod tests {
             let found = between(first, second).unwrap_or(f64::NAN);
             assert!((found - seconds).abs() < 1e-6, "{first} {second}: {found}");
         }
-        for text in ["12/31/2025 10:00:00", "2025-13-01", "2025-01-01T25:00:00", "1:2:3:4", "2025-01", "12", "-1:00"] {
+        for text in [
+            "12/31/2025 10:00:00",
+            "2025-13-01",
+            "2025-01-01T25:00:00",
+            "1:2:3:4",
+            "2025-01",
+            "12",
+            "-1:00",
+        ] {
             assert_eq!(Clock::default().date(text), None, "{text}");
         }
     }

@@ -39,7 +39,9 @@ pub(super) fn import_text(
     let mut notes = Vec::new();
     if let Some((place, period)) = period_column(&fields, &options, rows.clone(), dialect) {
         let name = shorten(&fields[place].name);
-        notes.push(format!("The column '{name}' is taken for the sampling period, {period}."));
+        notes.push(format!(
+            "The column '{name}' is taken for the sampling period, {period}."
+        ));
         options.period = Some(period);
     }
     let look = || Some(addressed(survey(bytes).ok()?));
@@ -82,11 +84,14 @@ fn period_column<'a>(
     rows: impl Iterator<Item = (usize, &'a str)>,
     mut dialect: Dialect,
 ) -> Option<(usize, Period)> {
-    let timed = fields.iter().any(|f| f.role == Some(Role::Time)) || options.mapping.speaks_of(Role::Time);
+    let timed =
+        fields.iter().any(|f| f.role == Some(Role::Time)) || options.mapping.speaks_of(Role::Time);
     if timed || options.period.is_some() {
         return None;
     }
-    let place = fields.iter().position(|f| f.role.is_none() && is_period(&f.name))?;
+    let place = fields
+        .iter()
+        .position(|f| f.role.is_none() && is_period(&f.name))?;
     let mut texts = Vec::new();
     let mut period = None;
     for (_, row) in rows {
@@ -107,7 +112,10 @@ fn period_column<'a>(
 fn clock(fields: &mut [Field], row: &str, mut dialect: Dialect) -> (Clock, Option<String>) {
     let mut texts = Vec::with_capacity(fields.len());
     split_row(row, dialect.separator, &mut texts);
-    let mut times = fields.iter_mut().zip(texts).filter(|(f, _)| f.role == Some(Role::Time));
+    let mut times = fields
+        .iter_mut()
+        .zip(texts)
+        .filter(|(f, _)| f.role == Some(Role::Time));
     let Some((field, first)) = times.next() else {
         return Default::default();
     };
@@ -117,7 +125,11 @@ fn clock(fields: &mut [Field], row: &str, mut dialect: Dialect) -> (Clock, Optio
         if dated {
             field.unit = Some("s".to_owned());
         }
-        let note = || format!("The column '{name}' has dates or times of day: counted in seconds from {shown}.");
+        let note = || {
+            format!(
+                "The column '{name}' has dates or times of day: counted in seconds from {shown}."
+            )
+        };
         return (Clock::default(), dated.then(note));
     };
     let unit = unit_from_1970(number);
@@ -136,7 +148,11 @@ fn clock(fields: &mut [Field], row: &str, mut dialect: Dialect) -> (Clock, Optio
 /// What is said of rows that repeat the one before.
 fn said_of_repeated(count: usize) -> Option<String> {
     (count > 0).then(|| {
-        let rows = if count == 1 { "row repeats" } else { "rows repeat" };
+        let rows = if count == 1 {
+            "row repeats"
+        } else {
+            "rows repeat"
+        };
         format!("{count} {rows} the one before, time and values: each is read once.")
     })
 }
@@ -179,7 +195,11 @@ fn read_rows<'a>(
         for (column, values) in header.columns.iter().zip(&mut values) {
             let here = || Some(format!("{} ({})", column.index + 1, column.name));
             let text = fields[column.index];
-            let clock = if column.role == Role::Time { &mut times } else { &mut other };
+            let clock = if column.role == Role::Time {
+                &mut times
+            } else {
+                &mut other
+            };
             let value = dialect.mark.value(text, clock).ok_or_else(|| {
                 let (name, text) = (column.name.clone(), shorten(text));
                 let problem = if column.role == Role::Time && is_date(&text) {
@@ -281,7 +301,9 @@ pub(super) fn assemble(
     values: Vec<Vec<f64>>,
 ) -> Result<Measurement, Problem> {
     let samples = values.first().map_or(0, Vec::len);
-    let mut time = header.period.map_or_else(Vec::new, |period| period.times(samples));
+    let mut time = header
+        .period
+        .map_or_else(Vec::new, |period| period.times(samples));
     let mut input = None;
     let (mut outputs, mut reference) = (Vec::new(), Vec::new());
     for (column, values) in header.columns.iter().zip(values) {

@@ -20,7 +20,12 @@ pub struct ImportError {
 
 impl ImportError {
     /// An error at this place, without advice.
-    pub(super) fn new(file: &str, line: Option<usize>, column: Option<String>, problem: Problem) -> Self {
+    pub(super) fn new(
+        file: &str,
+        line: Option<usize>,
+        column: Option<String>,
+        problem: Problem,
+    ) -> Self {
         Self {
             file: file.to_owned(),
             line,
@@ -96,13 +101,8 @@ pub enum Problem {
         wanted: &'static str,
         hint: &'static str,
     },
-    #[error(
-        "no column '{wanted}', and it is not clear which is meant: {found}"
-    )]
-    Unclear {
-        wanted: &'static str,
-        found: String,
-    },
+    #[error("no column '{wanted}', and it is not clear which is meant: {found}")]
+    Unclear { wanted: &'static str, found: String },
     #[error(
         "the column '{name}' has dates or times of day that are not understood, such as '{text}'; expected 2025-01-31T09:27:03.5, 31.01.2025 09:27:03 or 09:27:03.5, or a number of seconds: t [s]"
     )]
@@ -127,7 +127,9 @@ pub enum Problem {
     NoNumbers,
     #[error("the file begins as JSON does, but is none: {what}")]
     Json { what: String },
-    #[error("the HDF5 file is damaged, or has what is not read here: {what}; save it from MATLAB with -v7")]
+    #[error(
+        "the HDF5 file is damaged, or has what is not read here: {what}; save it from MATLAB with -v7"
+    )]
     Hdf5Damaged { what: String },
     #[error("what begins at byte {byte} of the MAT-file is damaged; expected {expected} in it")]
     MatDamaged { byte: usize, expected: &'static str },

@@ -1,10 +1,10 @@
 //! What the columns of a file most likely are: by their units, by what their names resemble, and by the order of their
 //! values. A form that someone looks over gets the likeliest; where nobody is asked, only what can be no other is taken.
 
+use super::clock::unit_from_1970;
 use super::error::Problem;
 use super::found::FoundColumn;
-use super::clock::unit_from_1970;
-use super::header::{Field, Role, shorten};
+use super::header::{Field, Role, listed, shorten};
 use super::mapping::ImportOptions;
 use super::unit::{COUNTS, is_bare_counts, parse, usual_units};
 use super::{Kind, Quantity};
@@ -29,7 +29,9 @@ struct Resembling {
 const RESEMBLING: [Resembling; 5] = [
     Resembling {
         role: Role::Time,
-        parts: &["time", "zeit", "tiempo", "second", "sekunde", "elapsed", "uhr"],
+        parts: &[
+            "time", "zeit", "tiempo", "second", "sekunde", "elapsed", "uhr",
+        ],
         words: &["t", "sec", "date", "datum", "millis", "micros", "clock"],
     },
     Resembling {
@@ -56,10 +58,39 @@ const RESEMBLING: [Resembling; 5] = [
     Resembling {
         role: Role::Measured(Quantity::Input),
         parts: &[
-            "torque", "moment", "force", "kraft", "current", "strom", "volt", "spannung",
-            "command", "stell", "input", "eingang", "power", "leistung", "pwm", "duty", "heater",
-            "heiz", "valve", "ventil", "pump", "control", "manipulated", "actuat", "throttle",
-            "drossel", "burner", "brenner", "cooler", "kühler", "kuehler", "ansteuer", "tastgrad",
+            "torque",
+            "moment",
+            "force",
+            "kraft",
+            "current",
+            "strom",
+            "volt",
+            "spannung",
+            "command",
+            "stell",
+            "input",
+            "eingang",
+            "power",
+            "leistung",
+            "pwm",
+            "duty",
+            "heater",
+            "heiz",
+            "valve",
+            "ventil",
+            "pump",
+            "control",
+            "manipulated",
+            "actuat",
+            "throttle",
+            "drossel",
+            "burner",
+            "brenner",
+            "cooler",
+            "kühler",
+            "kuehler",
+            "ansteuer",
+            "tastgrad",
         ],
         words: &[
             "u", "i", "iq", "m", "f", "tau", "q1", "q2", "u1", "uin", "ctrl", "cmd", "mv", "co",
@@ -101,15 +132,30 @@ const WANTED: [&str; 10] = [
 
 /// Names of a column that has the sampling period and not the times.
 const PERIOD: [&str; 10] = [
-    "ts", "dt", "delta_t", "deltat", "period", "sampling", "sample time", "sample period",
-    "abtastzeit", "abtastintervall",
+    "ts",
+    "dt",
+    "delta_t",
+    "deltat",
+    "period",
+    "sampling",
+    "sample time",
+    "sample period",
+    "abtastzeit",
+    "abtastintervall",
 ];
 
 /// Whether a column of this name may have the sampling period.
 pub(super) fn is_period(name: &str) -> bool {
     let name = name.to_lowercase().replace('_', " ");
-    let sampled = ["sampling time", "sampling period", "sampling interval", "sample interval"];
-    PERIOD.contains(&name.trim()) || sampled.iter().any(|part| name.contains(part)) || name.trim() == "delta t"
+    let sampled = [
+        "sampling time",
+        "sampling period",
+        "sampling interval",
+        "sample interval",
+    ];
+    PERIOD.contains(&name.trim())
+        || sampled.iter().any(|part| name.contains(part))
+        || name.trim() == "delta t"
 }
 
 /// How much a column looks like a role by its unit and by its name; both add up.
@@ -170,8 +216,11 @@ impl Resembling {
         let has = |parts: &[&str]| parts.iter().any(|p| name.contains(p));
         let named = self.resembles(&column.name);
         let measured = output || self.moves();
-        let other_time = self.role != Role::Time && column.numbers.increase() && RESEMBLING[0].resembles(&column.name);
-        if other_time || (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS)) {
+        let other_time = self.role != Role::Time
+            && column.numbers.increase()
+            && RESEMBLING[0].resembles(&column.name);
+        if other_time || (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS))
+        {
             return 0;
         }
         // The output of a process may have any unit, which then says nothing.
@@ -262,13 +311,13 @@ pub(super) fn fill(
         let mut all: Vec<usize> = of.iter().flat_map(|(_, c)| c.iter().copied()).collect();
         all.sort_unstable();
         all.dedup();
-        let names: Vec<&str> = all.iter().map(|i| columns[*i].address.as_str()).collect();
+        let names = all.iter().map(|i| columns[*i].address.as_str());
         Problem::Unclear {
             wanted: match of {
                 [(only, _)] => only.role.name(),
                 _ => "x1' / 'y",
             },
-            found: names.join(", ").chars().take(200).collect(),
+            found: listed(names),
         }
     };
     // A drive or a process?
@@ -277,7 +326,8 @@ pub(super) fn fill(
     if outputs.iter().any(output) && outputs.len() > 1 {
         return Err(unclear(&outputs));
     }
-    let resolved = lacking.iter().all(|role| !is_output(*role)) || outputs.iter().any(|f| f.1.len() == 1);
+    let resolved =
+        lacking.iter().all(|role| !is_output(*role)) || outputs.iter().any(|f| f.1.len() == 1);
     let left = lacking
         .contains(&INPUT)
         .then(|| only_left(&columns, &free, &found))
@@ -285,7 +335,12 @@ pub(super) fn fill(
         .filter(|_| resolved);
     if let Some(left) = left {
         found.retain(|f| f.0.role != INPUT);
-        found.extend(RESEMBLING.iter().filter(|r| r.role == INPUT).map(|r| (r, vec![left])));
+        found.extend(
+            RESEMBLING
+                .iter()
+                .filter(|r| r.role == INPUT)
+                .map(|r| (r, vec![left])),
+        );
     }
     for one in &found {
         // What nothing else is left for needs no likeness.
@@ -329,10 +384,16 @@ fn only_left(
     free: &[usize],
     found: &[(&Resembling, Vec<usize>)],
 ) -> Option<usize> {
-    let taken = |i: usize| found.iter().any(|(r, all)| r.role != INPUT && all.contains(&i));
+    let taken = |i: usize| {
+        found
+            .iter()
+            .any(|(r, all)| r.role != INPUT && all.contains(&i))
+    };
     let moves = |i: usize| {
         let (name, numbers) = (columns[i].name.to_lowercase(), &columns[i].numbers);
-        let varies = numbers.range.is_some_and(|[least, largest]| least < largest);
+        let varies = numbers
+            .range
+            .is_some_and(|[least, largest]| least < largest);
         varies && !numbers.increase() && !numbers.dates && !WANTED.iter().any(|w| name.contains(w))
     };
     let mut left = free.iter().copied().filter(|i| !taken(*i) && moves(*i));
@@ -352,7 +413,9 @@ fn said(role: Role) -> &'static str {
 
 /// Whether a name resembles those of this role.
 pub(super) fn resembles(role: Role, name: &str) -> bool {
-    RESEMBLING.iter().any(|r| r.role == role && r.resembles(name))
+    RESEMBLING
+        .iter()
+        .any(|r| r.role == role && r.resembles(name))
 }
 
 /// The words of a name, such as `motor` and `pos` in `motor_pos`, or `u` and `Est` in `uEst`.
@@ -361,7 +424,9 @@ fn words(name: &str) -> impl DoubleEndedIterator<Item = &str> {
     parts.filter(|w| !w.is_empty()).flat_map(|part| {
         // The first small letter before a capital one ends a word.
         let pairs = part.char_indices().zip(part.char_indices().skip(1));
-        let ends = |((_, one), (_, next)): &((usize, char), (usize, char))| one.is_lowercase() && next.is_uppercase();
+        let ends = |((_, one), (_, next)): &((usize, char), (usize, char))| {
+            one.is_lowercase() && next.is_uppercase()
+        };
         let end = pairs.filter(ends).map(|(_, (at, _))| at).next();
         let (first, rest) = part.split_at(end.unwrap_or(part.len()));
         [first, rest].into_iter().filter(|w| !w.is_empty())
@@ -378,7 +443,10 @@ impl FoundColumn {
         if role == Role::Time && self.numbers.dates {
             return Some("s".to_owned());
         }
-        if role == Role::Time && self.unit.is_none() && let Some(unit) = unit_from_1970(first) {
+        if role == Role::Time
+            && self.unit.is_none()
+            && let Some(unit) = unit_from_1970(first)
+        {
             return Some(unit.to_owned());
         }
         let usual = usual_units(role);

@@ -78,7 +78,9 @@ impl Walk {
         };
         self.datasets = datasets;
         let sizes: Vec<usize> = dataset.shape()?.iter().rev().map(|n| *n as usize).collect();
-        let count = sizes.iter().try_fold(1_usize, |n, size| n.checked_mul(*size));
+        let count = sizes
+            .iter()
+            .try_fold(1_usize, |n, size| n.checked_mul(*size));
         let attributes = dataset.attrs()?;
         let class = attributes.get("MATLAB_class").and_then(written);
         let passed = |class: &str| matches!(class, "char" | "cell" | "function_handle");
@@ -110,7 +112,9 @@ impl Walk {
                 self.left = left;
                 let first = self.found.len();
                 columns(path, &sizes, dataset.read_f64()?, &mut self.found);
-                let unit = ["units", "unit", "Units"].iter().find_map(|a| attributes.get(*a).and_then(written));
+                let unit = ["units", "unit", "Units"]
+                    .iter()
+                    .find_map(|a| attributes.get(*a).and_then(written));
                 for series in self.found.iter_mut().skip(first) {
                     series.unit = unit.map(str::to_owned);
                 }
@@ -123,7 +127,10 @@ impl Walk {
 
 fn is_number(kind: &DType) -> bool {
     use DType::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
-    matches!(kind, F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64)
+    matches!(
+        kind,
+        F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64
+    )
 }
 
 /// The text of an attribute.

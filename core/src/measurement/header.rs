@@ -21,23 +21,17 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// A column that is known by its name.
+    /// A column that is known by its name. What cannot be shown of it is left out.
     pub fn named(name: String, unit: Option<String>) -> Self {
+        let shown = |text: String| -> String { text.chars().filter(|c| !c.is_control()).collect() };
+        let name = shown(name);
         let role = role(&name);
         Self {
             name,
-            unit: unit.filter(|u| !u.is_empty()),
+            unit: unit.map(shown).filter(|u| !u.is_empty()),
             role,
             also: String::new(),
             sign: 1.0,
-        }
-    }
-
-    /// A column whose name means nothing: a workspace of MATLAB has many a variable called x or v.
-    pub fn unknown(name: &str) -> Self {
-        Self {
-            role: None,
-            ..Self::named(name.to_owned(), None)
         }
     }
 }
@@ -153,16 +147,31 @@ pub(super) fn shorten(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).take(30).collect()
 }
 
+/// Names in one line of a sentence, as many as fit.
+pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    names
+        .join(", ")
+        .chars()
+        .filter(|c| !c.is_control())
+        .take(200)
+        .collect()
+}
+
 /// The place of what stands in brackets in a name, without them.
 fn bracketed(field: &str) -> Option<(usize, usize)> {
     let marks = [('[', ']'), ('(', ')')].into_iter();
-    let mut found = marks.filter_map(|(open, close)| Some((field.find(open)?, field.rfind(close)?)));
-    found.find(|(start, end)| start < end).map(|(start, end)| (start + 1, end))
+    let mut found =
+        marks.filter_map(|(open, close)| Some((field.find(open)?, field.rfind(close)?)));
+    found
+        .find(|(start, end)| start < end)
+        .map(|(start, end)| (start + 1, end))
 }
 
 /// Whether a name has a number in parentheses, as in `pos (5)`, and no plain number: that is `(1)`.
 pub(super) fn has_number(field: &str) -> bool {
-    let number = bracketed(field).and_then(|(start, end)| field[start..end].trim().parse::<u32>().ok());
+    let number =
+        bracketed(field).and_then(|(start, end)| field[start..end].trim().parse::<u32>().ok());
     number.is_some_and(|number| number != 1)
 }
 
@@ -222,7 +231,7 @@ pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem
         let Some(i) = addressed(fields, source) else {
             return Err(Problem::NoSuchColumn {
                 wanted: shorten(source),
-                found: addresses(fields).join(", ").chars().take(200).collect(),
+                found: listed(addresses(fields).iter().map(String::as_str)),
             });
         };
         if let Some(field) = fields.get_mut(i) {

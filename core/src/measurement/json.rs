@@ -20,7 +20,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Option<Vec<Series>>, Located> {
     let wrong = |e: serde_json::Error| {
         let what = e.to_string();
         let what = what.split(" at line").next().unwrap_or_default();
-        (Some(e.line()), Problem::Json { what: shorten(what) })
+        (
+            Some(e.line()),
+            Problem::Json {
+                what: shorten(what),
+            },
+        )
     };
     // More than one value is a file of lines.
     let mut values = serde_json::Deserializer::from_str(text).into_iter::<IgnoredAny>();
@@ -57,7 +62,9 @@ struct Place<'a> {
 
 impl Place<'_> {
     fn put(self, value: f64) {
-        self.walk.builder.number(&self.walk.path, self.row.unwrap_or_default(), value);
+        self.walk
+            .builder
+            .number(&self.walk.path, self.row.unwrap_or_default(), value);
     }
 }
 
@@ -102,7 +109,9 @@ impl<'de> Visitor<'de> for Place<'_> {
     }
 
     fn visit_str<E>(self, text: &str) -> Result<(), E> {
-        self.walk.builder.text(&self.walk.path, self.row.unwrap_or_default(), text);
+        self.walk
+            .builder
+            .text(&self.walk.path, self.row.unwrap_or_default(), text);
         Ok(())
     }
 

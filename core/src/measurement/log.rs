@@ -14,9 +14,15 @@ const FEWEST: usize = 2;
 /// The series of a log, by name; `None` where the file is none.
 pub(super) fn read(bytes: &[u8]) -> Option<Vec<Series>> {
     let text = decoded(bytes).ok()?;
-    let records = || text.lines().map(pairs).filter(|pairs| pairs.len() >= FEWEST);
+    let records = || {
+        text.lines()
+            .map(pairs)
+            .filter(|pairs| pairs.len() >= FEWEST)
+    };
     let lines = text.lines().filter(|line| !line.trim().is_empty());
-    let first = lines.take(LOOKED_AT).map(|line| pairs(line).len() >= FEWEST);
+    let first = lines
+        .take(LOOKED_AT)
+        .map(|line| pairs(line).len() >= FEWEST);
     let (are, all) = first.fold((0, 0), |(are, all), is| (are + usize::from(is), all + 1));
     if 2 * are <= all {
         return None;
@@ -55,9 +61,18 @@ fn pairs(line: &str) -> Vec<Pair<'_>> {
         if name.starts_with(char::is_alphabetic) && !word.is_empty() {
             let next = after[end..].trim_start();
             let following = next.find(is_between).map_or(next, |i| &next[..i]);
-            let alone = !following.contains([':', '=']) && !next[following.len()..].trim_start().starts_with([':', '=']);
-            let unit = if unit.is_empty() && alone { following } else { unit };
-            pairs.push(Pair { name, value: word, unit });
+            let alone = !following.contains([':', '='])
+                && !next[following.len()..].trim_start().starts_with([':', '=']);
+            let unit = if unit.is_empty() && alone {
+                following
+            } else {
+                unit
+            };
+            pairs.push(Pair {
+                name,
+                value: word,
+                unit,
+            });
             rest = &after[end..];
         } else {
             rest = &rest[mark + 1..];
@@ -91,16 +106,38 @@ mod tests {
     use super::*;
 
     fn found(line: &str) -> Vec<(&str, &str, &str)> {
-        pairs(line).into_iter().map(|p| (p.name, p.value, p.unit)).collect()
+        pairs(line)
+            .into_iter()
+            .map(|p| (p.name, p.value, p.unit))
+            .collect()
     }
 
     #[test]
     fn a_line_has_names_with_values_and_units() {
-        for line in ["t: 0.01 u: 3 y: 2", "t=0.01,u=3,y=2", "t = 0.01; u = 3; y = 2", "[12] t:0.01 | u:3 | y:2"] {
-            assert_eq!(found(line), [("t", "0.01", ""), ("u", "3", ""), ("y", "2", "")], "{line}");
+        for line in [
+            "t: 0.01 u: 3 y: 2",
+            "t=0.01,u=3,y=2",
+            "t = 0.01; u = 3; y = 2",
+            "[12] t:0.01 | u:3 | y:2",
+        ] {
+            assert_eq!(
+                found(line),
+                [("t", "0.01", ""), ("u", "3", ""), ("y", "2", "")],
+                "{line}"
+            );
         }
-        assert_eq!(found("t: 10 ms, u: -3.5V temp=2e1 degC"), [("t", "10", "ms"), ("u", "-3.5", "V"), ("temp", "2e1", "degC")]);
-        assert_eq!(found("heater: on at: 2025-01-01T10:00:00Z"), [("heater", "on", ""), ("at", "2025-01-01T10:00:00Z", "")]);
+        assert_eq!(
+            found("t: 10 ms, u: -3.5V temp=2e1 degC"),
+            [
+                ("t", "10", "ms"),
+                ("u", "-3.5", "V"),
+                ("temp", "2e1", "degC")
+            ]
+        );
+        assert_eq!(
+            found("heater: on at: 2025-01-01T10:00:00Z"),
+            [("heater", "on", ""), ("at", "2025-01-01T10:00:00Z", "")]
+        );
         assert!(found("12:30:01").is_empty() && found("t [s],u [N m]").is_empty());
     }
 }

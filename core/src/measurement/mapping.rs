@@ -104,7 +104,9 @@ pub enum MappingError {
         name: String,
     },
     /// Not a number with a unit of time or frequency.
-    #[error("'{text}' is not a sampling period; expected a number and its unit, such as 4s, 0.5ms, 2min or 100Hz")]
+    #[error(
+        "'{text}' is not a sampling period; expected a number and its unit, such as 4s, 0.5ms, 2min or 100Hz"
+    )]
     NotAPeriod {
         /// What was found.
         text: String,

@@ -138,7 +138,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Series>, Problem> {
 /// Where MATLAB keeps what describes its objects; the header says it in two words.
 fn subsystem_begin(bytes: &[u8], big: bool) -> Option<usize> {
     let begin: [u8; 8] = bytes.get(116..124)?.try_into().ok()?;
-    let begin = if big { u64::from_be_bytes(begin) } else { u64::from_le_bytes(begin) };
+    let begin = if big {
+        u64::from_be_bytes(begin)
+    } else {
+        u64::from_le_bytes(begin)
+    };
     usize::try_from(begin).ok()
 }
 
@@ -155,7 +159,11 @@ fn unpacked<'a>(element: &Element<'a>, left: &mut usize) -> Result<Cow<'a, [u8]>
                 big: element.big,
             };
             let element = inner.element()?;
-            let length = if element.kind == MATRIX { element.data.len() } else { 0 };
+            let length = if element.kind == MATRIX {
+                element.data.len()
+            } else {
+                0
+            };
             let from = unpacked.len().min(TAG);
             unpacked.drain(..from);
             unpacked.truncate(length);
@@ -176,7 +184,10 @@ struct Found<'a> {
 impl Found<'_> {
     /// The series, with the times of a timeseries that has only their begin and distance.
     fn finish(mut self) -> Vec<Series> {
-        let lengths = self.series.iter().filter_map(|s| s.name.strip_suffix(".TimeInfo.Length"));
+        let lengths = self
+            .series
+            .iter()
+            .filter_map(|s| s.name.strip_suffix(".TimeInfo.Length"));
         let timeseries: Vec<String> = lengths.map(str::to_owned).collect();
         for path in timeseries {
             complete(&path, &mut self.series);
@@ -190,28 +201,49 @@ impl Found<'_> {
 fn complete(path: &str, all: &mut Vec<Series>) {
     let under = |name: &str, what: &str| {
         let rest = name.strip_prefix(path);
-        rest.and_then(|r| r.strip_prefix('.')).is_some_and(|r| r == what)
+        rest.and_then(|r| r.strip_prefix('.'))
+            .is_some_and(|r| r == what)
     };
-    let values = |what: &str| all.iter().find(|s| under(&s.name, what)).map_or(&[][..], |s| &s.values);
+    let values = |what: &str| {
+        all.iter()
+            .find(|s| under(&s.name, what))
+            .map_or(&[][..], |s| &s.values)
+    };
     let samples = values("Data").len();
     let times = match (values("Time"), values("TimeInfo.Time")) {
         ([_, _, ..], _) => None,
         (_, apart @ [_, _, ..]) => Some(apart.to_vec()),
         _ => {
             let first = |what: &str, other: f64| values(what).first().copied().unwrap_or(other);
-            let (start, step) = (first("TimeInfo.Start", 0.0), first("TimeInfo.Increment", 0.0));
+            let (start, step) = (
+                first("TimeInfo.Start", 0.0),
+                first("TimeInfo.Increment", 0.0),
+            );
             Some((0..samples).map(|i| start + i as f64 * step).collect()).filter(|_| step > 0.0)
         }
     };
     let said = |series: &Series| {
-        let rest = series.name.strip_prefix(path).and_then(|r| r.strip_prefix('.'));
-        rest.is_some_and(|rest| !rest.starts_with("Data") && rest != "Time" || rest.starts_with("DataInfo."))
+        let rest = series
+            .name
+            .strip_prefix(path)
+            .and_then(|r| r.strip_prefix('.'));
+        rest.is_some_and(|rest| {
+            !rest.starts_with("Data") && rest != "Time" || rest.starts_with("DataInfo.")
+        })
     };
     let place = all.iter().position(|s| under(&s.name, "Data"));
     let unit = Some("s".to_owned());
     if let (Some(place), Some(values)) = (place, times) {
         let name = format!("{path}.Time");
-        all.insert(place, Series { name, unit, values, ..Series::default() });
+        all.insert(
+            place,
+            Series {
+                name,
+                unit,
+                values,
+                ..Series::default()
+            },
+        );
     } else if let Some(time) = all.iter_mut().find(|s| under(&s.name, "Time")) {
         time.unit = unit;
     }
@@ -229,11 +261,7 @@ impl<'a> Subsystem<'a> {
     /// Reads the content of the variable in which it stands: bytes that are a small file of their own, with a structure
     /// that has one field, the wrapper of the cells.
     fn of(bytes: &'a [u8], big: bool) -> Option<Self> {
-        let reader = |bytes| Reader {
-            bytes,
-            at: 0,
-            big,
-        };
+        let reader = |bytes| Reader { bytes, at: 0, big };
         let mut outer = reader(bytes);
         // Flags, sizes and name.
         for _ in 0..3 {
@@ -403,12 +431,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The content of an array: flags, size, name, and by its class numbers or fields.
-    fn variable(
-        mut self,
-        path: &str,
-        depth: usize,
-        found: &mut Found<'_>,
-    ) -> Result<(), Problem> {
+    fn variable(mut self, path: &str, depth: usize, found: &mut Found<'_>) -> Result<(), Problem> {
         if self.bytes.is_empty() || depth > DEEPEST {
             return Ok(());
         }
@@ -448,7 +471,12 @@ impl<'a> Reader<'a> {
     /// A reference to objects, where the array is one.
     fn reference(mut self) -> Option<Vec<u32>> {
         let big = self.big;
-        let flags = self.element().ok()?.inside(big).word("the flags of an array").ok()?;
+        let flags = self
+            .element()
+            .ok()?
+            .inside(big)
+            .word("the flags of an array")
+            .ok()?;
         if flags & 0xff != WORDS {
             return None;
         }
@@ -460,12 +488,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Objects: their name, that they are of MATLAB's classes, which, and a reference to where they are described.
-    fn object(
-        mut self,
-        path: &str,
-        depth: usize,
-        found: &mut Found<'_>,
-    ) -> Result<(), Problem> {
+    fn object(mut self, path: &str, depth: usize, found: &mut Found<'_>) -> Result<(), Problem> {
         let big = self.big;
         let name = text(self.element()?.data);
         let path = if path.is_empty() { &name } else { path };
@@ -526,7 +549,12 @@ fn words(element: &Element<'_>) -> Vec<u32> {
 }
 
 /// The properties of the objects that are referred to.
-fn properties(path: &str, reference: &[u32], depth: usize, found: &mut Found<'_>) -> Result<(), Problem> {
+fn properties(
+    path: &str,
+    reference: &[u32],
+    depth: usize,
+    found: &mut Found<'_>,
+) -> Result<(), Problem> {
     let Some(referred) = Objects::referred(reference) else {
         return Ok(());
     };
@@ -550,7 +578,9 @@ fn properties(path: &str, reference: &[u32], depth: usize, found: &mut Found<'_>
             let path = format!("{path}.{name}");
             let content = cell.inside(cell.big);
             match content.reference() {
-                Some(reference) if depth < DEEPEST => properties(&path, &reference, depth + 1, found)?,
+                Some(reference) if depth < DEEPEST => {
+                    properties(&path, &reference, depth + 1, found)?
+                }
                 Some(_) => {}
                 None => cell.inside(cell.big).variable(&path, depth + 1, found)?,
             }

@@ -40,14 +40,20 @@ impl Objects {
         let count = *words.get(1)? as usize;
         // From version 4 on there are two regions more, of which nothing is needed.
         let regions = if *words.first()? >= 4 { 8 } else { 6 };
-        let begins: Vec<usize> = words.get(2..2 + regions)?.iter().map(|b| *b as usize).collect();
+        let begins: Vec<usize> = words
+            .get(2..2 + regions)?
+            .iter()
+            .map(|b| *b as usize)
+            .collect();
         let region = |which: usize| {
             let (from, to) = (begins.get(which)? / 4, begins.get(which + 1)? / 4);
             words.get(from..to)
         };
         let names = bytes.get(4 * (2 + regions)..*begins.first()?)?;
         let names = names.split(|b| *b == 0).take(count);
-        let names: Vec<String> = names.map(|n| String::from_utf8_lossy(n).into_owned()).collect();
+        let names: Vec<String> = names
+            .map(|n| String::from_utf8_lossy(n).into_owned())
+            .collect();
         let [saved, own] = [lists(region(SAVED)?), lists(region(OWN)?)];
         let object = |words: &[u32]| {
             let list = |lists: &[Vec<(usize, usize)>], place: usize| {
@@ -56,7 +62,10 @@ impl Objects {
             };
             [list(&saved, 3), list(&own, 4)].concat()
         };
-        let objects = region(OBJECTS)?.chunks(WORDS_OF_OBJECT).map(object).collect();
+        let objects = region(OBJECTS)?
+            .chunks(WORDS_OF_OBJECT)
+            .map(object)
+            .collect();
         Some(Self { names, objects })
     }
 
@@ -65,7 +74,9 @@ impl Objects {
         let (first, rest) = words.split_first()?;
         let (dimensions, rest) = rest.split_first()?;
         let counts = rest.get(..*dimensions as usize)?;
-        let count = counts.iter().try_fold(1_usize, |n, c| n.checked_mul(*c as usize))?;
+        let count = counts
+            .iter()
+            .try_fold(1_usize, |n, c| n.checked_mul(*c as usize))?;
         (*first == REFERENCE)
             .then(|| rest.get(counts.len()..)?.get(..count))
             .flatten()
@@ -73,7 +84,10 @@ impl Objects {
 
     /// The properties of an object: their names, and the cells in which their values stand.
     pub fn properties(&self, object: u32) -> impl Iterator<Item = (&str, usize)> {
-        let properties = self.objects.get(object as usize).map_or(&[][..], Vec::as_slice);
+        let properties = self
+            .objects
+            .get(object as usize)
+            .map_or(&[][..], Vec::as_slice);
         properties.iter().filter_map(|(name, cell)| {
             let name = self.names.get(name.checked_sub(1)?)?;
             // How MATLAB calls what it keeps to itself of what it shows.
@@ -92,10 +106,12 @@ fn lists(words: &[u32]) -> Vec<Vec<(usize, usize)>> {
         let Some(properties) = after.get(..length) else {
             break;
         };
-        let in_cells = properties.chunks(WORDS_OF_PROPERTY).filter_map(|p| match p {
-            [name, IN_A_CELL, cell] => Some((*name as usize, *cell as usize)),
-            _ => None,
-        });
+        let in_cells = properties
+            .chunks(WORDS_OF_PROPERTY)
+            .filter_map(|p| match p {
+                [name, IN_A_CELL, cell] => Some((*name as usize, *cell as usize)),
+                _ => None,
+            });
         lists.push(in_cells.collect());
         // The count is a word too.
         rest = after.get(length + (1 + length) % 2..).unwrap_or_default();

@@ -106,7 +106,10 @@ mod tests {
             "", "4", "s", "-4 s", "0 s", "inf s", "nan s", "4 rad", "4 s s", "1e300 s", "é", "4é",
         ] {
             let error = text.parse::<Period>().expect_err(text).to_string();
-            assert!(error.contains("such as 4s, 0.5ms, 2min or 100Hz"), "{error}");
+            assert!(
+                error.contains("such as 4s, 0.5ms, 2min or 100Hz"),
+                "{error}"
+            );
         }
     }
 }

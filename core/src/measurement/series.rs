@@ -2,17 +2,17 @@
 
 use std::collections::HashMap;
 
+use super::Measurement;
 use super::cell::Mark;
 use super::clock::{Clock, unit_from_1970};
 use super::csv::assemble;
 use super::error::{ImportError, Problem};
 use super::found::{FoundColumn, Numbers, addressed};
 use super::guess::{fill, is_period};
-use super::header::{Field, Header, Role, map, shorten, understand};
+use super::header::{Field, Header, Role, listed, map, shorten, understand};
 use super::mapping::ImportOptions;
 use super::period::Period;
 use super::size::wrong_size;
-use super::Measurement;
 
 /// One series of numbers with the name by which it is addressed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,7 +68,10 @@ impl Builder {
     /// Sets the unit of the series with this name, if it has none.
     pub fn unit(&mut self, name: &str, unit: &str) {
         if let Some(place) = self.places.get(name) {
-            self.series[*place].0.unit.get_or_insert_with(|| unit.to_owned());
+            self.series[*place]
+                .0
+                .unit
+                .get_or_insert_with(|| unit.to_owned());
         }
     }
 
@@ -123,8 +126,8 @@ impl Table {
             match self.named {
                 true => Field::named(series.name.clone(), unit),
                 false => Field {
-                    unit,
-                    ..Field::unknown(&series.name)
+                    role: None,
+                    ..Field::named(series.name.clone(), unit)
                 },
             }
         };
@@ -139,7 +142,10 @@ impl Table {
             numbers.dates = series.dates;
             numbers
         };
-        let seen = self.fields().into_iter().zip(self.series.iter().map(numbers));
+        let seen = self
+            .fields()
+            .into_iter()
+            .zip(self.series.iter().map(numbers));
         addressed(seen.collect())
     }
 
@@ -156,15 +162,16 @@ impl Table {
         }
         let mut fields = self.fields();
         if options.mapping.is_empty() && !self.named {
-            let names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
-            let found = names.join(", ").chars().take(200).collect();
+            let found = listed(self.series.iter().map(|s| s.name.as_str()));
             return Err(whole(Problem::NotMapped { found }));
         }
         map(&mut fields, &options.mapping).map_err(whole)?;
         let mut notes = Vec::new();
         let mut options = options.clone();
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
-            notes.push(format!("'{name}' is taken for the sampling period, {period}."));
+            notes.push(format!(
+                "'{name}' is taken for the sampling period, {period}."
+            ));
             options.period = Some(period);
         }
         if self.named {
@@ -186,12 +193,19 @@ impl Table {
 type Located = (Option<String>, Problem);
 
 /// The sampling period, by its name, where the file has no times.
-fn period_of(fields: &[Field], options: &ImportOptions, series: &[Series]) -> Option<(String, Period)> {
-    let timed = fields.iter().any(|f| f.role == Some(Role::Time)) || options.mapping.speaks_of(Role::Time);
+fn period_of(
+    fields: &[Field],
+    options: &ImportOptions,
+    series: &[Series],
+) -> Option<(String, Period)> {
+    let timed =
+        fields.iter().any(|f| f.role == Some(Role::Time)) || options.mapping.speaks_of(Role::Time);
     if timed || options.period.is_some() {
         return None;
     }
-    let place = fields.iter().position(|f| f.role.is_none() && is_period(last_name(&f.name)))?;
+    let place = fields
+        .iter()
+        .position(|f| f.role.is_none() && is_period(last_name(&f.name)))?;
     let (first, others) = series.get(place)?.values.split_first()?;
     let unit = fields[place].unit.as_deref().unwrap_or("s");
     let period = Period::in_unit(*first, unit).filter(|_| others.iter().all(|v| v == first))?;
@@ -210,7 +224,9 @@ fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<String
     let name = shorten(&field.name);
     if series.dates {
         field.unit = Some("s".to_owned());
-        return Some(format!("The column '{name}' has dates or times of day: counted in seconds from the first."));
+        return Some(format!(
+            "The column '{name}' has dates or times of day: counted in seconds from the first."
+        ));
     }
     let first = *series.values.first()?;
     let unit = unit_from_1970(first)?;
@@ -218,7 +234,9 @@ fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<String
         return None;
     }
     series.values.iter_mut().for_each(|value| *value -= first);
-    Some(format!("The column '{name}' counts {unit} from 1970: counted from the first time."))
+    Some(format!(
+        "The column '{name}' counts {unit} from 1970: counted from the first time."
+    ))
 }
 
 /// The columns of a header in SI units, checked as the rows of a text are.

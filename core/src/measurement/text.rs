@@ -41,7 +41,9 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<&str, Located> {
 }
 
 /// Opens a text.
-pub(super) fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &str)> + Clone>, Located> {
+pub(super) fn open(
+    bytes: &[u8],
+) -> Result<Text<impl Iterator<Item = (usize, &str)> + Clone>, Located> {
     // Old loggers, and some spreadsheets, end lines with a carriage return alone.
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     let text = decoded(bytes)?;
@@ -52,7 +54,11 @@ pub(super) fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &st
         .map(|(i, line)| (i + 1, line))
         .filter(|(_, line)| !line.trim().is_empty());
     let rows = lines.clone().filter(|(_, line)| comment(line).is_none());
-    let first: Vec<&str> = rows.clone().take(LONGEST_PREAMBLE).map(|(_, row)| row).collect();
+    let first: Vec<&str> = rows
+        .clone()
+        .take(LONGEST_PREAMBLE)
+        .map(|(_, row)| row)
+        .collect();
     let mut rows = rows.skip(preamble(&first));
     let whole = rows.clone();
     let Some((mut line, first)) = rows.next() else {
@@ -61,11 +67,17 @@ pub(super) fn open(bytes: &[u8]) -> Result<Text<impl Iterator<Item = (usize, &st
     let separator = separator_of(first, rows.clone().next().map(|(_, row)| row));
     let mut dialect = Dialect {
         separator,
-        mark: if separator == ',' { Mark::POINT } else { Mark::default() },
+        mark: if separator == ',' {
+            Mark::POINT
+        } else {
+            Mark::default()
+        },
     };
     let mut names = split_header(first, separator);
     let mark = &mut dialect.mark;
-    let numeric = names.iter().all(|f| mark.value(f, &mut Clock::default()).is_some());
+    let numeric = names
+        .iter()
+        .all(|f| mark.value(f, &mut Clock::default()).is_some());
     let mut bare = numeric;
     let before = lines.take_while(|(at, _)| *at < line);
     if numeric && let Some((at, header)) = before.last() {
@@ -116,11 +128,19 @@ fn labels(row: &str, separator: char, fields: &[Field]) -> Option<Vec<String>> {
     if units.iter().all(|t| t.is_empty() || is_unit(t)) {
         return Some(units);
     }
-    let words = units.iter().all(|t| t.is_empty() || says(t) && !looks_like_a_value(t));
+    let words = units
+        .iter()
+        .all(|t| t.is_empty() || says(t) && !looks_like_a_value(t));
     let plain = fields.iter().all(|f| f.unit.is_none());
     let mixed = plain && words && units.iter().any(|t| is_unit(t));
     mixed.then(|| {
-        let whole = |(unit, text): (String, &str)| if is_unit(&unit) { unit } else { text.to_owned() };
+        let whole = |(unit, text): (String, &str)| {
+            if is_unit(&unit) {
+                unit
+            } else {
+                text.to_owned()
+            }
+        };
         units.into_iter().zip(texts).map(whole).collect()
     })
 }
@@ -131,7 +151,10 @@ fn is_unit(text: &str) -> bool {
 
 /// Gives columns what stands below their names: a unit, or where it is none and the name says nothing, another name.
 fn labelled(fields: &mut [Field], labels: Vec<String>) {
-    let alone: Vec<bool> = labels.iter().map(|l| labels.iter().filter(|o| *o == l).count() == 1).collect();
+    let alone: Vec<bool> = labels
+        .iter()
+        .map(|l| labels.iter().filter(|o| *o == l).count() == 1)
+        .collect();
     for ((field, label), alone) in fields.iter_mut().zip(labels).zip(alone) {
         if label.is_empty() {
             continue;
@@ -156,7 +179,10 @@ const LONGEST_PREAMBLE: usize = 200;
 fn preamble(rows: &[&str]) -> usize {
     let begins = [';', '\t', ',', BLANKS].map(|separator| begin(rows, separator));
     // Of those with which numbers begin first the one that divides most.
-    let begin = begins.into_iter().flatten().min_by_key(|b| (b.row, usize::MAX - b.columns));
+    let begin = begins
+        .into_iter()
+        .flatten()
+        .min_by_key(|b| (b.row, usize::MAX - b.columns));
     let Some(begin) = begin.filter(|b| b.row > 1) else {
         return 0;
     };
@@ -166,7 +192,12 @@ fn preamble(rows: &[&str]) -> usize {
     }
     let above = rows.get(..begin.row).unwrap_or_default();
     // Names, and units or other names below them.
-    let header = above.iter().rev().take_while(|row| is_header(row)).count().min(2);
+    let header = above
+        .iter()
+        .rev()
+        .take_while(|row| is_header(row))
+        .count()
+        .min(2);
     begin.row - header
 }
 
@@ -354,4 +385,3 @@ pub(super) fn split_row<'a>(row: &'a str, separator: char, fields: &mut Vec<&'a 
     });
     fields.extend(pieces.map(|f| f.trim().trim_matches('"').trim()));
 }
-

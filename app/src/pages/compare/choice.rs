@@ -186,7 +186,8 @@ impl Choice {
 
     /// Whether no column has the times, so that a sampling period is needed.
     pub fn needs_period(&self) -> bool {
-        self.mapped().all(|(channel, ..)| channel.role != Role::Time)
+        self.mapped()
+            .all(|(channel, ..)| channel.role != Role::Time)
     }
 
     /// What is still to be chosen, by its names in the form.
