@@ -170,7 +170,7 @@ impl Table {
         let mut options = options.clone();
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
             notes.push(format!(
-                "'{name}' is taken for the sampling period, {period}."
+                "The column '{name}' is taken for the sampling period, {period}."
             ));
             options.period = Some(period);
         }
