@@ -2,13 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::error::ImportError;
+use super::column::Role;
+use super::error::{ImportError, Problem};
 use super::found::FoundColumn;
 use super::guess::{guess, resembles};
-use super::header::Role;
 use super::mapping::{ImportOptions, Mapping};
 use super::period::Period;
-use super::table::{all_columns, read};
 use super::unit::{COUNTS, parse};
 use super::{Kind, Quantity};
 
@@ -18,12 +17,17 @@ const VELOCITY: Role = Role::Measured(Quantity::Velocity);
 const OUTPUT: Role = Role::Measured(Quantity::Output);
 
 /// Adds to an error about what the columns are the words with which the file is read, or its values at least: tried out,
-/// so that they are no promise.
-pub(super) fn advise(error: ImportError, bytes: &[u8], options: &ImportOptions) -> ImportError {
+/// so that they are no promise. `columns` finds what the file has, and `refused` says why it is not read in a way.
+pub(super) fn advise(
+    error: ImportError,
+    options: &ImportOptions,
+    columns: impl FnOnce() -> Option<Vec<FoundColumn>>,
+    refused: impl Fn(&ImportOptions) -> Option<Problem>,
+) -> ImportError {
     if !error.problem.is_about_columns() {
         return error;
     }
-    let Ok(columns) = all_columns(bytes) else {
+    let Some(columns) = columns() else {
         return error;
     };
     let called = |role| columns.iter().any(|c| resembles(role, &c.name));
@@ -45,8 +49,8 @@ pub(super) fn advise(error: ImportError, bytes: &[u8], options: &ImportOptions) 
     let all = all.flat_map(|(kind, words)| [(kind, words.clone(), false), (kind, words, true)]);
     let words = all.into_iter().find_map(|(kind, mut words, periodic)| {
         words.periodic &= periodic;
-        let read = read(&error.file, bytes, &words.options(options, kind)?);
-        let reads = read.map_or_else(|e| !e.problem.is_about_columns(), |_| true);
+        let problem = refused(&words.options(options, kind)?);
+        let reads = problem.is_none_or(|problem| !problem.is_about_columns());
         reads.then(|| words.text(options))
     });
     ImportError {

@@ -2,9 +2,9 @@
 
 use std::str::FromStr;
 
-use super::header::{Role, shorten};
+use super::column::{Role, shorten};
 use super::period::Period;
-use super::text::split_header;
+use super::split::split_header;
 use super::unit::{self, Measures};
 
 /// How to read a file; the default asks the file itself.
@@ -102,14 +102,6 @@ pub enum MappingError {
     Twice {
         /// Which.
         name: String,
-    },
-    /// Not a number with a unit of time or frequency.
-    #[error(
-        "'{text}' is not a sampling period; expected a number and its unit, such as 4s, 0.5ms, 2min or 100Hz"
-    )]
-    NotAPeriod {
-        /// What was found.
-        text: String,
     },
     /// Not a number with a unit of torque or force by current, voltage or command.
     #[error(

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::header::shorten;
-use super::mapping::MappingError;
+use super::column::shorten;
 use super::unit::{Measures, parse};
 
 /// Shortest and longest period, s: beyond these the times of a long record are no numbers to calculate with.
@@ -15,6 +14,16 @@ const MOST: f64 = 1e12;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Period {
     seconds: f64,
+}
+
+/// Not a number with a unit of time or frequency.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "'{text}' is not a sampling period; expected a number and its unit, such as 4s, 0.5ms, 2min or 100Hz"
+)]
+pub struct PeriodError {
+    /// What was found.
+    pub text: String,
 }
 
 impl Period {
@@ -63,9 +72,9 @@ impl fmt::Display for Period {
 }
 
 impl FromStr for Period {
-    type Err = MappingError;
+    type Err = PeriodError;
 
-    fn from_str(text: &str) -> Result<Self, MappingError> {
+    fn from_str(text: &str) -> Result<Self, PeriodError> {
         let text = text.trim();
         // The e of an exponent stands before a digit or a sign, which no unit begins with.
         let unit = text.char_indices().find(|(i, c)| {
@@ -76,7 +85,7 @@ impl FromStr for Period {
         let (number, unit) = text.split_at(unit.map_or(text.len(), |(i, _)| i));
         let number = number.trim().replace(',', ".");
         let period = number.parse().ok().and_then(|n| Self::in_unit(n, unit));
-        period.ok_or_else(|| MappingError::NotAPeriod {
+        period.ok_or_else(|| PeriodError {
             text: shorten(text),
         })
     }

@@ -38,7 +38,11 @@ pub fn import(
     bytes: &[u8],
     options: &ImportOptions,
 ) -> Result<Measurement, ImportError> {
-    read(name, bytes, options).map_err(|error| advise(error, bytes, options))
+    read(name, bytes, options).map_err(|error| {
+        let columns = || all_columns(bytes).ok();
+        let refused = |options: &ImportOptions| read(name, bytes, options).err().map(|e| e.problem);
+        advise(error, options, columns, refused)
+    })
 }
 
 /// Reads a measurement as [`import`] does that says itself what its columns are.
@@ -58,11 +62,7 @@ pub fn import_csv(
 }
 
 /// Reads a measurement; an error has no advice yet.
-pub(super) fn read(
-    name: &str,
-    bytes: &[u8],
-    options: &ImportOptions,
-) -> Result<Measurement, ImportError> {
+fn read(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Measurement, ImportError> {
     match table(bytes).map_err(|(line, p)| ImportError::new(name, line, None, p))? {
         Some(table) => table.import(name, options),
         None => import_text(name, bytes, options),
@@ -107,7 +107,7 @@ pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError
 }
 
 /// The columns of a file, however short they are.
-pub(super) fn all_columns(bytes: &[u8]) -> Result<Vec<FoundColumn>, text::Located> {
+fn all_columns(bytes: &[u8]) -> Result<Vec<FoundColumn>, text::Located> {
     Ok(match table(bytes)? {
         Some(table) => table.columns(),
         None => found::addressed(text::survey(bytes)?),
