@@ -54,7 +54,7 @@ pub(super) fn advise(
         reads.then(|| words.text(options))
     });
     ImportError {
-        advice: words,
+        advice: words.map(Into::into),
         ..error
     }
 }
@@ -74,7 +74,7 @@ struct Word {
 /// A mapping, and whether a period is needed besides.
 #[derive(Clone)]
 struct Words {
-    words: Vec<Word>,
+    columns: Vec<Word>,
     map: String,
     periodic: bool,
     quoted: char,
@@ -107,7 +107,7 @@ impl Words {
         let needed: Vec<Role> = needed
             .iter()
             .copied()
-            .filter(|role| !out(*role) && !(timed && *role == Role::Time))
+            .filter(|role| !(out(*role) || timed && *role == Role::Time))
             .collect();
         places.retain(|(role, ..)| needed.contains(role) || matches!(role, Role::Measured(_)));
         for (role, column) in guess(columns).channels {
@@ -197,7 +197,7 @@ impl Words {
         let quoted = if map.contains(special) { '\'' } else { '"' };
         let fits = (!map.contains('\'') || quoted == '"') && !map.contains(char::is_control);
         fits.then_some(Self {
-            words,
+            columns: words,
             map,
             periodic,
             quoted,
@@ -229,7 +229,7 @@ impl Words {
         }
         let quoted = self.quoted;
         let _ = write!(text, "--map {quoted}{}{quoted}", self.map);
-        match (self.periodic, self.words.iter().any(|word| word.assumed)) {
+        match (self.periodic, self.columns.iter().any(|word| word.assumed)) {
             (true, true) => text.push_str(" with the true period and units"),
             (true, false) => text.push_str(" with the true period"),
             (false, true) => text.push_str(" with the true units"),

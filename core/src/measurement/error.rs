@@ -7,15 +7,15 @@ use super::unit::ACCEPTED;
 #[error("{file}{}: {problem}{}", place(*.line, .column.as_deref()), advised(.advice.as_deref()))]
 pub struct ImportError {
     /// Name of the file.
-    pub file: String,
+    pub file: Box<str>,
     /// Line, from 1; `None` where the file as a whole is wrong.
     pub line: Option<usize>,
     /// The column, as `3 (x1)`.
-    pub column: Option<String>,
+    pub column: Option<Box<str>>,
     /// What is wrong and what would be right.
     pub problem: Problem,
     /// Options of the command line with which the file is read, as far as its columns go.
-    pub advice: Option<String>,
+    pub advice: Option<Box<str>>,
 }
 
 impl ImportError {
@@ -27,9 +27,9 @@ impl ImportError {
         problem: Problem,
     ) -> Self {
         Self {
-            file: file.to_owned(),
+            file: file.into(),
             line,
-            column,
+            column: column.map(Into::into),
             problem,
             advice: None,
         }

@@ -1,6 +1,6 @@
 //! JSON: lines of objects, an array of objects, or an object of arrays, nested as they like.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
@@ -137,7 +137,8 @@ impl<'de> Visitor<'de> for Place<'_> {
         for i in 0.. {
             // The first array on the way has the rows; one within it has columns.
             if self.row.is_some() {
-                self.walk.path.push_str(&format!("({})", i + 1));
+                // Writing into a string cannot fail.
+                let _ = write!(self.walk.path, "({})", i + 1);
             }
             let place = Place {
                 walk: &mut *self.walk,

@@ -579,7 +579,7 @@ fn properties(
             let content = cell.inside(cell.big);
             match content.reference() {
                 Some(reference) if depth < DEEPEST => {
-                    properties(&path, &reference, depth + 1, found)?
+                    properties(&path, &reference, depth + 1, found)?;
                 }
                 Some(_) => {}
                 None => cell.inside(cell.big).variable(&path, depth + 1, found)?,

@@ -121,9 +121,12 @@ fn lists(words: &[u32]) -> Vec<Vec<(usize, usize)>> {
 
 fn words(bytes: &[u8], big: bool) -> Vec<u32> {
     let (words, _) = bytes.as_chunks::<4>();
-    let word = |bytes: &[u8; 4]| match big {
-        true => u32::from_be_bytes(*bytes),
-        false => u32::from_le_bytes(*bytes),
+    let word = |bytes: &[u8; 4]| {
+        if big {
+            u32::from_be_bytes(*bytes)
+        } else {
+            u32::from_le_bytes(*bytes)
+        }
     };
     words.iter().map(word).collect()
 }

@@ -123,13 +123,9 @@ impl Table {
     fn fields(&self) -> Vec<Field> {
         let field = |series: &Series| {
             let unit = series.unit.clone();
-            match self.named {
-                true => Field::named(series.name.clone(), unit),
-                false => Field {
-                    role: None,
-                    ..Field::named(series.name.clone(), unit)
-                },
-            }
+            let field = Field::named(series.name.clone(), unit);
+            let role = field.role.filter(|_| self.named);
+            Field { role, ..field }
         };
         self.series.iter().map(field).collect()
     }

@@ -89,9 +89,10 @@ pub(super) fn open(
     }
     let numbered = !bare && names.iter().any(|name| has_number(name));
     let field = |text: &String| {
-        let (name, unit) = match bare {
-            true => Default::default(),
-            false => name_and_unit(text, numbered),
+        let (name, unit) = if bare {
+            Default::default()
+        } else {
+            name_and_unit(text, numbered)
         };
         Field::named(name, unit)
     };

@@ -56,7 +56,7 @@ pub fn read(door: Door, bytes: &[u8]) -> Option<String> {
         Door::Model => UserModel::from_toml(&text).err().map(|e| e.to_string()),
         Door::Link => link::read(&text, &defaults()).err(),
     }?;
-    let wrong = said.trim().is_empty() || said.chars().any(|c| c.is_control());
+    let wrong = said.trim().is_empty() || said.contains(char::is_control);
     wrong.then_some(said)
 }
 

@@ -95,7 +95,7 @@ fn main() -> ExitCode {
 fn arguments() -> Result<Arguments, String> {
     let mut given = Arguments {
         seed: 1,
-        time: Duration::from_secs(60),
+        time: Duration::from_mins(1),
         inputs: u64::MAX,
     };
     let mut words = std::env::args().skip(1);
@@ -104,7 +104,7 @@ fn arguments() -> Result<Arguments, String> {
         let number = number.ok_or_else(|| format!("{word} needs a whole number"))?;
         match word.as_str() {
             "--seed" => given.seed = number,
-            "--minutes" => given.time = Duration::from_secs(60 * number),
+            "--minutes" => given.time = Duration::from_mins(number),
             "--inputs" => given.inputs = number,
             _ => {
                 return Err(format!(
