@@ -95,7 +95,13 @@ impl fmt::Display for Refused {
 impl ReadTask {
     fn read(&self, bytes: &[u8]) -> Result<Measurement, Refused> {
         let options = self.reading.options().map_err(Refused::Reading)?;
-        import(&self.file, bytes, &options).map_err(Refused::File)
+        // What the command line would say goes on about options.
+        import(&self.file, bytes, &options).map_err(|error| {
+            Refused::File(ImportError {
+                advice: None,
+                ..error
+            })
+        })
     }
 
     /// Asks for the columns of a file that was refused, if that can help.
@@ -108,11 +114,7 @@ impl ReadTask {
                 Problem::NotMapped { .. } => {
                     "A file of MATLAB does not say what its columns are.".to_owned()
                 }
-                _ => ImportError {
-                    advice: None,
-                    ..error.clone()
-                }
-                .to_string(),
+                _ => error.to_string(),
             },
             columns,
         })
