@@ -480,7 +480,7 @@ fn what_is_broken_is_refused_without_a_form() {
         (
             "new.mat",
             b"MATLAB 7.3 MAT-file".to_vec(),
-            "save it with -v7",
+            "save it from MATLAB with -v7",
         ),
         ("short.csv", b"a,b,c\n1,2,3\n".to_vec(), "is not a header"),
     ] {
