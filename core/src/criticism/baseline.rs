@@ -3,11 +3,25 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::data::Data;
-use crate::effect::{Dimension, EffectId, Motion, Scales, VISCOUS_FRICTION};
+use crate::effect::{Dimension, Effect, EffectId, Motion, Scales, VISCOUS_FRICTION};
 use crate::measurement::Kind;
 use crate::model::Model;
 
-/// A parameter of a baseline: symbol, words, and the unit by kind of motion.
+/// What a record is explained with at first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Baseline {
+    /// An inertia with viscous friction.
+    Drive,
+    /// A first-order lag about an operating point: `T y' = K u - (y - ambient)`.
+    Lag {
+        /// The output is counted from the operating point, since it begins at rest there, at 0: the ambient is 0.
+        from_ambient: bool,
+    },
+    /// A process whose output stays where the input leaves it: `y' = (K/T) u`.
+    Integrator,
+}
+
+/// A parameter of a baseline: symbol, words, and what its unit follows from.
 pub(super) struct BaselineParameter {
     pub symbol: &'static str,
     pub label: &'static str,
@@ -19,8 +33,17 @@ pub(super) struct BaselineParameter {
 /// Place of the viscous friction in the baseline of a drive.
 pub(super) const DAMPING: usize = 1;
 
-/// Symbol of its inertia.
+/// Place of the ambient in that of a process which comes to rest.
+const AMBIENT: usize = 2;
+
+/// Symbol of the inertia of a drive.
 pub(super) const INERTIA: &str = "J1";
+
+/// Symbol of how fast the output of a process that integrates moves.
+pub(super) const RATE: &str = "K/T";
+
+/// A constant input of a process is its ambient: beside that, only one that came on with the record can be told.
+const LOAD: EffectId = EffectId::new("constant_load");
 
 const DRIVE: [BaselineParameter; 2] = [
     BaselineParameter {
@@ -37,7 +60,7 @@ const DRIVE: [BaselineParameter; 2] = [
     },
 ];
 
-const PROCESS: [BaselineParameter; 2] = [
+const LAG: [BaselineParameter; 3] = [
     BaselineParameter {
         symbol: "K",
         label: "gain",
@@ -50,14 +73,39 @@ const PROCESS: [BaselineParameter; 2] = [
         dimension: Some(Dimension::Time),
         effect: None,
     },
+    BaselineParameter {
+        symbol: "ambient",
+        label: "output at rest without input",
+        dimension: Some(Dimension::Compound {
+            force: 0,
+            position: 0,
+            output: 1,
+            time: 0,
+        }),
+        effect: None,
+    },
 ];
 
-pub(super) fn parameters(kind: Kind) -> &'static [BaselineParameter] {
-    match kind {
-        Kind::Drive => &DRIVE,
-        Kind::Process => &PROCESS,
-    }
-}
+const INTEGRATOR: [BaselineParameter; 1] = [BaselineParameter {
+    symbol: RATE,
+    label: "rate of the output per input",
+    dimension: Some(Dimension::Compound {
+        force: -1,
+        position: 0,
+        output: 1,
+        time: -1,
+    }),
+    effect: None,
+}];
+
+/// Inertia and time constant stay within this factor of the first guess.
+pub(super) const GUESS_FACTOR: f64 = 1e4;
+
+/// Longest time constant, in record lengths.
+const LONGEST_SHARE: f64 = 1e4;
+
+/// Standard errors by which `1/T` must differ from 0 where `T` is longer than the record, or the process integrates.
+const TELLS_A_LAG: f64 = 3.0;
 
 /// Effects that are in the baseline from the start.
 pub(super) fn effects(kind: Kind) -> &'static [EffectId] {
@@ -67,40 +115,114 @@ pub(super) fn effects(kind: Kind) -> &'static [EffectId] {
     }
 }
 
-/// Inertia and viscous friction of the body with these baseline values.
-///
-/// A process `T y' + y = K u` is the body `(T/K) y' = u - y/K`.
-pub(super) fn body(kind: Kind, values: &[f64]) -> (f64, f64) {
-    match kind {
-        Kind::Drive => (values[0], values[1]),
-        Kind::Process => (values[1] / values[0], 1.0 / values[0]),
-    }
-}
-
-/// The baseline model with these values.
-pub(super) fn model(kind: Kind, values: &[f64]) -> Model {
-    let (inertia, viscous) = body(kind, values);
-    Model::body(inertia, viscous)
-}
-
-/// Inertia and time constant stay within this factor of the first guess.
-pub(super) const GUESS_FACTOR: f64 = 1e4;
-
-/// Longest time constant, in record lengths: a longer one is an integrator to all intents.
-const LONGEST_SHARE: f64 = 1e4;
-
-/// Values moved into what is physically possible.
-pub(super) fn clamp(kind: Kind, values: &mut [f64], scales: &Scales) {
-    match kind {
-        Kind::Drive => {
-            let guess = scales.inertia.abs();
-            values[0] =
-                values[0].clamp(guess / scales.inertia_factor, guess * scales.inertia_factor);
-            values[1] = values[1].max(0.0);
+impl Baseline {
+    pub fn parameters(self) -> &'static [BaselineParameter] {
+        match self {
+            Self::Drive => &DRIVE,
+            Self::Lag { .. } => &LAG,
+            Self::Integrator => &INTEGRATOR,
         }
-        Kind::Process => {
-            values[1] =
-                values[1].clamp(scales.step / GUESS_FACTOR, scales.duration * LONGEST_SHARE);
+    }
+
+    pub fn kind(self) -> Kind {
+        match self {
+            Self::Drive => Kind::Drive,
+            Self::Lag { .. } | Self::Integrator => Kind::Process,
+        }
+    }
+
+    /// Inertia and viscous friction of the body with these values.
+    ///
+    /// A process `T y' + y = K u` is the body `(T/K) y' = u - y/K`.
+    pub fn body(self, values: &[f64]) -> (f64, f64) {
+        match self {
+            Self::Drive => (values[0], values[1]),
+            Self::Lag { .. } => (values[1] / values[0], 1.0 / values[0]),
+            Self::Integrator => (1.0 / values[0], 0.0),
+        }
+    }
+
+    /// The model with these values.
+    pub fn model(self, values: &[f64]) -> Model {
+        let (inertia, viscous) = self.body(values);
+        let mut model = Model::body(inertia, viscous);
+        if matches!(self, Self::Lag { .. }) {
+            model.constant_force = values[AMBIENT] * viscous;
+        }
+        model
+    }
+
+    /// One that passes the input on as it is.
+    pub fn plain(self) -> Model {
+        Model::body(1.0, 1.0)
+    }
+
+    /// Values to begin with where nothing is known.
+    pub fn unknown(self) -> Vec<f64> {
+        match self {
+            Self::Drive => vec![1.0, 1.0],
+            Self::Lag { .. } => vec![1.0, 1.0, 0.0],
+            Self::Integrator => vec![1.0],
+        }
+    }
+
+    /// The value of a place that is never changed beside these effects.
+    pub fn fixed(self, effects: &[&'static dyn Effect]) -> Option<(usize, f64)> {
+        let Self::Lag { from_ambient } = self else {
+            return None;
+        };
+        let fixed = from_ambient || effects.iter().any(|e| e.id() == LOAD);
+        fixed.then_some((AMBIENT, 0.0))
+    }
+
+    /// Whether it says already what an effect says.
+    pub fn has(self, effect: EffectId) -> bool {
+        effect == LOAD
+            && self
+                == (Self::Lag {
+                    from_ambient: false,
+                })
+    }
+
+    /// Values that say what the body is: inertia, or gain and time constant.
+    pub fn essential(self) -> usize {
+        match self {
+            Self::Drive | Self::Integrator => 1,
+            Self::Lag { .. } => 2,
+        }
+    }
+
+    /// Place of the value that goes with the inverse of the rate at which the output moves.
+    pub fn size(self) -> usize {
+        match self {
+            Self::Drive | Self::Integrator => 0,
+            Self::Lag { .. } => 1,
+        }
+    }
+
+    /// Whether a record of this length, s, does not tell a lag with these values and standard errors from an integrator.
+    pub fn may_integrate(self, values: &[f64], errors: &[f64], duration: f64) -> bool {
+        let Self::Lag { .. } = self else {
+            return false;
+        };
+        let (time, error) = (values[1], errors[1]);
+        time > duration && time < TELLS_A_LAG * error
+    }
+
+    /// Values moved into what is physically possible.
+    pub fn clamp(self, values: &mut [f64], scales: &Scales) {
+        match self {
+            Self::Drive => {
+                let guess = scales.inertia.abs();
+                values[0] =
+                    values[0].clamp(guess / scales.inertia_factor, guess * scales.inertia_factor);
+                values[1] = values[1].max(0.0);
+            }
+            Self::Lag { .. } => {
+                values[1] =
+                    values[1].clamp(scales.step / GUESS_FACTOR, scales.duration * LONGEST_SHARE);
+            }
+            Self::Integrator => {}
         }
     }
 }
@@ -186,7 +308,10 @@ pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
     if data.kind == Kind::Drive && b <= 0.0 {
         b = (say / saa).abs();
     }
-    if lambda <= 0.0 {
+    let integrates = data.baseline == Baseline::Integrator;
+    if integrates {
+        b = say / saa;
+    } else if lambda <= 0.0 {
         lambda = match data.kind {
             Kind::Drive => 0.0,
             Kind::Process => 10.0 / duration,
@@ -200,8 +325,20 @@ pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
     if !b.is_finite() || b == 0.0 {
         return None;
     }
-    Some(match data.kind {
-        Kind::Drive => vec![1.0 / b, lambda / b],
-        Kind::Process => vec![b / lambda, 1.0 / lambda],
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    Some(match data.baseline {
+        Baseline::Drive => vec![1.0 / b, lambda / b],
+        Baseline::Integrator => vec![b],
+        Baseline::Lag { from_ambient } => {
+            let gain = b / lambda;
+            // What the output is in the mean beside what the input gives; the ends weigh less the longer the record.
+            let ambient = if from_ambient {
+                0.0
+            } else {
+                let change = (v[n - 1] - v[0]) / (lambda * duration);
+                mean(&v) - gain * mean(w) + change
+            };
+            vec![gain, 1.0 / lambda, ambient]
+        }
     })
 }

@@ -89,7 +89,7 @@ impl Knowledge {
 pub fn baseline_symbols(kind: Kind) -> &'static [&'static str] {
     match kind {
         Kind::Drive => &["J1", "d1"],
-        Kind::Process => &["K", "T"],
+        Kind::Process => &["K", "T", "ambient"],
     }
 }
 
@@ -111,14 +111,6 @@ impl Structure {
         let symbols = self.symbols().into_iter();
         symbols
             .map(|(owner, symbol)| self.knowledge.find(owner, symbol))
-            .collect()
-    }
-
-    /// Whether each value is never changed.
-    pub fn fixed(&self) -> Vec<bool> {
-        self.known()
-            .iter()
-            .map(|k| k.is_some_and(|k| k.status == Status::Fixed))
             .collect()
     }
 
@@ -161,6 +153,7 @@ impl Structure {
                 *value = known.value;
             }
         }
+        self.hold(values);
     }
 }
 

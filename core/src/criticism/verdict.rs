@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::baseline::RATE;
 use super::data::Data;
 use super::locate::signal_name;
 use super::score::Score;
@@ -9,15 +10,13 @@ use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
-use crate::uncertain::{with_error, written_like};
+use crate::uncertain::with_error;
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
 
 /// What a model leaves that explains all there is.
 const ALL_NOISE: &str = " is measurement noise.";
-
-const LOAD: EffectId = EffectId::new("constant_load");
 
 /// The verdict on a final model: `wanted` are its effects, each with whether it only tells how the record was made,
 /// `classes` what could replace each.
@@ -175,24 +174,18 @@ pub(super) fn add_rest(
     }
 }
 
-/// Says of a process where its constant load lets the output rest: in the file it may be the warmth of a room.
-pub(super) fn add_resting_place(verdict: &mut Verdict, parameters: &[Parameter], unit: &str) {
-    let alone = |class: &Vec<EffectId>| class[..] == [LOAD];
-    if !verdict.missing.iter().any(alone) {
-        return;
+/// Says that a process integrates, and how fast its output moves.
+pub(super) fn add_integrating(verdict: &mut Verdict, parameters: &[Parameter]) {
+    let rate = parameters
+        .iter()
+        .find(|p| p.effect.is_none() && p.name == RATE);
+    if let Some(rate) = rate {
+        let _ = write!(
+            verdict.text,
+            " The process integrates, so that its output stays where the input leaves it: K/T is {}.",
+            with_error(rate.value, rate.std_error, &rate.unit)
+        );
     }
-    let find = |name: &str| parameters.iter().find(|p| p.name == name);
-    let (Some(gain), Some(load)) = (find("K"), find("F0").filter(|p| p.effect == Some(LOAD)))
-    else {
-        return;
-    };
-    let rest = gain.value * load.value;
-    let error = (gain.value * load.std_error).abs();
-    let _ = write!(
-        verdict.text,
-        " Without input the output would come to rest at {}: the load may be its surroundings.",
-        written_like(rest, (rest, error), unit)
-    );
 }
 
 /// Says how many values were left out.

@@ -110,6 +110,7 @@ impl Reader<'_> {
                 let positive = ["J1", "T"].contains(&p.symbol.as_str());
                 let bad = match p.symbol.as_str() {
                     "d1" => p.value < 0.0,
+                    "ambient" => false,
                     _ => p.value == 0.0 || (positive && p.value < 0.0),
                 };
                 if bad {

@@ -6,6 +6,7 @@ use super::design::LEAST_SAMPLES;
 use super::limits::{Limits, extent};
 use super::program::Program;
 use crate::criticism::CriticismError;
+use crate::criticism::baseline::Baseline;
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
 use crate::criticism::noise::Noise;
@@ -60,7 +61,7 @@ impl Hypothesis {
                 session.find(*id).ok_or(wrong)
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let structure = Structure::new(session.kind(), effects, session.knowledge.clone());
+        let structure = Structure::new(session.data.baseline, effects, session.knowledge.clone());
         let values = structure
             .symbols()
             .into_iter()
@@ -145,7 +146,10 @@ impl Bench {
             inertia: first.values[0],
             time_constant: match kind {
                 Kind::Drive => session.scales.time_constant,
-                Kind::Process => first.values[1],
+                Kind::Process => match first.structure.baseline {
+                    Baseline::Lag { .. } => first.values[1],
+                    _ => session.scales.time_constant,
+                },
             },
             window: window::SHORTEST as f64 * step,
             stretch: step * samples,
@@ -157,6 +161,7 @@ impl Bench {
                 .map(|o| Noise {
                     level: o.noise,
                     counted: o.counted,
+                    step: o.step,
                 })
                 .collect(),
             outputs: session.outputs.clone(),

@@ -9,12 +9,11 @@ use crate::criticism::score::Score;
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
-    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_limited,
-    add_pauses, add_rest, add_resting_place, verdict,
+    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_integrating,
+    add_limited, add_pauses, add_rest, verdict,
 };
 use crate::criticism::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
-use crate::measurement::Kind;
 
 impl StepJob {
     pub(super) fn report(&self) -> Option<StepReport> {
@@ -52,9 +51,7 @@ impl StepJob {
             );
             let first = self.session.first(&whole).error;
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
-            if self.session.kind() == Kind::Process {
-                add_resting_place(&mut verdict, &parameters, self.session.output_unit());
-            }
+            add_integrating(&mut verdict, &parameters);
             add_imitations(&mut verdict, &self.barred);
             add_hint(&mut verdict, self.hint(model));
             // What is held wrongly says nothing of what is needed.

@@ -4,25 +4,11 @@
 //! counter repeats as well, at rest or while it creeps on; but where a channel holds, nearly every reading stays for the
 //! same number of samples while the signal goes on by now more and now fewer counts.
 
-use super::noise::resolution;
-
-/// Fewest readings from which it is told.
-const LEAST_READINGS: usize = 20;
-
-/// Share of the readings that must stay for the usual number of samples, but for one more or less where a log and a
-/// sensor have clocks of their own.
-const USUAL: f64 = 0.8;
-
-/// A counter that creeps goes on by one count or two, each printed in two ways at most: share of the moves that so many
-/// sizes must not reach.
-const SIZES_OF_COUNTS: usize = 4;
-const COUNTED: f64 = 0.6;
-
-/// How far, as a share of the values, sizes of moves that are the same may differ in binary numbers.
-const BINARY: f64 = 1e-12;
+use super::lattice::resolution;
+use super::tuning::{BINARY, COUNTED, IN_STEP, LEAST_READINGS, SIZES_OF_COUNTS, USUAL};
 
 /// The samples with fresh readings, of a channel that holds them.
-pub(super) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
+pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     let mut begins: Vec<usize> = (1..values.len())
         .filter(|i| values[*i] != values[i - 1])
         .collect();
@@ -36,11 +22,15 @@ pub(super) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
         return None;
     }
     stays.retain(|stay| *stay > 1 && stay.abs_diff(median) <= 1);
-    if (stays.len() as f64) < USUAL * count as f64 {
+    let usual = stays.len() as f64 >= USUAL * count as f64;
+    let readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
+    if usual && goes_by_counts(&readings) {
         return None;
     }
-    let readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
-    if goes_by_counts(&readings) {
+    if let Some((first, every)) = in_step(&begins, median) {
+        return Some((first..values.len()).step_by(every).collect());
+    }
+    if !usual {
         return None;
     }
     // One that stays longer came again as it was.
@@ -62,6 +52,19 @@ pub(super) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     Some(fresh)
 }
 
+/// The first sample and the distance of those at which nearly all changes come, where these hold a reading for up to `most`
+/// samples: the longest such distance. A reading that stays longer came again as it was.
+fn in_step(begins: &[usize], most: usize) -> Option<(usize, usize)> {
+    (2..=most).rev().find_map(|every| {
+        let mut counts = vec![0; every];
+        for begin in begins {
+            counts[begin % every] += 1;
+        }
+        let first = (0..every).max_by_key(|k| counts[*k])?;
+        (counts[first] as f64 >= IN_STEP * begins.len() as f64).then_some((first, every))
+    })
+}
+
 /// Whether most moves from one reading to the next are of a few sizes only.
 fn goes_by_counts(readings: &[f64]) -> bool {
     let mut moves: Vec<f64> = readings.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
@@ -76,7 +79,7 @@ fn goes_by_counts(readings: &[f64]) -> bool {
 }
 
 /// Values for every time, on straight lines between the `readings` at these samples, of which there must be one.
-pub(super) fn bridged(readings: &[f64], samples: &[usize], time: &[f64]) -> Vec<f64> {
+pub(in crate::criticism) fn bridged(readings: &[f64], samples: &[usize], time: &[f64]) -> Vec<f64> {
     let last = readings.len() - 1;
     let value = |i: usize| {
         let next = samples.partition_point(|s| *s <= i);
@@ -93,7 +96,7 @@ pub(super) fn bridged(readings: &[f64], samples: &[usize], time: &[f64]) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::criticism::noise::noise_level;
+    use crate::criticism::noise_level;
     use crate::rig::Random;
 
     /// A turning body whose angle, with noise of 0.01, comes once in so many samples, after a rest.
