@@ -21,20 +21,19 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     if median < 2 {
         return None;
     }
+    let every = in_step(&stays, median);
     stays.retain(|stay| *stay > 1 && stay.abs_diff(median) <= 1);
     let usual = stays.len() as f64 >= USUAL * count as f64;
     let readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
     if usual && goes_by_counts(&readings) {
         return None;
     }
-    if let Some((first, every)) = in_step(&begins, median) {
-        return Some((first..values.len()).step_by(every).collect());
-    }
-    if !usual {
-        return None;
-    }
     // One that stays longer came again as it was.
-    let period = stays.iter().sum::<usize>() as f64 / stays.len() as f64;
+    let period = match every {
+        Some(every) => every as f64,
+        None if usual => stays.iter().sum::<usize>() as f64 / stays.len() as f64,
+        None => return None,
+    };
     let again = |times: usize| (0..times).map(move |k| (k as f64 * period).round() as usize);
     let first = begins[0];
     let before = (first as f64 / period) as usize + 1;
@@ -52,17 +51,14 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     Some(fresh)
 }
 
-/// The first sample and the distance of those at which nearly all changes come, where these hold a reading for up to `most`
-/// samples: the longest such distance. A reading that stays longer came again as it was.
-fn in_step(begins: &[usize], most: usize) -> Option<(usize, usize)> {
-    (2..=most).rev().find_map(|every| {
-        let mut counts = vec![0; every];
-        for begin in begins {
-            counts[begin % every] += 1;
-        }
-        let first = (0..every).max_by_key(|k| counts[*k])?;
-        (counts[first] as f64 >= IN_STEP * begins.len() as f64).then_some((first, every))
-    })
+/// For how many samples each reading is held, where nearly all stay for a multiple of that: the longest such time, up to
+/// `most`.
+fn in_step(stays: &[usize], most: usize) -> Option<usize> {
+    let share = |every: usize| {
+        let whole = stays.iter().filter(|stay| **stay % every == 0);
+        whole.count() as f64 / stays.len() as f64
+    };
+    (2..=most).rev().find(|every| share(*every) >= IN_STEP)
 }
 
 /// Whether most moves from one reading to the next are of a few sizes only.
@@ -141,6 +137,20 @@ mod tests {
         assert!(count.abs_diff(4000 * 10 / 43) < 12, "{count}");
         let level = noise_level(&values, &vec![1.0; 4000]);
         assert!((level / 0.01 - 1.0).abs() < 0.3, "{level}");
+    }
+
+    #[test]
+    fn a_coarse_sensor_that_is_logged_twice_holds_though_it_goes_by_counts() {
+        let mut random = Random::new(3);
+        let reading = |i: usize| 20.0 + 30.0 * (1.0 - libm::exp(-(i as f64) / 60.0));
+        let values: Vec<f64> = (0..200)
+            .map(|i| reading(i) + 0.2 * random.normal())
+            .map(|v| (4.0 * v).round() / 4.0)
+            .flat_map(|v| [v, v])
+            .collect();
+        assert_eq!(fresh(&values).map(|f| f.len()), Some(200));
+        let level = noise_level(&values, &[1.0; 400]);
+        assert!((level / 0.21 - 1.0).abs() < 0.25, "{level}");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 
 use super::tuning::{
     BEHIND_PRINT, FAR_APART, FEW_STEPS, JITTERS, MANY_STEPS, MOST_COUNTS, MOST_DIGITS, MOST_UNITS,
-    NEAR_PRINT, PRINTED, QUANTUM_SAMPLES, WHOLE, WHOLE_SHARE,
+    NEAR_PRINT, NEAR_SHARE, PRINTED, QUANTUM_SAMPLES, WHOLE, WHOLE_SHARE,
 };
 
 /// Unit of the last digit to which the values were printed; 0 where they are no decimal numbers.
@@ -29,7 +29,8 @@ pub(in crate::criticism) fn resolution(values: &[f64]) -> f64 {
 
 /// Step of a quantised channel; 0 where none is seen.
 pub(in crate::criticism) fn lattice(values: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = values.iter().take(QUANTUM_SAMPLES).copied().collect();
+    let stride = values.len().div_ceil(QUANTUM_SAMPLES).max(1);
+    let mut sorted: Vec<f64> = values.iter().step_by(stride).copied().collect();
     sorted.sort_by(f64::total_cmp);
     sorted.dedup();
     let printed = resolution(values);
@@ -50,7 +51,7 @@ fn points_behind_jitter(ascending: &[f64]) -> Option<(Vec<f64>, f64)> {
     gaps.sort_by(f64::total_cmp);
     let ratio = |k: usize| gaps[k] / gaps[k - 1];
     let apart = (1..gaps.len()).max_by(|a, b| ratio(*a).total_cmp(&ratio(*b)))?;
-    if ratio(apart) < FAR_APART {
+    if ratio(apart) < FAR_APART || (apart as f64) < NEAR_SHARE * gaps.len() as f64 {
         return None;
     }
     let near = (gaps[apart - 1] * gaps[apart]).sqrt();
@@ -74,8 +75,6 @@ fn step_of(ascending: &[f64], rounding: f64) -> f64 {
     // The printed values are rounded, so the median of the single steps is better than the least.
     let single = steps.partition_point(|d| *d < 1.5 * least);
     let least = steps[single / 2];
-    // What runs on fast may never stop on two neighbouring counts.
-    let mut parts = (1..=MOST_COUNTS).map(|n| refined(&steps, least / f64::from(n)));
     // Either end of a step was rounded where it was printed.
     let rounded = |step: f64| {
         let enough = if step > BEHIND_PRINT * rounding {
@@ -89,17 +88,22 @@ fn step_of(ascending: &[f64], rounding: f64) -> f64 {
             0.0
         }
     };
+    // What runs on fast may never stop on two neighbouring counts.
+    let mut parts = (1..=MOST_COUNTS).map(|n| {
+        let rough = least / f64::from(n);
+        refined(&steps, rough, rounded(rough))
+    });
     let step = parts.find(|step| is_whole(&steps, *step, rounded(*step)));
     step.unwrap_or(0.0)
 }
 
 /// The step of which these ascending ones are whole multiples, from a rough value: the longer ones, whose number of steps
 /// follows from the shorter ones, tell it to more digits than print rounding leaves of one.
-fn refined(ascending: &[f64], rough: f64) -> f64 {
+fn refined(ascending: &[f64], rough: f64, rounded: f64) -> f64 {
     let (mut product, mut square, mut step) = (0.0, 0.0, rough);
     for length in ascending {
         let count = (length / step).round();
-        if count > 0.0 && (length / step - count).abs() < WHOLE {
+        if count > 0.0 && (length / step - count).abs() < WHOLE + rounded {
             product += length * count;
             square += count * count;
             step = product / square;

@@ -1,7 +1,7 @@
 //! Constants of what a record tells of its own channels.
 
-/// Values that are looked at to find the step of a quantised channel.
-pub(super) const QUANTUM_SAMPLES: usize = 4000;
+/// Values, spread over the record, that are looked at to find the step of a quantised channel.
+pub(super) const QUANTUM_SAMPLES: usize = 20_000;
 
 /// Most counts that the least step between two values may be.
 pub(super) const MOST_COUNTS: u32 = 16;
@@ -24,8 +24,9 @@ pub(super) const NEAR_PRINT: f64 = 3.0;
 pub(super) const MANY_STEPS: usize = 20;
 
 /// Ratio of two gaps between sorted values from which on the smaller is jitter about one point of a lattice, and share of
-/// the larger, one over this, that all jitter about a point stays below.
+/// the larger, one over this, that all jitter about a point stays below; least share of the gaps that are jitter.
 pub(super) const FAR_APART: f64 = 6.0;
+pub(super) const NEAR_SHARE: f64 = 0.02;
 pub(super) const JITTERS: f64 = 4.0;
 
 /// Fewest readings from which it is told.
@@ -35,8 +36,8 @@ pub(super) const LEAST_READINGS: usize = 20;
 /// sensor have clocks of their own.
 pub(super) const USUAL: f64 = 0.8;
 
-/// Share of the changes that must come at the same sample of every few, of a channel that holds each reading for so many:
-/// by chance not even 20 changes of a slow counter do at every other sample.
+/// Share of the readings that must stay for a multiple of the same number of samples, of a channel that holds each for so
+/// many: a slow counter's stay for odd numbers as often as for even ones.
 pub(super) const IN_STEP: f64 = 0.97;
 
 /// A counter that creeps goes on by one count or two, each printed in two ways at most: share of the moves that so many
