@@ -19,6 +19,7 @@ mod missing;
 mod next_experiment;
 mod noise;
 mod odd_windows;
+mod one_way;
 mod output;
 mod probes;
 mod race;
@@ -50,8 +51,8 @@ pub use next_experiment::{
 };
 pub use noise::noise_level;
 pub use report::{
-    Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
-    StepReport, Verdict,
+    Candidate, ChannelNoise, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel,
+    Step, StepReport, Verdict,
 };
 pub use residual_test::{ResidualTest, ResidualTestKind};
 pub use step::StepJob;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CriticismError, Fingerprint, MissingPart, NextExperiment, Profile, ResidualTest};
-use crate::effect::EffectId;
+use crate::effect::{EffectId, shown_unit};
 use crate::measurement::{Kind, Quantity};
 use crate::user_model::Status;
 
@@ -86,6 +86,57 @@ pub struct Candidate {
     pub equivalent_to: Vec<EffectId>,
 }
 
+/// The noise of a measured channel, in its own unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChannelNoise {
+    /// Name of the channel in the file.
+    pub channel: String,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Standard deviation of the noise in `unit`.
+    pub value: f64,
+    /// SI unit.
+    pub unit: String,
+    /// Step of the lattice on which its values lie, in `unit`; absent where none is seen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<f64>,
+}
+
+/// Share of the noise from which on a step is worth a word.
+const COARSE: f64 = 0.3;
+
+impl ChannelNoise {
+    /// `velocity noise 0.0037 rad/s, steps of 0.0132 rad/s`: steps far below the noise are not said.
+    pub fn words(&self) -> String {
+        let quantity = match self.quantity {
+            Quantity::Input => "input",
+            Quantity::Position | Quantity::LoadPosition => "position",
+            Quantity::Velocity | Quantity::LoadVelocity => "velocity",
+            Quantity::Output => "output",
+        };
+        let size = |value: f64| match shown_unit(&self.unit).as_str() {
+            "1" => three_digits(value),
+            unit => format!("{} {unit}", three_digits(value)),
+        };
+        let noise = format!("{quantity} noise {}", size(self.value));
+        match self.step.filter(|step| *step > COARSE * self.value) {
+            Some(step) => format!("{noise}, steps of {}", size(step)),
+            None => noise,
+        }
+    }
+}
+
+/// A size with three digits that count.
+fn three_digits(value: f64) -> String {
+    let written = format!("{value:.2e}");
+    let rounded: f64 = written.parse().unwrap_or(value);
+    if (1e-4..1e5).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        written
+    }
+}
+
 /// One model in the sequence from the baseline to the last one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
@@ -95,6 +146,10 @@ pub struct Step {
     pub error: f64,
     /// The same on the data used for the fit.
     pub error_fit: f64,
+    /// Share of the motion that the model misses on held-back data, noise included: root mean square of the residuals over
+    /// that of the motion.
+    #[serde(default)]
+    pub left: f64,
     /// Every parameter of the model.
     pub parameters: Vec<Parameter>,
     /// Where it fails, strongest first.
@@ -154,6 +209,9 @@ pub struct Diagnosis {
     pub samples: usize,
     /// Error of a perfect model, in the unit of [`Step::error`].
     pub noise_floor: f64,
+    /// The unit of the errors: the noise of each measured channel.
+    #[serde(default)]
+    pub noise: Vec<ChannelNoise>,
     /// From the baseline to the last model.
     pub steps: Vec<Step>,
     /// What is missing.
@@ -194,6 +252,9 @@ pub struct StepReport {
     pub step: Step,
     /// Error of a perfect model.
     pub noise_floor: f64,
+    /// The unit of the errors: the noise of each measured channel.
+    #[serde(default)]
+    pub noise: Vec<ChannelNoise>,
     /// Curves for the plots.
     pub replay: Replay,
     /// The residual over every axis.

@@ -10,12 +10,13 @@ use super::fit::Fit;
 use super::knowledge::{self, Knowledge};
 use super::locate::locate;
 use super::noise::{is_left_by_random_forces, is_noise_with_memory};
+use super::output::Output;
 use super::probes::{Probed, Probes};
 use super::score::{Score, score};
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
-use super::{CriticismError, Parameter, Replay, ReplayChannel};
+use super::{ChannelNoise, CriticismError, Parameter, Replay, ReplayChannel};
 use crate::crew::Crew;
 use crate::effect::{
     self, Dimension, Effect, EffectId, Motion, ParameterSpec, Probe, ProbeInput, ProbeOutput,
@@ -490,6 +491,21 @@ impl Session {
     /// The residual over every axis.
     pub fn atlas(&self, fit: &Fit) -> Vec<super::Profile> {
         atlas(self.whole(), &fit.motion, self.output_unit())
+    }
+
+    /// The noise of each measured channel.
+    pub fn channel_noise(&self) -> Vec<ChannelNoise> {
+        let outputs = self.outputs.iter().zip(&self.whole().outputs);
+        let noise = |((quantity, name, unit), output): (&(Quantity, String, String), &Output)| {
+            ChannelNoise {
+                channel: name.clone(),
+                quantity: *quantity,
+                value: output.noise,
+                unit: unit.clone(),
+                step: Some(output.step).filter(|step| *step > 0.0),
+            }
+        };
+        outputs.map(noise).collect()
     }
 
     /// Curves for the plots.

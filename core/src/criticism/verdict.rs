@@ -174,6 +174,12 @@ pub(super) fn add_rest(
     }
 }
 
+/// Says what would tell apart what a drive that turns one way only leaves alike.
+pub(super) fn add_both_ways(verdict: &mut Verdict) {
+    verdict.text.push_str(" The drive turns one way only.");
+    verdict.next_experiment = Some(BOTH_WAYS.to_owned());
+}
+
 /// Says that a process integrates, and how fast its output moves.
 pub(super) fn add_integrating(verdict: &mut Verdict, parameters: &[Parameter]) {
     let rate = parameters
@@ -311,6 +317,10 @@ impl Verdict {
 /// For effects that act alike in one experiment.
 const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than two levels, such as a \
     staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
+
+/// For what is one constant while a drive turns one way.
+const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the motion, a \
+    dead zone with the input, and a constant load never.";
 
 /// The verdict where a diagnosis was stopped before it settled.
 pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {

@@ -11,7 +11,7 @@ mod svg;
 
 use std::fmt::Write as _;
 
-use crate::criticism::{Profile, Step, StepReport, Verdict};
+use crate::criticism::{ChannelNoise, Profile, Step, StepReport, Verdict};
 use crate::measurement::{Kind, Measurement};
 use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
@@ -120,6 +120,16 @@ fn answer(out: &mut String, input: &ReportInput) {
         short(step.error),
         short(input.last.noise_floor),
     );
+    let missed = (input.last.step.left > 0.0).then(|| {
+        format!(
+            "The model misses {} % of the motion.",
+            short(100.0 * input.last.step.left)
+        )
+    });
+    let noise = input.last.noise.iter().map(ChannelNoise::words);
+    for fact in missed.into_iter().chain(noise) {
+        let _ = writeln!(out, "<p class=\"facts\">{}</p>", escape(&fact));
+    }
     if let Some(next) = input.verdict.and_then(|v| v.next_experiment.as_ref()) {
         let _ = writeln!(
             out,

@@ -16,6 +16,9 @@ const FARTHER: f64 = 1.2;
 pub struct Limits {
     /// Largest input in either direction, in its unit.
     pub input: f64,
+    /// Whether the input goes one way only, from 0 to that size (1) or to its negative (-1), as a heater does; 0: both ways.
+    #[serde(default)]
+    pub side: i8,
     /// Longest record, s.
     pub duration: f64,
     /// Sampling time, s.
@@ -57,6 +60,7 @@ impl Limits {
         let slides = measurement.motion() == crate::effect::Motion::Translational;
         Self {
             input: largest(&measurement.input.values),
+            side: side(&measurement.input.values),
             duration,
             step,
             speed: (speed > 0.0).then_some(FASTER * speed),
@@ -85,6 +89,7 @@ impl Limits {
                 .filter(|v| v.is_finite() && *v > 0.0);
             match (name, number) {
                 ("input", Some(v)) => self.input = v,
+                ("side", None) if value == "both" => self.side = 0,
                 ("duration", Some(v)) => self.duration = v,
                 ("step", Some(v)) => self.step = v,
                 ("speed", Some(v)) => self.speed = Some(v),
@@ -98,12 +103,20 @@ impl Limits {
                 _ => {
                     return Err(error(
                         part,
-                        "one of input, duration, step, speed, travel with its value in SI units",
+                        "one of input, duration, step, speed, travel with its value in SI units, or side=both",
                     ));
                 }
             }
         }
         Ok(())
+    }
+
+    /// A level between the lowest and the highest input, from -1 to 1.
+    pub(super) fn level(&self, share: f64) -> f64 {
+        match self.side {
+            0 => share * self.input,
+            side => f64::from(side) * self.input * 0.5 * (share + 1.0),
+        }
     }
 
     /// Whether every value can be.
@@ -114,6 +127,20 @@ impl Limits {
             && good(self.step)
             && self.speed.is_none_or(good)
             && self.travel.is_none_or(good)
+    }
+}
+
+/// Share of the largest input that may go the other way, by the noise of a measured one.
+const OTHER_WAY: f64 = 0.02;
+
+/// The only way in which an input goes, 1 or -1; 0 where it goes both ways.
+fn side(input: &[f64]) -> i8 {
+    let (low, high) = range(input);
+    let little = OTHER_WAY * high.abs().max(low.abs());
+    match (low < -little, high > little) {
+        (false, true) => 1,
+        (true, false) => -1,
+        _ => 0,
     }
 }
 

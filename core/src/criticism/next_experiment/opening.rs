@@ -162,6 +162,7 @@ mod tests {
             travel: 0.0,
             limits: Limits {
                 input: 1.0,
+                side: 0,
                 duration: 300.0,
                 step: 0.2,
                 speed: None,

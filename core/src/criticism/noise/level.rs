@@ -8,6 +8,7 @@
 
 use super::tuning::{
     CHANCE, GROUPS, MIN_GROUP, NORMAL_QUANTILE, ORDERS, QUANTILE, QUANTISED, QUIET, REPEATED,
+    STATE_ORDER, STATES, UNLIKE,
 };
 use crate::criticism::record::{fresh, lattice, resolution};
 use crate::order::quantile;
@@ -68,6 +69,13 @@ fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
     let uniform = quantum * quantum / 12.0;
     let groups = since_change(input);
     let smallest = least_level(places, &dithered, &groups);
+    if let Some(mean_square) = mean_square_over_states(places, &dithered, &groups, smallest) {
+        return Noise {
+            level: (mean_square - uniform).max(uniform).sqrt(),
+            counted: false,
+            step: quantum,
+        };
+    }
     // Quantisation and dither alone, within what the estimate can tell.
     if quantum > 0.0 && smallest * smallest < QUANTISED * 2.0 * uniform {
         return Noise {
@@ -136,6 +144,47 @@ fn least_level(places: &[usize], values: &[f64], groups: &[usize]) -> f64 {
         0 => f64::INFINITY,
         count => sum / count as f64,
     }
+}
+
+/// The mean square of the noise over the states of the signal, where it depends on them: of a speed that is counted over a
+/// time, say, which is quiet at rest and rough in motion, neither part tells alone. `usual` is what the quiet differences
+/// show. `None` where the loudest part is no louder than the quietest, but for chance.
+fn mean_square_over_states(
+    places: &[usize],
+    values: &[f64],
+    groups: &[usize],
+    usual: f64,
+) -> Option<f64> {
+    let signs = binomials(STATE_ORDER);
+    let gain = signs.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let even = evenly_spaced(places, STATE_ORDER);
+    // Long after a change of the input there are no kinks.
+    let settled = |i: usize| even[i] && groups[i + STATE_ORDER] == GROUPS - 1;
+    let mut differences: Vec<(f64, f64)> = values
+        .windows(STATE_ORDER + 1)
+        .enumerate()
+        .filter(|(i, _)| settled(*i))
+        .map(|(_, window)| {
+            let mean = window.iter().sum::<f64>() / window.len() as f64;
+            let difference: f64 = window.iter().zip(&signs).map(|(v, c)| v * c).sum();
+            (mean.abs(), difference.abs() / gain)
+        })
+        .collect();
+    let part = differences.len() / STATES;
+    if part < MIN_GROUP {
+        return None;
+    }
+    differences.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let levels = differences.chunks(part).take(STATES).map(|part| {
+        let mut part: Vec<f64> = part.iter().map(|(_, difference)| *difference).collect();
+        low_quantile(&mut part)
+    });
+    let levels: Vec<f64> = levels.collect();
+    let loudest = levels.iter().copied().fold(0.0, f64::max);
+    let quietest = levels.iter().copied().fold(f64::INFINITY, f64::min);
+    let chance = 1.0 + chance(part);
+    let depends = loudest > UNLIKE * chance * quietest.min(usual);
+    depends.then(|| levels.iter().map(|l| l * l).sum::<f64>() / STATES as f64)
 }
 
 /// The noise that the differences of this order show, and the number of those that tell.

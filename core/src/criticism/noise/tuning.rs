@@ -27,3 +27,9 @@ pub(super) const QUANTISED: f64 = 1.25;
 
 /// Share of the fresh readings of a channel that may be as the one before, by a rest; more are steps that are counted.
 pub(super) const REPEATED: f64 = 0.3;
+
+/// Parts of a signal, by its size, whose noise is compared; order of the differences that tell it; and ratio of the loudest to
+/// the quietest from which on noise depends on the state.
+pub(super) const STATES: usize = 5;
+pub(super) const STATE_ORDER: usize = 3;
+pub(super) const UNLIKE: f64 = 2.0;

@@ -4,13 +4,14 @@ use super::{NOISE_FLOOR, StepJob};
 use crate::criticism::fingerprint::fingerprints;
 use crate::criticism::judge::{alike, helps_clearly, nested};
 use crate::criticism::missing::missing_parts;
+use crate::criticism::one_way::OneWay;
 use crate::criticism::residual_test::residual_tests;
-use crate::criticism::score::Score;
+use crate::criticism::score::{Score, share_left};
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
-    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_integrating,
-    add_limited, add_pauses, add_rest, verdict,
+    add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations,
+    add_integrating, add_limited, add_pauses, add_rest, verdict,
 };
 use crate::criticism::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
@@ -32,7 +33,7 @@ impl StepJob {
             let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
             let mut places: Vec<usize> = places.collect();
             places.sort_by_key(|k| self.found(self.wanted[*k]));
-            let (added, classes): (Vec<_>, Vec<_>) = places
+            let (mut added, mut classes): (Vec<_>, Vec<_>) = places
                 .into_iter()
                 .map(|k| {
                     (
@@ -41,6 +42,9 @@ impl StepJob {
                     )
                 })
                 .unzip();
+            let one_way = OneWay::of(&self.session);
+            let is_joined =
+                one_way.is_some_and(|o| o.join(&self.session, &mut added, &mut classes));
             let mut verdict = verdict(
                 &added,
                 &classes,
@@ -52,6 +56,9 @@ impl StepJob {
             let first = self.session.first(&whole).error;
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
             add_integrating(&mut verdict, &parameters);
+            if is_joined {
+                add_both_ways(&mut verdict);
+            }
             add_imitations(&mut verdict, &self.barred);
             add_hint(&mut verdict, self.hint(model));
             // What is held wrongly says nothing of what is needed.
@@ -93,12 +100,14 @@ impl StepJob {
                 effects: self.session.effects(&model.fit),
                 error: whole.score.error,
                 error_fit: whole.score.error_fit,
+                left: share_left(self.session.whole(), &whole.score),
                 parameters,
                 findings,
                 tests: residual_tests(self.session.whole(), &whole.fit.motion),
                 candidates,
             },
             noise_floor: noise_floor(rest, &whole.score),
+            noise: self.session.channel_noise(),
             replay: self.session.replay(&whole.fit),
             atlas: self.session.atlas(&whole.fit),
             suggestion,
