@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use crate::support::diagnosis::{classes, finish};
 use crate::support::shared::shared;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, noise_level};
+use hysteron_core::criticism::{DiagnosisJob, noise_level};
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::{Kind, Measurement, Quantity, import_csv};
 use hysteron_core::rig::Random;
 use hysteron_core::rig::process::{self, ProcessRig};

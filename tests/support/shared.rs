@@ -1,18 +1,20 @@
-//! Records that are kept beside the project, and may not be copied into it.
+//! Records of real machines that are not part of the project.
 
 use std::path::Path;
 
-/// The bytes of a file in the folder `shared` beside the project. Where it is absent the test says that it is skipped, and
-/// fails under `CI`.
-pub fn shared(file: &str) -> Option<Vec<u8>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+/// A file of the folder `shared` beside the project, by its path in that folder. Where it is not there, a test has
+/// nothing to check and says so; under `CI` it fails, so that what is claimed of real machines is checked.
+pub fn shared(path: &str) -> Option<Vec<u8>> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../shared")
-        .join(file);
-    let bytes = std::fs::read(&path).ok();
-    if bytes.is_none() {
-        let is_checked = std::env::var_os("CI").is_some();
-        assert!(!is_checked, "{} is absent", path.display());
-        println!("skipped: no {}", path.display());
+        .join(path);
+    match std::fs::read(&file) {
+        Ok(bytes) => Some(bytes),
+        Err(error) => {
+            let file = file.display();
+            assert!(std::env::var_os("CI").is_none(), "{file}: {error}");
+            println!("skipped: {file} is not there");
+            None
+        }
     }
-    bytes
 }

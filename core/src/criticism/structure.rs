@@ -1,7 +1,7 @@
 //! A model structure: which baseline, which effects, and how a vector of values becomes a model.
 
-use super::baseline::Baseline;
 use super::knowledge::Knowledge;
+use crate::effect::baseline::Baseline;
 use crate::effect::{Effect, EffectId, Scales};
 use crate::model::{LoadBegin, Model};
 use crate::user_model::{Known, Status};

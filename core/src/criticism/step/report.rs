@@ -13,7 +13,7 @@ use crate::criticism::verdict::{
     add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations,
     add_integrating, add_limited, add_pauses, add_rest, verdict,
 };
-use crate::criticism::{Candidate, Step, StepReport};
+use crate::diagnosis::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
 
 impl StepJob {
