@@ -213,46 +213,60 @@ proptest! {
     }
 }
 
+/// Neither less than what the steps hide nor more than one of them.
+fn check_level(file: &str, level: f64, step: f64) {
+    let counted = step / 12.0_f64.sqrt();
+    assert!(level > 0.4 * counted && level < step, "{file}: {level}");
+}
+
 #[test]
-fn noise_and_steps_of_real_sensors_are_told_in_their_own_unit() {
+fn noise_and_steps_of_real_processes_are_told_in_their_own_unit() {
     let expected = [
-        (
-            "failing/cart-0m20-velocity-printed.csv",
-            Quantity::Velocity,
-            0.013_19,
-        ),
-        ("failing/incubator-exp1.csv", Quantity::Output, 1.0 / 32.0),
-        (
-            "failing/incubator-exp2-mean-3-decimals.csv",
-            Quantity::Output,
-            1.0 / 32.0,
-        ),
-        ("failing/one-way-drive.csv", Quantity::Velocity, 0.628_32),
-        (
-            "measurements-2/steps-coarse-sensor.csv",
-            Quantity::Output,
-            0.5,
-        ),
-        (
-            "measurements-2/steps-lag-printed.csv",
-            Quantity::Output,
-            0.0625,
-        ),
+        ("failing/incubator-exp1.csv", 1.0 / 32.0),
+        ("failing/incubator-exp2-mean-3-decimals.csv", 1.0 / 32.0),
+        ("measurements-2/steps-coarse-sensor.csv", 0.5),
+        ("measurements-2/steps-lag-printed.csv", 0.0625),
     ];
-    for (file, quantity, step) in expected {
+    for (file, step) in expected {
         let Some(d) = diagnose_shared(file) else {
             continue;
         };
-        let noise = d.noise.iter().find(|n| n.quantity == quantity).unwrap();
-        let found = noise.step.unwrap();
+        let found = d.noise[0].step.unwrap();
         assert!((found / step - 1.0).abs() < 0.01, "{file}: {found}");
-        // Neither less than what the steps hide nor more than one of them.
-        let counted = step / 12.0_f64.sqrt();
-        assert!(
-            noise.value > 0.4 * counted && noise.value < step,
-            "{file}: {}",
-            noise.value
-        );
+        check_level(file, d.noise[0].value, step);
+    }
+}
+
+#[test]
+fn noise_of_real_speeds_is_that_of_their_steps() {
+    let expected = [
+        ("failing/cart-0m20-velocity-printed.csv", 0.013_19),
+        ("failing/one-way-drive.csv", 0.628_32),
+    ];
+    for (file, step) in expected {
+        let Some(bytes) = shared(file) else {
+            continue;
+        };
+        let record = import_csv(file, &bytes, None).unwrap();
+        let speed = record.output(Quantity::Velocity).unwrap();
+        let level = noise_level(&speed.values, &record.input.values);
+        check_level(file, level, step);
+    }
+}
+
+#[test]
+fn a_heater_with_a_second_storage_has_its_known_values() {
+    let Some(d) = diagnose_shared("failing/incubator-exp1.csv") else {
+        return;
+    };
+    check(&d, &[LAG]);
+    for (name, from, to) in [
+        ("K", 127.0, 144.0),
+        ("T", 490.0, 580.0),
+        ("ambient", 22.0, 26.0),
+    ] {
+        let (value, _) = parameter(&d, name);
+        assert!((from..to).contains(&value), "{name}: {value}");
     }
 }
 

@@ -56,9 +56,6 @@ impl StepJob {
             let first = self.session.first(&whole).error;
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
             add_integrating(&mut verdict, &parameters);
-            if is_joined {
-                add_both_ways(&mut verdict);
-            }
             add_imitations(&mut verdict, &self.barred);
             add_hint(&mut verdict, self.hint(model));
             // What is held wrongly says nothing of what is needed.
@@ -70,7 +67,11 @@ impl StepJob {
             let present = present.into_iter();
             let (unsure, idle): (Vec<_>, Vec<_>) = present.partition(|id| self.lowers(model, *id));
             add_idle(&mut verdict, &idle, &unsure);
-            add_experiments(&mut verdict, &self.experiments);
+            if is_joined {
+                add_both_ways(&mut verdict);
+            } else {
+                add_experiments(&mut verdict, &self.experiments);
+            }
             add_glitches(&mut verdict, self.session.whole().glitches);
             add_pauses(&mut verdict, self.session.whole().pauses);
             add_held(&mut verdict, self.session.whole());
