@@ -127,7 +127,7 @@ impl Session {
         if let Some(seen) = seen {
             data = data.with_seen_load(seen);
         }
-        let plain = data.baseline.plain();
+        let plain = Baseline::plain();
         let guess = guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| data.baseline.unknown());
         let (inertia, viscous) = data.baseline.body(&guess);

@@ -149,6 +149,7 @@ fn is_odd(rank: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use crate::effect::baseline::Baseline;
     use std::fmt::Write as _;
 
     use super::*;
@@ -172,7 +173,7 @@ mod tests {
         }
         .measure();
         let mut data = Data::new(&measurement).unwrap();
-        let plain = data.baseline.plain();
+        let plain = Baseline::plain();
         let guess = guess(&data, &data.excitation.effective_input(&plain)).unwrap();
         let scales = data.scales(guess[0], guess[1]);
         let knowledge = Knowledge::of(&UserModel::blank(data.kind));

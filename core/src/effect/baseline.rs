@@ -162,7 +162,7 @@ impl Baseline {
     }
 
     /// One that passes the input on as it is.
-    pub fn plain(self) -> Model {
+    pub fn plain() -> Model {
         Model::body(1.0, 1.0)
     }
 

@@ -10,6 +10,7 @@ use super::fit::{Fit, same_place};
 use super::guess::guess;
 use super::knowledge::Knowledge;
 use super::structure::Structure;
+use crate::effect::baseline::Baseline;
 use crate::effect::{Scales, baseline};
 use crate::model::Start;
 
@@ -90,7 +91,7 @@ impl Search {
     /// Fits the baseline from a regression.
     pub fn baseline(data: &Data, knowledge: &Knowledge) -> Self {
         let structure = Structure::new(data.baseline, Vec::new(), knowledge.clone());
-        let plain = data.baseline.plain();
+        let plain = Baseline::plain();
         let guess = guess(data, &data.excitation.effective_input(&plain));
         let mut values = guess.unwrap_or_else(|| data.baseline.unknown());
         structure.begin(&mut values, 0);
