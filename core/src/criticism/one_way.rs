@@ -4,6 +4,7 @@
 //! such record tells them apart, since each shows itself only where the motion or the input turns.
 
 use super::data::Data;
+use super::fit::Fit;
 use super::session::Session;
 use super::verdict::Class;
 use crate::effect::{Dimension, Effect, Scales};
@@ -33,6 +34,8 @@ const LOOKED_AT: usize = 500;
 pub(super) struct OneWay {
     /// Input, position and velocity.
     moving: Vec<[f64; 3]>,
+    /// The way it turns, 1 or -1.
+    side: f64,
     scales: Scales,
 }
 
@@ -60,6 +63,7 @@ impl OneWay {
         let stride = moving.len().div_ceil(LOOKED_AT).max(1);
         Some(Self {
             moving: moving.into_iter().step_by(stride).collect(),
+            side,
             scales: session.scales,
         })
     }
@@ -69,6 +73,7 @@ impl OneWay {
     pub fn join(
         &self,
         session: &Session,
+        fit: &Fit,
         missing: &mut Vec<(&'static dyn Effect, bool)>,
         classes: &mut Vec<Class>,
     ) -> bool {
@@ -76,6 +81,16 @@ impl OneWay {
         let widened = |e: &dyn Effect| all.iter().any(|part| e.has_part(part.id()));
         let plain: Class = all.iter().copied().filter(|e| !widened(*e)).collect();
         let is_one = |e: &dyn Effect| all.iter().any(|own| own.id() == e.id());
+        // What pushes a drive on is no friction.
+        let held: f64 = (0..fit.structure.effects.len())
+            .filter_map(|k| {
+                let values = &fit.values[fit.structure.range(k)];
+                self.constant(fit.structure.effects[k], values)
+            })
+            .sum();
+        if held * self.side >= 0.0 {
+            return false;
+        }
         let Some(first) = missing.iter().position(|(e, _)| is_one(*e)) else {
             return false;
         };
@@ -102,8 +117,13 @@ impl OneWay {
             .iter()
             .map(|p| p.clamp(size(p.dimension), &self.scales))
             .collect();
+        self.constant(effect, &values).is_some()
+    }
+
+    /// The constant that an effect with these values adds to the input while the drive moves; `None` where it is none.
+    fn constant(&self, effect: &dyn Effect, values: &[f64]) -> Option<f64> {
         let mut model = Model::body(self.scales.inertia, self.scales.viscous);
-        effect.apply(&values, &mut model);
+        effect.apply(values, &mut model);
         let plain = model.delay == 0.0
             && model.next_input == 0.0
             && model.lag.is_none()
@@ -115,7 +135,7 @@ impl OneWay {
             && model.inertia == self.scales.inertia
             && model.viscous == self.scales.viscous;
         if !plain {
-            return false;
+            return None;
         }
         let added = |[u, x, v]: &[f64; 3]| {
             let forces: f64 = model.forces.iter().map(|force| force(*x, *v)).sum();
@@ -127,7 +147,8 @@ impl OneWay {
         let same = forces
             .iter()
             .filter(|f| (*f - usual).abs() <= SAME * usual.abs());
-        usual != 0.0 && same.count() as f64 > MOSTLY * forces.len() as f64
+        let is_constant = usual != 0.0 && same.count() as f64 > MOSTLY * forces.len() as f64;
+        is_constant.then_some(usual)
     }
 }
 

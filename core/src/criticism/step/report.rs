@@ -43,8 +43,8 @@ impl StepJob {
                 })
                 .unzip();
             let one_way = OneWay::of(&self.session);
-            let is_joined =
-                one_way.is_some_and(|o| o.join(&self.session, &mut added, &mut classes));
+            let is_joined = one_way
+                .is_some_and(|o| o.join(&self.session, &model.fit, &mut added, &mut classes));
             let mut verdict = verdict(
                 &added,
                 &classes,
