@@ -30,6 +30,7 @@ mod parameter_maps;
 mod plants;
 mod random_forces;
 mod real_drive;
+mod records;
 mod report;
 mod rests;
 mod scenario_text;

@@ -111,6 +111,7 @@ fn limits(text: &str) -> Result<String, String> {
     }
     let mut any = Limits {
         input: 1.0,
+        side: 0,
         duration: 1.0,
         step: 1.0,
         speed: None,
