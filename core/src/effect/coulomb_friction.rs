@@ -5,8 +5,9 @@
 //! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
 //! none it goes to 0 and the contact is rigid.
 
+use super::atom::not_negative;
 use super::spec::HARD_CROSSINGS;
-use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -82,6 +83,14 @@ impl Effect for CoulombFriction {
         let level = balance.forces[0];
         let rubbing = starts(level, probe).into_iter().filter(|_| level > 0.0);
         rubbing.map(|values| (balance.body, values)).collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.direction)];
+        vec![Atom::linear(COLUMNS, |solved| {
+            let (body, level) = not_negative(solved)?;
+            Some((body, vec![level[0], 0.0, 0.1]))
+        })]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

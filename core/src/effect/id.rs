@@ -41,10 +41,7 @@ impl EffectId {
         if text == VISCOUS_FRICTION.0 {
             return Some(VISCOUS_FRICTION);
         }
-        super::registry()
-            .iter()
-            .map(|e| e.id())
-            .find(|id| id.0 == text)
+        super::library().map(|e| e.id()).find(|id| id.0 == text)
     }
 }
 

@@ -1,20 +1,29 @@
 //! Which physics can be added? One file per effect, one line in [`registry`].
 
 mod actuator_lag;
+mod atom;
 mod backlash;
 mod cogging;
 mod constant_load;
 mod coulomb_friction;
 mod dead_zone;
+mod directional_friction;
+mod flattening_friction;
 mod formula;
 mod gain_asymmetry;
+mod gravity;
+mod hardening_spring;
 mod id;
 mod input_delay;
 mod joint_compliance;
+mod load_dependent_friction;
 mod load_ramp;
+mod nonlinear_loss;
+mod outflow;
 mod presliding_friction;
 mod probe;
 mod quadratic_drag;
+mod return_spring;
 mod sampled_input;
 mod saturation;
 mod second_lag;
@@ -23,6 +32,7 @@ mod spec;
 mod static_curvature;
 mod stribeck_friction;
 
+pub use atom::{Atom, Extent, Moment, NO_SHAPE, Part, Series, Shape, Solved, Track};
 pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub use id::{EffectId, VISCOUS_FRICTION};
 pub use probe::{GapLoad, Place, Rubbing, SeenGap, StepPart, Steps};
@@ -125,6 +135,13 @@ pub trait Effect: Sync {
     fn order(&self, _kind: Kind, _body: &mut [f64], _values: &mut [f64]) -> bool {
         false
     }
+
+    /// What it adds to the equation of motion of such a system: columns of a regression that may find it. Several where it
+    /// may be in several places; each alone is the effect.
+    fn atoms(&self, _kind: Kind) -> Vec<Atom> {
+        Vec::new()
+    }
+
     /// Puts the effect with these `values` into `model`.
     fn apply(&self, values: &[f64], model: &mut Model);
 }
@@ -164,9 +181,28 @@ pub fn registry() -> &'static [&'static dyn Effect] {
     ]
 }
 
+/// Effects that only the screen looks for so far: a model may have them, a diagnosis does not try them.
+fn screened_only() -> &'static [&'static dyn Effect] {
+    &[
+        &gravity::Gravity,
+        &return_spring::ReturnSpring,
+        &hardening_spring::HardeningSpring,
+        &load_dependent_friction::LoadDependentFriction,
+        &flattening_friction::FlatteningFriction,
+        &directional_friction::DirectionalFriction,
+        &nonlinear_loss::NonlinearLoss,
+        &outflow::Outflow,
+    ]
+}
+
+/// Every effect that the screen looks for, in the order in which equals are listed.
+pub fn library() -> impl Iterator<Item = &'static dyn Effect> {
+    registry().iter().chain(screened_only()).copied()
+}
+
 /// The effect with this id.
 pub fn find(id: EffectId) -> Option<&'static dyn Effect> {
-    registry().iter().copied().find(|e| e.id() == id)
+    library().find(|e| e.id() == id)
 }
 
 /// The name of the effect with this id on screen; that of an unknown one, such as a user's own, is its id.

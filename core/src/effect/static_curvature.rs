@@ -3,7 +3,7 @@
 //! Three places can bend: the balance of the process (its time constant then changes with the output), the sensor and the
 //! valve. All are fitted.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -73,6 +73,22 @@ impl Effect for StaticCurvature {
                 EffectId::new("constant_load"),
             ]
         }
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const BALANCE: &[Part] = &[Part::Force(|m, _| -m.velocity * m.velocity)];
+        const VALVE: &[Part] = &[Part::Force(|m, _| m.input * m.input)];
+        vec![
+            Atom::linear(BALANCE, |solved| {
+                Some((
+                    solved.body,
+                    vec![solved.coefficients[0] / solved.body[1], 0.0, 0.0],
+                ))
+            }),
+            Atom::linear(VALVE, |solved| {
+                Some((solved.body, vec![0.0, 0.0, solved.coefficients[0]]))
+            }),
+        ]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
