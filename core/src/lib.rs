@@ -24,6 +24,7 @@
 //! | [`user_model`] | what does the user know of the model? |
 //! | [`rig`] | what would a bench measure, by other physics? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
+//! | [`diagnosis`] | what was found, as plain data |
 //! | [`mystery`] | which effect is hidden? |
 //! | [`report`] | what was found, on one page |
 #![warn(missing_docs, clippy::disallowed_methods)]
@@ -31,6 +32,7 @@
 pub mod backlash;
 pub mod crew;
 pub mod criticism;
+pub mod diagnosis;
 pub mod drive;
 pub mod effect;
 pub mod explore;

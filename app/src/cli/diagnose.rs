@@ -64,11 +64,20 @@ pub(super) struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Kind {
+pub(super) enum Kind {
     /// Torque or force in, position or velocity out
     Drive,
     /// Any input u, any output y
     Process,
+}
+
+impl From<Kind> for measurement::Kind {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::Drive => Self::Drive,
+            Kind::Process => Self::Process,
+        }
+    }
 }
 
 /// A value of an option and how it was written.
@@ -263,10 +272,7 @@ pub(super) fn one(
 ) -> Result<Report, String> {
     let arguments = setup.arguments;
     let options = ImportOptions {
-        kind: arguments.kind.map(|k| match k {
-            Kind::Drive => measurement::Kind::Drive,
-            Kind::Process => measurement::Kind::Process,
-        }),
+        kind: arguments.kind.map(Into::into),
         mapping: arguments
             .map
             .as_ref()

@@ -8,6 +8,7 @@ mod diagnose;
 mod gap;
 mod limit_cycle;
 mod limit_cycle_drive;
+mod screen;
 mod simulate;
 mod text;
 
@@ -41,6 +42,8 @@ enum Command {
     LimitCycle(limit_cycle::Arguments),
     /// Say how wide a drive's hidden gap is, from the motor's columns of a drifting test.
     Gap(gap::Arguments),
+    /// Say in a second what could explain a record, by regression and without a simulation.
+    Screen(screen::Arguments),
 }
 
 /// How a result is written.
@@ -58,6 +61,7 @@ fn dispatch(command: &Command) -> ExitCode {
         Command::Simulate(arguments) => finish(simulate::run(arguments)),
         Command::LimitCycle(arguments) => finish(limit_cycle::run(arguments)),
         Command::Gap(arguments) => finish(gap::run(arguments)),
+        Command::Screen(arguments) => finish(screen::run(arguments)),
     }
 }
 

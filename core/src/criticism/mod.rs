@@ -30,6 +30,7 @@ mod race;
 mod report;
 mod residual_test;
 mod score;
+mod screen;
 mod search;
 mod select;
 mod session;
@@ -58,4 +59,5 @@ pub use report::{
     StepReport, Verdict,
 };
 pub use residual_test::{ResidualTest, ResidualTestKind};
+pub use screen::screen;
 pub use step::StepJob;
