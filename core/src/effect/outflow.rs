@@ -7,6 +7,9 @@ use crate::model::Model;
 
 pub(super) struct Outflow;
 
+/// A level is not below zero, but for its noise: this share of the largest.
+const BELOW: f64 = 0.05;
+
 impl Effect for Outflow {
     fn id(&self) -> EffectId {
         EffectId::new("outflow")
@@ -48,9 +51,8 @@ impl Effect for Outflow {
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.velocity.max(0.0).sqrt())];
         vec![Atom {
-            // A level is not below zero.
             grid: |extent| {
-                (extent.range[0] >= 0.0)
+                (extent.range[0] >= -BELOW * extent.range[1])
                     .then_some(NO_SHAPE)
                     .into_iter()
                     .collect()

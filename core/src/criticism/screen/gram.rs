@@ -223,7 +223,8 @@ impl<'a> Halves<'a> {
         let mut sums = [0, 1].map(|half: usize| {
             let mut wide = vec![0.0; size * size];
             for i in 0..stay {
-                wide[i * size..i * size + stay].copy_from_slice(&self.sums[half][i * stay..(i + 1) * stay]);
+                wide[i * size..i * size + stay]
+                    .copy_from_slice(&self.sums[half][i * stay..(i + 1) * stay]);
             }
             wide
         });

@@ -2,7 +2,7 @@
 
 use super::gram::{Gram, Reduced};
 use super::model::{Choice, Fit, Shaped, elements, unit, values};
-use super::tuning::{BLOCKS, MOST_ATOMS, PRACTICAL, SAME, TOLD};
+use super::tuning::{BLOCKS, MOST_ATOMS, PRACTICAL, SAME, TOLD, WORSE};
 use crate::effect::Extent;
 use crate::measurement::Kind;
 
@@ -196,17 +196,27 @@ pub(super) fn smallest(tried: &[Tried], motion: f64) -> Vec<&Tried> {
     near
 }
 
+/// Whether two subsets are the same: within the error of the mean paired difference over blocks, of losses and of their
+/// logarithms (a likelihood that does not know the noise of a block), and not worse by more than a share; or within what is
+/// a trifle of the motion.
 fn is_same(tried: &Tried, best: &Tried, motion: f64) -> bool {
-    let differences: Vec<f64> = tried
-        .losses
-        .iter()
-        .zip(&best.losses)
-        .map(|(a, b)| a - b)
+    let excess = tried.loss() - best.loss();
+    if excess <= PRACTICAL * PRACTICAL * motion {
+        return true;
+    }
+    let floor = PRACTICAL * PRACTICAL * motion / BLOCKS as f64;
+    let pairs = || tried.losses.iter().zip(&best.losses);
+    let plain = pairs().map(|(a, b)| a - b).collect();
+    let logs = pairs()
+        .map(|(a, b)| libm::log((a + floor) / (b + floor)))
         .collect();
+    let near = tried.loss() <= WORSE * WORSE * best.loss();
+    near && within_error(plain) && within_error(logs)
+}
+
+fn within_error(differences: Vec<f64>) -> bool {
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
     let squares = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>();
-    let error = (squares / (n - 1.0) / n).sqrt();
-    let practical = mean * n <= PRACTICAL * PRACTICAL * motion;
-    mean <= SAME * error || practical
+    mean <= SAME * (squares / (n - 1.0) / n).sqrt()
 }

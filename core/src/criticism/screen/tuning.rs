@@ -45,8 +45,8 @@ pub(super) const REST: f64 = 4.0;
 /// Residuals beyond so many robust standard deviations count linearly (Huber 1981).
 pub(super) const HUBER: f64 = 2.5;
 
-/// Rounds of weights: by the model with everything, then by the best subset.
-pub(super) const ROUNDS: usize = 2;
+/// Rounds of weights: by the model with everything, then twice by the best subset.
+pub(super) const ROUNDS: usize = 3;
 
 /// Smallest share of a target that a residual is taken to be: a regression is exact to no more digits than windows are
 /// integrals.
@@ -69,7 +69,7 @@ pub(super) const TOLD: f64 = 5.0;
 pub(super) const SAME: f64 = 3.0;
 
 /// Share of the motion, root mean square, below which a difference is none: equations and clocks are not right to more.
-pub(super) const PRACTICAL: f64 = 0.01;
+pub(super) const PRACTICAL: f64 = 0.02;
 
 /// Subsets of a class that are listed.
 pub(super) const LISTED: usize = 6;
@@ -89,3 +89,14 @@ pub(super) const FEW_LEVELS: usize = 6;
 /// Delays that are tried where the input does not explain the motion, and the longest as a share of the record.
 pub(super) const LATE: usize = 30;
 pub(super) const LATEST: f64 = 0.25;
+
+/// Factor of the error left beyond which a subset is no longer the same, however few blocks show it.
+pub(super) const WORSE: f64 = 1.12;
+
+/// Widths that leave more than this many times the share of the best width, all atoms fitted, tell noise.
+pub(super) const DULL: f64 = 3.0;
+
+/// Subsets whose shapes are refined in each round, and the first and last step of it as shares of a number.
+pub(super) const REFINED: usize = 3;
+pub(super) const COARSE: f64 = 0.1;
+pub(super) const FINE: f64 = 0.004;

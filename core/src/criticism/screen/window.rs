@@ -148,7 +148,7 @@ pub(super) fn widths(signals: &Signals) -> Vec<Width> {
         .min(signals.len() / 2);
     let mut lengths = Vec::new();
     let mut length = SHORTEST as f64;
-    while (length as usize) < widest {
+    while length * WIDTH_RATIO.sqrt() < widest as f64 {
         lengths.push(length as usize);
         length *= WIDTH_RATIO;
     }
