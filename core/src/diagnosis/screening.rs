@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::criticism::Parameter;
+use super::parameter::Parameter;
 use crate::effect::EffectId;
 use crate::measurement::Kind;
 

@@ -8,7 +8,8 @@
 //! An atom gives the columns `g_i` as functions of what was measured. The coefficients `theta_i` are fitted; what enters
 //! nonlinearly, its [`Shape`], is tried on a grid (variable projection: Golub and Pereyra 1973).
 
-use super::BodyStart;
+/// Inertia and viscous friction of a body, and values of an effect that go with them.
+pub type BodyStart = ([f64; 2], Vec<f64>);
 
 /// Values of what enters an atom nonlinearly, such as a dead time or a Stribeck speed; what it does not need is 0.
 pub type Shape = [f64; 3];
@@ -129,6 +130,7 @@ impl Atom {
 }
 
 /// The values of an atom whose coefficients are those of the effect, whatever their signs.
+#[allow(clippy::unnecessary_wraps, reason = "the type of Atom::values")]
 pub fn as_they_are(solved: &Solved) -> Option<BodyStart> {
     Some((solved.body, solved.coefficients.to_vec()))
 }
@@ -140,6 +142,7 @@ pub fn not_negative(solved: &Solved) -> Option<BodyStart> {
 }
 
 /// The values of an atom that has a shape of one number and no coefficient.
+#[allow(clippy::unnecessary_wraps, reason = "the type of Atom::values")]
 pub fn shape_alone(solved: &Solved) -> Option<BodyStart> {
     Some((solved.body, vec![solved.shape[0]]))
 }

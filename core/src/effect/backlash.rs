@@ -6,10 +6,11 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::atom::geometric;
+use super::driven_load::{load_columns, load_values};
 use super::probe::Bounces;
 use super::{
     Atom, BodyStart, Dimension, Effect, EffectId, GapLoad, ParameterSpec, Part, Probe, Range,
-    SeenGap, Series, Solved, Track,
+    SeenGap, Track, joint_compliance,
 };
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
@@ -322,9 +323,6 @@ const GAPS: usize = 18;
 const RATES: [f64; 3] = [0.03, 0.15, 0.6];
 const DRY: [f64; 3] = [0.0, 0.05, 0.2];
 
-/// Share of the body below which a load is nothing that a regression tells ([`Range::Sizeable`]).
-const LEAST_LOAD: f64 = 0.05;
-
 /// Position of a load that follows the measured motion through a gap with rigid contacts that do not bounce, and between
 /// them flies on, slowed at a `rate` (1/s) and by a `dry` deceleration: equation (10) of the paper with free flight.
 fn free_flight(track: &Track, half_gap: f64, rate: f64, dry: f64) -> Vec<f64> {
@@ -349,38 +347,6 @@ fn free_flight(track: &Track, half_gap: f64, rate: f64, dry: f64) -> Vec<f64> {
         at
     };
     track.position.iter().map(|x| follow(*x)).collect()
-}
-
-/// What inertia, viscous and dry friction of a load at these positions ask of the motor.
-pub(super) fn load_columns(position: Vec<f64>, step: f64) -> Vec<Series> {
-    let speed = |k: usize| {
-        let (before, after) = (k.saturating_sub(1), (k + 1).min(position.len() - 1));
-        (position[after] - position[before]) / (step * (after - before).max(1) as f64)
-    };
-    let rubbing: Vec<f64> = (0..position.len())
-        .map(|k| {
-            if speed(k) == 0.0 {
-                0.0
-            } else {
-                -speed(k).signum()
-            }
-        })
-        .collect();
-    let back: Vec<f64> = position.iter().map(|y| -y).collect();
-    let viscous = back.clone();
-    [(2, back), (1, viscous), (0, rubbing)]
-        .map(|(derivative, values)| Series { derivative, values })
-        .into_iter()
-        .collect()
-}
-
-/// Inertia, viscous and dry friction of a load; none where it is nothing.
-pub(super) fn load_values(solved: &Solved) -> Option<[f64; 3]> {
-    let [inertia, viscous, dry] = *solved.coefficients else {
-        return None;
-    };
-    let loaded = inertia > LEAST_LOAD * solved.body[0] && solved.body[0] > 0.0;
-    loaded.then_some([inertia, viscous.max(0.0), dry.max(0.0)])
 }
 
 impl Effect for Backlash {
@@ -450,7 +416,7 @@ impl Effect for Backlash {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const { &[EffectId::new("joint_compliance")] }
+        &[joint_compliance::ID]
     }
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
@@ -506,7 +472,7 @@ impl Effect for Backlash {
     /// The load follows the measured motion through the gap; what the motor gives it is linear in its inertia and friction.
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Motion(|track, [half_gap, rate, dry]| {
-            load_columns(free_flight(track, *half_gap, *rate, *dry), track.step)
+            load_columns(&free_flight(track, *half_gap, *rate, *dry), track.step)
         })];
         vec![Atom {
             parts: COLUMNS,

@@ -3,15 +3,19 @@
 //! It contains Coulomb friction (both levels the same) and replaces it.
 
 use super::atom::not_negative;
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{
+    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, coulomb_friction,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("directional_friction");
 
 pub(super) struct DirectionalFriction;
 
 impl Effect for DirectionalFriction {
     fn id(&self) -> EffectId {
-        EffectId::new("directional_friction")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -60,7 +64,7 @@ impl Effect for DirectionalFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const { &[EffectId::new("coulomb_friction")] }
+        &[coulomb_friction::ID]
     }
 
     fn telling(&self) -> usize {

@@ -5,6 +5,8 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("flattening_friction");
+
 pub(super) struct FlatteningFriction;
 
 /// Speeds that are tried, in typical ones, and how many from the first to the last by a regression.
@@ -13,7 +15,7 @@ const TRIED: usize = 8;
 
 impl Effect for FlatteningFriction {
     fn id(&self) -> EffectId {
-        EffectId::new("flattening_friction")
+        ID
     }
 
     fn name(&self) -> &'static str {

@@ -4,6 +4,8 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("gain_asymmetry");
+
 pub(super) struct GainAsymmetry;
 
 /// The largest asymmetry that is one ([`Range::Fraction`]).
@@ -11,7 +13,7 @@ const MOST: f64 = 0.9;
 
 impl Effect for GainAsymmetry {
     fn id(&self) -> EffectId {
-        EffectId::new("gain_asymmetry")
+        ID
     }
 
     fn name(&self) -> &'static str {

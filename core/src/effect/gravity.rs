@@ -4,6 +4,8 @@ use super::{Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Pr
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("gravity");
+
 pub(super) struct Gravity;
 
 /// Travel in rad from which on a sine is told from a spring with a constant load.
@@ -16,7 +18,7 @@ fn arm(sine: f64, cosine: f64) -> Vec<f64> {
 
 impl Effect for Gravity {
     fn id(&self) -> EffectId {
-        EffectId::new("gravity")
+        ID
     }
 
     fn name(&self) -> &'static str {

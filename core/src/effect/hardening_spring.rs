@@ -5,11 +5,13 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("hardening_spring");
+
 pub(super) struct HardeningSpring;
 
 impl Effect for HardeningSpring {
     fn id(&self) -> EffectId {
-        EffectId::new("hardening_spring")
+        ID
     }
 
     fn name(&self) -> &'static str {

@@ -1,12 +1,16 @@
 //! Joint compliance: a load behind an elastic joint.
 
-use std::f64::consts::TAU;
-
 use super::atom::geometric;
-use super::backlash::{load_columns, load_values};
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Track};
+use super::driven_load::{load_columns, load_values};
+use super::{
+    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Track, coulomb_friction,
+    presliding_friction,
+};
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
+use std::f64::consts::TAU;
+
+pub(super) const ID: EffectId = EffectId::new("joint_compliance");
 
 pub(super) struct JointCompliance;
 
@@ -159,7 +163,7 @@ fn on_spring(track: &Track, frequency: f64, ratio: f64) -> Vec<f64> {
 
 impl Effect for JointCompliance {
     fn id(&self) -> EffectId {
-        EffectId::new("joint_compliance")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -219,12 +223,7 @@ impl Effect for JointCompliance {
 
     /// A light load that rubs, on a stiff joint, is dry friction of the body.
     fn limits(&self) -> &'static [EffectId] {
-        const {
-            &[
-                EffectId::new("coulomb_friction"),
-                EffectId::new("presliding_friction"),
-            ]
-        }
+        &[coulomb_friction::ID, presliding_friction::ID]
     }
 
     /// On a joint too stiff to be seen, the load is a part of the body; a load that its friction holds makes of the joint a
@@ -246,7 +245,7 @@ impl Effect for JointCompliance {
     /// The load follows the measured motion through a spring; what the motor gives it is linear in its inertia and friction.
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Motion(|track, [frequency, ratio, _]| {
-            load_columns(on_spring(track, *frequency, *ratio), track.step)
+            load_columns(&on_spring(track, *frequency, *ratio), track.step)
         })];
         vec![Atom {
             parts: COLUMNS,

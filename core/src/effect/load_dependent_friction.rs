@@ -7,6 +7,8 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("load_dependent_friction");
+
 pub(super) struct LoadDependentFriction;
 
 /// The largest share with which a fit begins.
@@ -14,7 +16,7 @@ const MOST: f64 = 0.5;
 
 impl Effect for LoadDependentFriction {
     fn id(&self) -> EffectId {
-        EffectId::new("load_dependent_friction")
+        ID
     }
 
     fn name(&self) -> &'static str {

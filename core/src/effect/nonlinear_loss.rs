@@ -7,11 +7,13 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("nonlinear_loss");
+
 pub(super) struct NonlinearLoss;
 
 impl Effect for NonlinearLoss {
     fn id(&self) -> EffectId {
-        EffectId::new("nonlinear_loss")
+        ID
     }
 
     fn name(&self) -> &'static str {

@@ -5,6 +5,8 @@ use super::{Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Pr
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("outflow");
+
 pub(super) struct Outflow;
 
 /// A level is not below zero, but for its noise: this share of the largest.
@@ -12,7 +14,7 @@ const BELOW: f64 = 0.05;
 
 impl Effect for Outflow {
     fn id(&self) -> EffectId {
-        EffectId::new("outflow")
+        ID
     }
 
     fn name(&self) -> &'static str {

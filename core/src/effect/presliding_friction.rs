@@ -6,9 +6,12 @@
 use super::atom::{geometric, not_negative};
 use super::{
     Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series,
+    coulomb_friction,
 };
 use crate::measurement::Kind;
 use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("presliding_friction");
 
 pub(super) struct PreslidingFriction;
 
@@ -56,7 +59,7 @@ const WAYS: usize = 10;
 
 impl Effect for PreslidingFriction {
     fn id(&self) -> EffectId {
-        EffectId::new("presliding_friction")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -103,7 +106,7 @@ impl Effect for PreslidingFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const { &[EffectId::new("coulomb_friction")] }
+        &[coulomb_friction::ID]
     }
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {

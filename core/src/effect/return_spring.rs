@@ -4,6 +4,8 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("return_spring");
+
 pub(super) struct ReturnSpring;
 
 /// Values with which the force is `-stiffness x + load`; none where it pushes away.
@@ -13,7 +15,7 @@ fn spring(stiffness: f64, load: f64) -> Option<Vec<f64>> {
 
 impl Effect for ReturnSpring {
     fn id(&self) -> EffectId {
-        EffectId::new("return_spring")
+        ID
     }
 
     fn name(&self) -> &'static str {

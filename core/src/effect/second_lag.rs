@@ -1,9 +1,7 @@
 //! A second first-order lag in series with the process.
 
-use super::{
-    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series,
-    slower_is_the_process,
-};
+use super::effect::slower_is_the_process;
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series};
 use crate::measurement::Kind;
 use crate::model::Model;
 

@@ -2,20 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use serde::{Deserialize, Serialize};
-
-/// Whether a drive turns or slides; a process does neither.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Motion {
-    /// kg m^2, N m, rad.
-    Rotational,
-    /// kg, N, m.
-    Translational,
-    /// A process: input and output in their own units.
-    None,
-}
-
+use crate::measurement::Motion;
 /// Physical dimension of a parameter; its SI unit follows from the [`Motion`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
@@ -69,7 +56,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// SI unit as files have it; [`shown_unit`] for a reader.
+    /// SI unit as files have it; [`shown_unit`](crate::uncertain::shown_unit) for a reader.
     pub const fn unit(self, motion: Motion) -> &'static str {
         match (self, motion) {
             (Self::Time, _) => "s",
@@ -99,11 +86,6 @@ impl Dimension {
             | (_, Motion::None) => "1",
         }
     }
-}
-
-/// A unit as it is shown: files and JSON have `kg m^2`, which is easier to type than `kg m²`.
-pub fn shown_unit(unit: &str) -> String {
-    unit.replace("^2", "²")
 }
 
 /// Values that a parameter may take.
@@ -297,9 +279,8 @@ impl Scales {
             Dimension::Position => self.travel,
             Dimension::Speed => self.speed,
             Dimension::Stiffness => self.inertia.abs() / (self.step * self.step),
-            Dimension::Drag => self.force / (self.speed * self.speed),
+            Dimension::Drag | Dimension::Loss => self.force / (self.speed * self.speed),
             Dimension::CubicStiffness => self.force / self.travel.powi(3),
-            Dimension::Loss => self.force / (self.speed * self.speed),
             Dimension::Outflow => self.force / self.speed.sqrt(),
             Dimension::PerPosition => 1.0 / self.travel,
             Dimension::Ratio | Dimension::Phase | Dimension::Undetermined => 1.0,

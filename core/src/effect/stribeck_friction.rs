@@ -4,7 +4,10 @@
 
 use super::atom::not_negative;
 use super::spec::HARD_CROSSINGS;
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{
+    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, coulomb_friction,
+    presliding_friction,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -82,12 +85,7 @@ impl Effect for StribeckFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const {
-            &[
-                EffectId::new("coulomb_friction"),
-                EffectId::new("presliding_friction"),
-            ]
-        }
+        &[coulomb_friction::ID, presliding_friction::ID]
     }
 
     fn needs_its_parts(&self) -> bool {

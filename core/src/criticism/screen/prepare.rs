@@ -1,7 +1,7 @@
 //! From signals to sums: which shapes of which atoms go into the subsets, and what each window counts.
 
 use super::gram::{AtomColumns, Gram, Halves, Reduced, Rows};
-use super::model::{ACCELERATION, BASE, Choice, Shaped, elements, found, unit};
+use super::model::{BASE, Choice, Shaped, elements, found, unit};
 use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
 use super::tuning::{COARSE, DULL, EXACT, FINE, HUBER, KEPT_SHAPES, REFINED, ROUNDS};
@@ -302,8 +302,7 @@ impl Builder<'_> {
                 }
                 let windows = self.rows.widths[width].starts.len() as f64;
                 let free = (windows - w.len() as f64).max(1.0) / windows;
-                let motion = sums[ACCELERATION * gram.size + ACCELERATION];
-                (reduced.loss(&w) / unit(self.kind, &w) / motion / free).sqrt()
+                (reduced.loss(&w) / reduced.square(w.len()).max(f64::MIN_POSITIVE) / free).sqrt()
             })
             .collect();
         let least = left.iter().copied().fold(f64::INFINITY, f64::min);

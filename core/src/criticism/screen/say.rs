@@ -6,11 +6,9 @@ use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
 use super::tuning::LISTED;
 use super::window::Width;
-use crate::criticism::{Parameter, baseline};
-use crate::diagnosis::{Screening, Subset};
-use crate::effect::{EffectId, VISCOUS_FRICTION};
+use crate::diagnosis::{Parameter, Screening, Status, Subset};
+use crate::effect::{EffectId, VISCOUS_FRICTION, baseline};
 use crate::measurement::{Kind, Measurement};
-use crate::user_model::Status;
 
 /// Version of the layout.
 const SCHEMA: u32 = 1;

@@ -2,8 +2,8 @@
 
 use super::tuning::{REST, SIGN_SIGMAS, SMOOTH, WIDEST_SMOOTHING};
 use crate::criticism::noise::noise_level;
-use crate::effect::{Extent, Moment, Motion, Track};
-use crate::measurement::{Kind, Measurement, Quantity};
+use crate::effect::{Extent, Moment, Track};
+use crate::measurement::{Kind, Measurement, Motion, Quantity};
 use crate::order::{median, range};
 
 /// A measured output and the standard deviation of its noise.

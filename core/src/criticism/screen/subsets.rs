@@ -2,7 +2,7 @@
 
 use super::gram::{Gram, Reduced};
 use super::model::{Choice, Fit, Shaped, elements, unit, values};
-use super::tuning::{BLOCKS, MOST_ATOMS, PRACTICAL, SAME, TOLD, WORSE};
+use super::tuning::{BLOCKS, GROWTH, MOST_ATOMS, PRACTICAL, SAME, TOLD, WORSE};
 use crate::effect::Extent;
 use crate::measurement::Kind;
 
@@ -122,8 +122,12 @@ impl<'a> Bench<'a> {
     pub fn told(&self, fit: &Fit) -> bool {
         match self.kind {
             Kind::Drive => fit.w[0] > TOLD * fit.error(0),
-            // A gain has either sign, but a process that runs away is none.
-            Kind::Process => fit.w[0].abs() > TOLD * fit.error(0) && fit.w[1] < TOLD * fit.error(1),
+            // A gain has either sign, but a process that runs away within a window is none.
+            Kind::Process => {
+                let grows =
+                    fit.w[1] > TOLD * fit.error(1) && fit.w[1] * self.extent.window > GROWTH;
+                fit.w[0].abs() > TOLD * fit.error(0) && !grows
+            }
         }
     }
 

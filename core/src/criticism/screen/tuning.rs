@@ -100,3 +100,6 @@ pub(super) const DULL: f64 = 3.0;
 pub(super) const REFINED: usize = 3;
 pub(super) const COARSE: f64 = 0.1;
 pub(super) const FINE: f64 = 0.004;
+
+/// Growth of a process over the widest window, as a logarithm, up to which it is no runaway: an integrating one has 0.
+pub(super) const GROWTH: f64 = 0.1;
