@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use hysteron_core::diagnosis::Limits;
-use hysteron_core::measurement::{Mapping, Period, TorqueConstant};
+use hysteron_core::measurement::{self, Mapping, Period, TorqueConstant};
 
 use crate::output::Format;
 
@@ -84,6 +84,15 @@ pub enum Kind {
     Drive,
     /// Any input u, any output y
     Process,
+}
+
+impl From<Kind> for measurement::Kind {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::Drive => Self::Drive,
+            Kind::Process => Self::Process,
+        }
+    }
 }
 
 /// A value of an option and how it was written.

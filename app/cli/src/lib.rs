@@ -13,6 +13,7 @@ mod one;
 mod output;
 mod progress_line;
 mod read;
+mod screen;
 mod simulate;
 mod text;
 
@@ -38,6 +39,8 @@ pub enum Command {
     LimitCycle(limit_cycle::Arguments),
     /// Say how wide a drive's hidden gap is, from the motor's columns of a drifting test.
     Gap(gap::Arguments),
+    /// Say in a second what could explain a record, by regression and without a simulation.
+    Screen(screen::Arguments),
 }
 
 impl Command {
@@ -48,6 +51,7 @@ impl Command {
             Self::Simulate(arguments) => finish(simulate::run(arguments)),
             Self::LimitCycle(arguments) => finish(limit_cycle::run(arguments)),
             Self::Gap(arguments) => finish(gap::run(arguments)),
+            Self::Screen(arguments) => finish(screen::run(arguments)),
         }
     }
 }

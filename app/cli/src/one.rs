@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use hysteron_core::criticism::DiagnosisJob;
 use hysteron_core::diagnosis::{Diagnosis, Limits};
-use hysteron_core::measurement::{self, ImportOptions, Mapping, Measurement};
+use hysteron_core::measurement::{ImportOptions, Mapping, Measurement};
 use hysteron_core::progress::Progress;
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
@@ -97,10 +97,7 @@ impl Report {
 pub fn one(file: &Path, setup: &Setup, show: impl FnMut(f64, &str)) -> Result<Report, String> {
     let arguments = setup.arguments;
     let options = ImportOptions {
-        kind: arguments.kind.map(|k| match k {
-            Kind::Drive => measurement::Kind::Drive,
-            Kind::Process => measurement::Kind::Process,
-        }),
+        kind: arguments.kind.map(Into::into),
         mapping: arguments
             .map
             .as_ref()

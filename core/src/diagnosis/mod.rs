@@ -15,6 +15,7 @@ mod program;
 mod replay;
 mod report;
 mod residual_test;
+mod screening;
 mod step;
 mod verdict;
 
@@ -31,6 +32,7 @@ pub use program::{Program, Sine};
 pub use replay::{Replay, ReplayChannel};
 pub use report::{Diagnosis, StepReport};
 pub use residual_test::{ResidualTest, ResidualTestKind};
+pub use screening::{InputCheck, InputVerdict, Screening, Subset};
 pub use step::{Candidate, Finding, Step};
 pub use verdict::{Contradiction, Verdict};
 

@@ -1,10 +1,27 @@
 //! First-order lag between the commanded and the acting input of a drive.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::{geometric, shape_alone};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
 pub(super) struct ActuatorLag;
+
+/// Time constants that a regression tries.
+const LAGS: usize = 20;
+
+/// Mean over each sample of a held input behind a lag of so many samples, which has come to rest at first.
+fn lagged(input: &[f64], samples: f64) -> Vec<f64> {
+    let decay = libm::exp(-1.0 / samples);
+    let mean = samples * -libm::expm1(-1.0 / samples);
+    let mut state = input.first().copied().unwrap_or(0.0);
+    let mut of = |u: f64| {
+        let off = state - u;
+        state = u + off * decay;
+        u + off * mean
+    };
+    input.iter().map(|u| of(*u)).collect()
+}
 
 impl Effect for ActuatorLag {
     fn id(&self) -> EffectId {
@@ -45,6 +62,18 @@ impl Effect for ActuatorLag {
             .iter()
             .map(|samples| vec![samples * probe.scales.step])
             .collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Input(|track, lag| {
+            lagged(track.input, lag[0] / track.step)
+        })];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| geometric(0.3 * extent.step, 0.5 * extent.window, LAGS),
+            shapes: 1,
+            values: shape_alone,
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -5,10 +5,12 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::atom::geometric;
+use super::driven_load::{load_columns, load_values};
 use super::probe::Bounces;
 use super::{
-    BodyStart, Dimension, Effect, EffectId, GapLoad, ParameterSpec, Probe, Range, SeenGap,
-    joint_compliance,
+    Atom, BodyStart, Dimension, Effect, EffectId, GapLoad, ParameterSpec, Part, Probe, Range,
+    SeenGap, Track, joint_compliance,
 };
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
@@ -314,6 +316,39 @@ fn promising(scanned: &[Trial], share: f64) -> Vec<f64> {
     gaps
 }
 
+/// Half gaps that a regression tries: from the first to the second of these shares of the travel, so many; each with these
+/// rates of a free load's decay, in typical accelerations per typical speed, and dry decelerations, in typical accelerations.
+const SCREENED_GAPS: [f64; 2] = [1.0 / 400.0, 1.0 / 6.0];
+const GAPS: usize = 18;
+const RATES: [f64; 3] = [0.03, 0.15, 0.6];
+const DRY: [f64; 3] = [0.0, 0.05, 0.2];
+
+/// Position of a load that follows the measured motion through a gap with rigid contacts that do not bounce, and between
+/// them flies on, slowed at a `rate` (1/s) and by a `dry` deceleration: equation (10) of the paper with free flight.
+fn free_flight(track: &Track, half_gap: f64, rate: f64, dry: f64) -> Vec<f64> {
+    let (step, decay) = (track.step, libm::exp(-rate * track.step));
+    let mut at = track.position.first().copied().unwrap_or(0.0);
+    let mut speed: f64 = 0.0;
+    let mut follow = |motor: f64| {
+        speed *= decay;
+        speed = speed.signum() * (speed.abs() - dry * step).max(0.0);
+        let before = at;
+        at += speed * step;
+        let held = at.clamp(motor - half_gap, motor + half_gap);
+        if held != at {
+            let pushed = (held - before) / step;
+            speed = if held > at {
+                speed.max(pushed)
+            } else {
+                speed.min(pushed)
+            };
+            at = held;
+        }
+        at
+    };
+    track.position.iter().map(|x| follow(*x)).collect()
+}
+
 impl Effect for Backlash {
     fn id(&self) -> EffectId {
         EffectId::new("backlash")
@@ -432,6 +467,38 @@ impl Effect for Backlash {
         let shares = values.iter().skip(1).zip(load.errors);
         let load = shares.map(|(value, share)| value * share);
         std::iter::once(gap.error).chain(load).collect()
+    }
+
+    /// The load follows the measured motion through the gap; what the motor gives it is linear in its inertia and friction.
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Motion(|track, [half_gap, rate, dry]| {
+            load_columns(&free_flight(track, *half_gap, *rate, *dry), track.step)
+        })];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| {
+                let slowest = extent.acceleration / extent.speed;
+                let [least, most] = SCREENED_GAPS;
+                let gaps = geometric(least * extent.travel, most * extent.travel, GAPS);
+                let with = |gap: f64| {
+                    let rates = RATES.map(|share| share * slowest).into_iter();
+                    rates
+                        .flat_map(move |rate| DRY.map(|dry| [gap, rate, dry * extent.acceleration]))
+                };
+                gaps.into_iter().flat_map(|gap| with(gap[0])).collect()
+            },
+            shapes: 3,
+            values: |solved| {
+                let [inertia, viscous, dry] = load_values(solved)?;
+                // Rigid contacts do not tell how hard they are: as hard as samples can tell.
+                let stiffness = inertia * (1.0 / solved.extent.step).powi(2);
+                let damping = 2.0 * DAMPING_RATIO * (stiffness * inertia).sqrt();
+                Some((
+                    solved.body,
+                    vec![solved.shape[0], inertia, viscous, dry, stiffness, damping],
+                ))
+            },
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,6 +1,9 @@
 //! Cogging: a torque that repeats with the position.
 
-use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use std::f64::consts::TAU;
+
+use super::atom::even;
+use super::{Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -8,6 +11,12 @@ pub(super) struct Cogging;
 
 /// Spatial frequencies that are followed.
 const BEST: usize = 3;
+
+/// Samples in the shortest wave that is looked for, at the typical speed; frequencies that are tried for each wave that the
+/// travel holds, half of what tells two waves apart; and how many at most.
+const LEAST_SAMPLES: f64 = 8.0;
+const FREQUENCIES_PER_TURN: f64 = 2.0;
+const MOST_FREQUENCIES: usize = 60;
 
 impl Effect for Cogging {
     fn id(&self) -> EffectId {
@@ -72,6 +81,33 @@ impl Effect for Cogging {
             (balance.body, wave)
         });
         found.into_iter().collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[
+            Part::Force(|m, n| libm::sin(n[0] * m.position)),
+            Part::Force(|m, n| libm::cos(n[0] * m.position)),
+        ];
+        vec![Atom {
+            parts: COLUMNS,
+            // From a wave in the travel to the finest that samples at the typical speed show.
+            grid: |extent| {
+                let shortest = LEAST_SAMPLES * extent.speed * extent.step;
+                let count = (FREQUENCIES_PER_TURN * extent.travel / shortest) as usize;
+                even(
+                    TAU / extent.travel,
+                    TAU / shortest,
+                    count.min(MOST_FREQUENCIES),
+                )
+            },
+            shapes: 1,
+            values: |solved| {
+                let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);
+                let amplitude = libm::hypot(sine, cosine);
+                let wave = vec![amplitude, solved.shape[0], libm::atan2(cosine, sine)];
+                Some((solved.body, wave))
+            },
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,6 +1,7 @@
 //! A constant force or input that nobody commanded.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::as_they_are;
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -44,6 +45,15 @@ impl Effect for ConstantLoad {
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![probe.offset()]]
+    }
+
+    fn atoms(&self, kind: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Force(|_, _| 1.0)];
+        match kind {
+            Kind::Drive => vec![Atom::linear(COLUMNS, as_they_are)],
+            // The operating point of a process is a part of its baseline.
+            Kind::Process => Vec::new(),
+        }
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -5,9 +5,10 @@
 //! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
 //! none it goes to 0 and the contact is rigid.
 
+use super::atom::not_negative;
 use super::dry_friction::{DAMPING, LEVEL, SHORT};
 use super::spec::HARD_CROSSINGS;
-use super::{BodyStart, Effect, EffectId, ParameterSpec, Probe};
+use super::{Atom, BodyStart, Effect, EffectId, ParameterSpec, Part, Probe};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -66,6 +67,14 @@ impl Effect for CoulombFriction {
         let level = balance.forces[0];
         let rubbing = starts(level, probe).into_iter().filter(|_| level > 0.0);
         rubbing.map(|values| (balance.body, values)).collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.direction)];
+        vec![Atom::linear(COLUMNS, |solved| {
+            let (body, level) = not_negative(solved)?;
+            Some((body, vec![level[0], 0.0, 0.1]))
+        })]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,10 +1,16 @@
 //! Dead zone: small inputs do nothing.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::{geometric, mapped, shape_alone};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
 pub(super) struct DeadZone;
+
+/// Widths that are tried: from the first to the second of these shares of the largest input, so many.
+const LEAST: f64 = 0.01;
+const MOST: f64 = 0.6;
+const ZONES: usize = 16;
 
 impl Effect for DeadZone {
     fn id(&self) -> EffectId {
@@ -46,6 +52,18 @@ impl Effect for DeadZone {
             .iter()
             .map(|share| vec![share * largest])
             .collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Input(|track, zone| {
+            mapped(track, |u| u - u.clamp(-zone[0], zone[0]))
+        })];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| geometric(LEAST * extent.input, MOST * extent.input, ZONES),
+            shapes: 1,
+            values: shape_alone,
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,13 +1,11 @@
 //! What an effect is.
 
+use super::atom::{Atom, BodyStart};
 use super::id::EffectId;
 use super::probe::{Probe, SeenGap};
 use super::spec::ParameterSpec;
 use crate::measurement::Kind;
 use crate::model::Model;
-
-/// Inertia and viscous friction of a body, and values of an effect that go with them.
-pub type BodyStart = ([f64; 2], Vec<f64>);
 
 /// A piece of physics that a user can add to a model.
 pub trait Effect: Sync {
@@ -99,6 +97,13 @@ pub trait Effect: Sync {
     fn order(&self, _kind: Kind, _body: &mut [f64], _values: &mut [f64]) -> bool {
         false
     }
+
+    /// What it adds to the equation of motion of such a system: columns of a regression that may find it. Several where it
+    /// may be in several places; each alone is the effect.
+    fn atoms(&self, _kind: Kind) -> Vec<Atom> {
+        Vec::new()
+    }
+
     /// Puts the effect with these `values` into `model`.
     fn apply(&self, values: &[f64], model: &mut Model);
 }

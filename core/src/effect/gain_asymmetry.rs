@@ -1,12 +1,15 @@
 //! Different gain for positive and negative input.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
 pub(super) const ID: EffectId = EffectId::new("gain_asymmetry");
 
 pub(super) struct GainAsymmetry;
+
+/// The largest asymmetry that is one ([`Range::Fraction`]).
+const MOST: f64 = 0.9;
 
 impl Effect for GainAsymmetry {
     fn id(&self) -> EffectId {
@@ -44,6 +47,14 @@ impl Effect for GainAsymmetry {
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![probe.asymmetry().unwrap_or(0.0)]]
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Force(|m, _| m.input.abs())];
+        vec![Atom::linear(COLUMNS, |solved| {
+            (solved.coefficients[0].abs() <= MOST)
+                .then(|| (solved.body, solved.coefficients.to_vec()))
+        })]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,6 +1,7 @@
 //! Dead time between the commanded and the acting input.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::{geometric, shape_alone};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -11,6 +12,19 @@ const LONGEST_SHARE: f64 = 0.1;
 
 /// Starting values that cover that span evenly on a log scale.
 const STARTS: u32 = 12;
+
+/// Dead times that a regression tries.
+const DELAYS: usize = 24;
+
+/// The input so many samples late, as the mean over each sample of what is held.
+fn delayed(input: &[f64], samples: f64) -> Vec<f64> {
+    let (whole, part) = (samples.floor(), samples - samples.floor());
+    let at = |k: usize, back: usize| input[k.saturating_sub(back)];
+    let back = whole as usize;
+    (0..input.len())
+        .map(|k| (1.0 - part) * at(k, back) + part * at(k, back + 1))
+        .collect()
+}
 
 impl Effect for InputDelay {
     fn id(&self) -> EffectId {
@@ -58,6 +72,18 @@ impl Effect for InputDelay {
     /// An input that is taken from ahead by more than it is late is not late.
     fn is_between_samples(&self, values: &[f64], model: &Model, step: f64) -> bool {
         values[0] <= model.next_input * step
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Input(|track, delay| {
+            delayed(track.input, delay[0] / track.step)
+        })];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| geometric(0.5 * extent.step, 0.5 * extent.window, DELAYS),
+            shapes: 1,
+            values: shape_alone,
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

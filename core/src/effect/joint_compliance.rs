@@ -1,10 +1,14 @@
 //! Joint compliance: a load behind an elastic joint.
 
+use super::atom::geometric;
+use super::driven_load::{load_columns, load_values};
 use super::{
-    Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction, presliding_friction,
+    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Track, coulomb_friction,
+    presliding_friction,
 };
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
+use std::f64::consts::TAU;
 
 pub(super) const ID: EffectId = EffectId::new("joint_compliance");
 
@@ -128,6 +132,35 @@ fn loads(stretch: &Probe, share: f64) -> Vec<(f64, Guess, Vec<f64>)> {
     best([finer, rubbing].concat())
 }
 
+/// Natural frequencies of the load that a regression tries: so many, up to this many radians a sample, each with these
+/// damping ratios.
+const FREQUENCIES: usize = 20;
+const FASTEST: f64 = 0.6;
+const RATIOS: [f64; 3] = [0.03, 0.1, 0.35];
+
+/// Position of a load behind a spring that is pulled as measured, by its natural frequency (rad/s) and damping ratio;
+/// trapezoidal rule.
+fn on_spring(track: &Track, frequency: f64, ratio: f64) -> Vec<f64> {
+    let h = track.step;
+    let (stiff, damped) = (frequency * frequency, 2.0 * ratio * frequency);
+    let mut before = track.position.first().copied().unwrap_or(0.0);
+    let (mut at, mut speed) = (before, 0.0);
+    let mut follow = |motor: f64| {
+        let rate = (motor - before) / h;
+        let pull = |x: f64, y: f64, v: f64| stiff * (x - y) + damped * (rate - v);
+        // y and v after the step by the trapezoidal rule, solved for v.
+        let now = pull(before, at, speed);
+        let forward = stiff * (motor - at - h * speed / 2.0) + damped * rate;
+        let after =
+            (speed + h / 2.0 * (now + forward)) / (1.0 + h / 2.0 * (stiff * h / 2.0 + damped));
+        at += h * f64::midpoint(speed, after);
+        speed = after;
+        before = motor;
+        at
+    };
+    track.position.iter().map(|x| follow(*x)).collect()
+}
+
 impl Effect for JointCompliance {
     fn id(&self) -> EffectId {
         ID
@@ -207,6 +240,31 @@ impl Effect for JointCompliance {
         let found = found.into_iter().filter(|t| Probe::may_be(t.0));
         // Beside the noise of short stretches, little may be seen of a load that decides when the body lets go.
         found.chain(moving).map(|t| t.2).collect()
+    }
+
+    /// The load follows the measured motion through a spring; what the motor gives it is linear in its inertia and friction.
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Motion(|track, [frequency, ratio, _]| {
+            load_columns(&on_spring(track, *frequency, *ratio), track.step)
+        })];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| {
+                let slowest = TAU / extent.window;
+                let stiffest = FASTEST / extent.step;
+                let all = geometric(slowest, stiffest, FREQUENCIES).into_iter();
+                all.flat_map(|f| RATIOS.map(|ratio| [f[0], ratio, 0.0]))
+                    .collect()
+            },
+            shapes: 2,
+            values: |solved| {
+                let [inertia, viscous, dry] = load_values(solved)?;
+                let [frequency, ratio, _] = solved.shape;
+                let stiffness = inertia * frequency * frequency;
+                let damping = 2.0 * ratio * frequency * inertia;
+                Some((solved.body, vec![stiffness, damping, inertia, viscous, dry]))
+            },
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

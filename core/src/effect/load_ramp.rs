@@ -1,6 +1,7 @@
 //! Load ramp: a disturbance that grows steadily.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::as_they_are;
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -42,6 +43,11 @@ impl Effect for LoadRamp {
 
     fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![0.0]]
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Force(|m, _| m.time)];
+        vec![Atom::linear(COLUMNS, as_they_are)]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

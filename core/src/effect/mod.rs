@@ -1,25 +1,35 @@
 //! Which physics can be added? One file per effect, one line in [`registry`].
 
 mod actuator_lag;
+mod atom;
 mod backlash;
 pub(crate) mod baseline;
 mod cogging;
 mod constant_load;
 mod coulomb_friction;
 mod dead_zone;
+mod directional_friction;
+mod driven_load;
 mod dry_friction;
 #[allow(clippy::module_inception, reason = "the room is named after its trait")]
 mod effect;
+mod flattening_friction;
 mod formula;
 mod gain_asymmetry;
+mod gravity;
+mod hardening_spring;
 mod id;
 mod input_delay;
 mod joint_compliance;
+mod load_dependent_friction;
 mod load_ramp;
 mod names;
+mod nonlinear_loss;
+mod outflow;
 mod presliding_friction;
 mod probe;
 mod quadratic_drag;
+mod return_spring;
 mod sampled_input;
 mod saturation;
 mod second_lag;
@@ -28,7 +38,8 @@ mod spec;
 mod static_curvature;
 mod stribeck_friction;
 
-pub use effect::{BodyStart, Effect};
+pub use atom::{Atom, BodyStart, Extent, Moment, NO_SHAPE, Part, Series, Shape, Solved, Track};
+pub use effect::Effect;
 pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub use id::{EffectId, VISCOUS_FRICTION};
 pub use names::{find, for_kind, is_of_record, name_of};
@@ -58,4 +69,23 @@ pub fn registry() -> &'static [&'static dyn Effect] {
         &sensor_lag::SensorLag,
         &static_curvature::StaticCurvature,
     ]
+}
+
+/// Effects that only the screen looks for so far: a model may have them, a diagnosis does not try them.
+fn screened_only() -> &'static [&'static dyn Effect] {
+    &[
+        &gravity::Gravity,
+        &return_spring::ReturnSpring,
+        &hardening_spring::HardeningSpring,
+        &load_dependent_friction::LoadDependentFriction,
+        &flattening_friction::FlatteningFriction,
+        &directional_friction::DirectionalFriction,
+        &nonlinear_loss::NonlinearLoss,
+        &outflow::Outflow,
+    ]
+}
+
+/// Every effect that the screen looks for, in the order in which equals are listed.
+pub fn library() -> impl Iterator<Item = &'static dyn Effect> {
+    registry().iter().chain(screened_only()).copied()
 }

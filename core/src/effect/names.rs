@@ -4,7 +4,7 @@ use serde::{Deserialize, Deserializer, de};
 
 use super::effect::Effect;
 use super::id::{EffectId, VISCOUS_FRICTION};
-use super::registry;
+use super::{library, registry};
 use crate::measurement::Kind;
 
 impl EffectId {
@@ -27,10 +27,7 @@ impl EffectId {
         if text == VISCOUS_FRICTION.as_str() {
             return Some(VISCOUS_FRICTION);
         }
-        registry()
-            .iter()
-            .map(|e| e.id())
-            .find(|id| id.as_str() == text)
+        library().map(Effect::id).find(|id| id.as_str() == text)
     }
 }
 
@@ -45,7 +42,7 @@ impl<'de> Deserialize<'de> for EffectId {
 
 /// The effect with this id.
 pub fn find(id: EffectId) -> Option<&'static dyn Effect> {
-    registry().iter().copied().find(|e| e.id() == id)
+    library().find(|e| e.id() == id)
 }
 
 /// The name of the effect with this id on screen; that of an unknown one, such as a user's own, is its id.

@@ -3,8 +3,11 @@
 //! The same contact as in Coulomb friction, with a deflection so long that its build-up is seen
 //! sample by sample (Maxwell-slip elements along Dahl's curve).
 
+use super::atom::{geometric, not_negative};
 use super::dry_friction::{DAMPING, LEVEL, LONG};
-use super::{BodyStart, Effect, EffectId, ParameterSpec, Probe, coulomb_friction};
+use super::{
+    Atom, BodyStart, Effect, EffectId, ParameterSpec, Part, Probe, Series, coulomb_friction,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -48,6 +51,11 @@ fn long_starts(probe: &Probe, share: f64) -> Vec<BodyStart> {
     found.truncate(BEST);
     found.into_iter().map(|(_, start)| start).collect()
 }
+
+/// Displacements that a regression tries: from the first to the second of these shares of the travel, so many.
+const LEAST_WAY: f64 = 3e-4;
+const MOST_WAY: f64 = 0.2;
+const WAYS: usize = 10;
 
 impl Effect for PreslidingFriction {
     fn id(&self) -> EffectId {
@@ -100,6 +108,34 @@ impl Effect for PreslidingFriction {
         let told = told.map(|(s, balance)| (balance.body, vec![balance.forces[0], s, 0.1]));
         found.extend(told);
         found
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Motion(|track, way| {
+            let mut bristle: f64 = 0.0;
+            let mut before = track.position.first().copied().unwrap_or(0.0);
+            let mut rub = |x: f64| {
+                let moved = x - before;
+                before = x;
+                let end = if moved == 0.0 { 0.0 } else { moved.signum() };
+                bristle = end + (bristle - end) * libm::exp(-moved.abs() / way[0]);
+                -bristle
+            };
+            let values = track.position.iter().map(|x| rub(*x)).collect();
+            vec![Series {
+                derivative: 0,
+                values,
+            }]
+        })];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| geometric(LEAST_WAY * extent.travel, MOST_WAY * extent.travel, WAYS),
+            shapes: 1,
+            values: |solved| {
+                let (body, level) = not_negative(solved)?;
+                Some((body, vec![level[0], solved.shape[0], 0.1]))
+            },
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,6 +1,7 @@
 //! Quadratic drag: resistance that grows with the square of speed.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::not_negative;
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -46,6 +47,11 @@ impl Effect for QuadraticDrag {
             .regress(&[&drag])
             .map_or(0.0, |fit| -fit.coefficients[0]);
         vec![vec![q.max(0.01 * probe.scales.of(Dimension::Drag))]]
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.velocity * m.velocity.abs())];
+        vec![Atom::linear(COLUMNS, not_negative)]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,6 +1,6 @@
 //! An input that moves on between the samples that were kept of it.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -49,6 +49,21 @@ impl Effect for SampledInput {
 
     fn starts(&self, _: &Probe, _share: f64) -> Vec<Vec<f64>> {
         vec![vec![STRAIGHT]]
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Motion(|track, _| {
+            let next = track.input.iter().skip(1).chain(track.input.last());
+            let ahead = track.input.iter().zip(next).map(|(now, next)| next - now);
+            let (derivative, values) = (0, ahead.collect());
+            vec![Series { derivative, values }]
+        })];
+        vec![Atom::linear(COLUMNS, |solved| {
+            let share = solved.coefficients[0];
+            (0.0..=1.0)
+                .contains(&share)
+                .then(|| (solved.body, vec![share]))
+        })]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

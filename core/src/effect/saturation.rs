@@ -1,10 +1,16 @@
 //! Saturation: the input has an upper limit.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::{even, mapped, shape_alone};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
 pub(super) struct Saturation;
+
+/// Limits that are tried: from the first to the second of these shares of the largest input, so many.
+const LEAST: f64 = 0.2;
+const MOST: f64 = 0.98;
+const LIMITS: usize = 14;
 
 impl Effect for Saturation {
     fn id(&self) -> EffectId {
@@ -46,6 +52,18 @@ impl Effect for Saturation {
             .iter()
             .map(|share| vec![share * largest])
             .collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Input(|track, limit| {
+            mapped(track, |u| u.clamp(-limit[0], limit[0]))
+        })];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| even(LEAST * extent.input, MOST * extent.input, LIMITS),
+            shapes: 1,
+            values: shape_alone,
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

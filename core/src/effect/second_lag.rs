@@ -1,7 +1,7 @@
 //! A second first-order lag in series with the process.
 
 use super::effect::slower_is_the_process;
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -50,6 +50,25 @@ impl Effect for SecondLag {
 
     fn order(&self, kind: Kind, body: &mut [f64], values: &mut [f64]) -> bool {
         slower_is_the_process(kind, body, values)
+    }
+
+    /// `T T2 y'' + (T + T2) y' + y = K u`.
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Motion(|track, _| {
+            let values = track.velocity.iter().map(|y| -y).collect();
+            vec![Series {
+                derivative: 2,
+                values,
+            }]
+        })];
+        vec![Atom::linear(COLUMNS, |solved| {
+            let [inertia, damping] = solved.body;
+            // Of the polynomial 1 + sum s + product s^2.
+            let (sum, product) = (inertia / damping, solved.coefficients[0] / damping);
+            let root = (sum * sum / 4.0 - product).max(0.0).sqrt();
+            let (slow, fast) = (sum / 2.0 + root, sum / 2.0 - root);
+            (product > 0.0 && fast > 0.0).then(|| ([slow * damping, damping], vec![fast]))
+        })]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -24,6 +24,12 @@ pub enum Dimension {
     Stiffness,
     /// Force per square of speed.
     Drag,
+    /// Force per cube of position.
+    CubicStiffness,
+    /// Input of a process per square of its output.
+    Loss,
+    /// Input of a process per root of its output.
+    Outflow,
     /// Periods of 2 pi in a unit of position: 1/rad or 1/m.
     PerPosition,
     /// An angle of a periodic function, rad.
@@ -69,12 +75,15 @@ impl Dimension {
             (Self::Stiffness, Motion::Translational) => "N/m",
             (Self::Drag, Motion::Rotational) => "N m s^2/rad^2",
             (Self::Drag, Motion::Translational) => "N s^2/m^2",
+            (Self::CubicStiffness, Motion::Rotational) => "N m/rad^3",
+            (Self::CubicStiffness, Motion::Translational) => "N/m^3",
             (Self::PerPosition, Motion::Rotational) => "1/rad",
             (Self::PerPosition, Motion::Translational) => "1/m",
             (Self::Rise, Motion::Rotational) => "N m/s",
             (Self::Rise, Motion::Translational) => "N/s",
             (Self::Compound { .. } | Self::Undetermined, _) => "?",
-            (Self::Ratio | Self::PerOutput | Self::PerInput, _) | (_, Motion::None) => "1",
+            (Self::Ratio | Self::PerOutput | Self::PerInput | Self::Loss | Self::Outflow, _)
+            | (_, Motion::None) => "1",
         }
     }
 }
@@ -270,7 +279,9 @@ impl Scales {
             Dimension::Position => self.travel,
             Dimension::Speed => self.speed,
             Dimension::Stiffness => self.inertia.abs() / (self.step * self.step),
-            Dimension::Drag => self.force / (self.speed * self.speed),
+            Dimension::Drag | Dimension::Loss => self.force / (self.speed * self.speed),
+            Dimension::CubicStiffness => self.force / self.travel.powi(3),
+            Dimension::Outflow => self.force / self.speed.sqrt(),
             Dimension::PerPosition => 1.0 / self.travel,
             Dimension::Ratio | Dimension::Phase | Dimension::Undetermined => 1.0,
             Dimension::Compound {

@@ -4,7 +4,8 @@
 //! valve. All are fitted.
 
 use super::{
-    Dimension, Effect, EffectId, ParameterSpec, Probe, Range, constant_load, gain_asymmetry,
+    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, constant_load,
+    gain_asymmetry,
 };
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -70,6 +71,22 @@ impl Effect for StaticCurvature {
     /// What bends two levels of an input makes one act more than the other.
     fn limits(&self) -> &'static [EffectId] {
         &[gain_asymmetry::ID, constant_load::ID]
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const BALANCE: &[Part] = &[Part::Force(|m, _| -m.velocity * m.velocity)];
+        const VALVE: &[Part] = &[Part::Force(|m, _| m.input * m.input)];
+        vec![
+            Atom::linear(BALANCE, |solved| {
+                Some((
+                    solved.body,
+                    vec![solved.coefficients[0] / solved.body[1], 0.0, 0.0],
+                ))
+            }),
+            Atom::linear(VALVE, |solved| {
+                Some((solved.body, vec![0.0, 0.0, solved.coefficients[0]]))
+            }),
+        ]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -2,10 +2,12 @@
 //!
 //! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
 
+use super::atom::not_negative;
 use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::spec::HARD_CROSSINGS;
 use super::{
-    Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction, presliding_friction,
+    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, coulomb_friction,
+    presliding_friction,
 };
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -114,6 +116,26 @@ impl Effect for StribeckFriction {
         speeds
             .flat_map(|share| contacts(at(share), crossed))
             .collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[
+            Part::Force(|m, _| -m.direction),
+            Part::Force(|m, speed| -m.direction * libm::exp(-(m.velocity / speed[0]).powi(2))),
+        ];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| {
+                SPEEDS
+                    .map(|share| [share * extent.speed, 0.0, 0.0])
+                    .to_vec()
+            },
+            shapes: 1,
+            values: |solved| {
+                let (body, levels) = not_negative(solved)?;
+                Some((body, vec![levels[0], levels[1], solved.shape[0], 0.0, 0.1]))
+            },
+        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,0 +1,127 @@
+//! `hysteron screen FILE.csv`
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use hysteron_core::criticism::screen;
+use hysteron_core::diagnosis::{Parameter, Screening, Subset};
+use hysteron_core::effect::name_of;
+use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
+use hysteron_core::uncertain::{shown_unit, with_error};
+
+use crate::arguments::Kind;
+use crate::output::Format;
+use crate::read::read;
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file
+    #[arg(value_name = "FILE.csv")]
+    file: PathBuf,
+    /// Kind of system; guessed from the columns if not given
+    #[arg(long, value_enum)]
+    kind: Option<Kind>,
+    /// Which column is what: t, u, x1, v1 or y, its name in the file (- before it turns the sign), its unit
+    #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
+    map: Option<Mapping>,
+    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    torque_constant: Option<TorqueConstant>,
+    /// Sampling period of a file without a time column, such as 4s or 250Hz
+    #[arg(long, value_name = "PERIOD")]
+    period: Option<Period>,
+    /// For a person or for a program
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// The screening, or one line that says what is wrong with the input.
+pub fn run(arguments: &Arguments) -> Result<String, String> {
+    let options = ImportOptions {
+        kind: arguments.kind.map(Into::into),
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: arguments.torque_constant,
+        period: arguments.period,
+    };
+    let (measurement, _) = read(&arguments.file, &options)?;
+    let started = Instant::now();
+    let mut screening = screen(&measurement);
+    screening.seconds = started.elapsed().as_secs_f64();
+    let name = &measurement.name;
+    match arguments.format {
+        Format::Text => Ok(text(name, &screening, &measurement.warnings)),
+        Format::Json => serde_json::to_string_pretty(&screening)
+            .map(|json| json + "\n")
+            .map_err(|e| format!("{name}: the screening cannot be written as JSON: {e}")),
+    }
+}
+
+fn text(name: &str, screening: &Screening, notes: &[String]) -> String {
+    let mut out = format!(
+        "{}: {} samples\n",
+        name.replace(char::is_control, " "),
+        screening.samples
+    );
+    let _ = writeln!(out, "{}", screening.input_check.text);
+    if let Some(left) = screening.left_by_body {
+        let _ = writeln!(
+            out,
+            "The body alone leaves {:.1} % of the motion.",
+            100.0 * left
+        );
+    }
+    match screening.subsets.as_slice() {
+        [] => {}
+        [one] => {
+            let _ = writeln!(out, "\nWhat explains it best:");
+            subset(&mut out, one);
+        }
+        [first, others @ ..] => {
+            let _ = writeln!(out, "\nWhat explains it best:");
+            subset(&mut out, first);
+            let _ = writeln!(out, "\nThis record cannot tell that from:");
+            for other in others {
+                subset(&mut out, other);
+            }
+        }
+    }
+    for note in notes {
+        let _ = writeln!(out, "Note: {note}");
+    }
+    let _ = writeln!(out, "({:.2} s)", screening.seconds);
+    out
+}
+
+fn subset(out: &mut String, subset: &Subset) {
+    let names: Vec<&str> = subset.effects.iter().map(|id| name_of(*id)).collect();
+    let names = match names.as_slice() {
+        [] => "the body alone".to_owned(),
+        names => names.join(" and "),
+    };
+    let _ = writeln!(
+        out,
+        "  {names}; {:.1} % of the motion is left",
+        100.0 * subset.left
+    );
+    for parameter in &subset.parameters {
+        let _ = writeln!(out, "    {}", line(parameter));
+    }
+}
+
+fn line(parameter: &Parameter) -> String {
+    let Parameter {
+        name,
+        label,
+        value,
+        std_error,
+        unit,
+        ..
+    } = parameter;
+    let value = if *std_error > 0.0 {
+        with_error(*value, *std_error, unit)
+    } else {
+        format!("{value:.4} {}", shown_unit(unit))
+    };
+    format!("{name:<8} {value:<32} {label}")
+}

@@ -1,0 +1,153 @@
+//! The input questioned before the physics.
+
+use super::closed_loop::{Controller, controller};
+use super::model::{ACCELERATION, INPUT, ONE, VELOCITY};
+use super::prepare::Prepared;
+use super::signals::Signals;
+use super::subsets::{Bench, Tried, smallest};
+use super::tuning::{LATE, LATEST, TOLD, UNEXPLAINED};
+use super::window::Width;
+use crate::diagnosis::{InputCheck, InputVerdict};
+use crate::measurement::Kind;
+
+/// Share of the motion that the best of these subsets leaves; all of it where there is none.
+pub(super) fn left(bench: &Bench, tried: &[Tried]) -> f64 {
+    let motion = bench.motion();
+    let best = smallest(tried, motion).first().map(|t| t.loss());
+    best.map_or(1.0, |loss| (loss / motion.max(f64::MIN_POSITIVE)).sqrt())
+}
+
+/// What the screen found says of the input.
+pub(super) fn checked(
+    signals: &Signals,
+    widths: &[Width],
+    bench: &Bench,
+    tried: &[Tried],
+) -> InputCheck {
+    let say = |verdict, text: String| InputCheck { verdict, text };
+    let left = left(bench, tried);
+    let explained = !tried.is_empty() && left < UNEXPLAINED;
+    if let Some(made) = controller(signals) {
+        return say(InputVerdict::ClosedLoop, closed(&made, explained));
+    }
+    if explained {
+        let share = 100.0 * left;
+        return say(
+            InputVerdict::Ok,
+            format!("The input explains the motion; {share:.1} % of it is left."),
+        );
+    }
+    if signals.kind == Kind::Drive {
+        if let Some(turned) = turned(signals, widths).filter(|turned| *turned < 0.7 * left.min(1.0))
+        {
+            let share = 100.0 * turned;
+            return say(
+                InputVerdict::Sign,
+                format!(
+                    "The sign of the input is turned: the inertia comes out negative, and with the other sign the input \
+                     explains the motion but for {share:.1} % of it. Give the column with a minus, as in --map \"u=-NAME\"."
+                ),
+            );
+        }
+        if let Some(text) = not_told(signals, bench) {
+            return say(InputVerdict::InertiaNotTold, text);
+        }
+    }
+    let reason = late(signals, widths, left).map_or_else(
+        || {
+            "Is it the right column, and was this the input that acted and not one that was measured elsewhere? A motion \
+             that something else imposes does not follow from it."
+                .to_owned()
+        },
+        |late| format!("It would explain more of it if it acted {late:.3} s later than it is written down."),
+    );
+    let text = format!("The input does not explain this motion. {reason}");
+    say(InputVerdict::DoesNotExplain, text)
+}
+
+fn closed(made: &Controller, explained: bool) -> String {
+    let Controller {
+        law,
+        kind,
+        explained: share,
+    } = made;
+    let plant = if explained {
+        "What is said of the plant comes from how the output moves under this input, which holds in a closed loop too."
+    } else {
+        "What the controller does is all that this record shows: it cannot tell the plant. Change the set point or add \
+         steps to the input."
+    };
+    let share = 100.0 * share;
+    format!(
+        "The loop was closed: a {kind} controller made the input, {law}, which explains {share:.1} % of its variance. {plant}"
+    )
+}
+
+/// What the best subset leaves with the sign of the input turned.
+fn turned(signals: &Signals, widths: &[Width]) -> Option<f64> {
+    let mut other = signals.clone();
+    other.input.iter_mut().for_each(|u| *u = -*u);
+    let prepared = Prepared::new(&other, widths);
+    let bench = prepared.bench();
+    let tried = bench.all();
+    (!tried.is_empty()).then(|| left(&bench, &tried))
+}
+
+/// Whether friction explains the input, at speeds that hardly change.
+fn not_told(signals: &Signals, bench: &Bench) -> Option<String> {
+    let fit = super::model::Fit::new(bench.gram, &bench.elements(&[]))?;
+    let told = fit.w[0].abs() > TOLD * fit.error(0);
+    if told {
+        return None;
+    }
+    let (inertia, error) = (fit.w[0], fit.error(0));
+    let noise = signals.velocity.as_ref().map_or(0.0, |v| v.noise);
+    let rests = signals.moving.iter().sum::<f64>() < 0.05 * signals.len() as f64
+        || super::signals::rms(&signals.speed) <= 2.0 * noise;
+    let sums = bench.gram.sum(|_| true);
+    let at = |i: usize, j: usize| sums[i * bench.gram.size + j];
+    // The input by speed and a constant alone.
+    let elements = vec![vec![VELOCITY], vec![ONE], vec![INPUT]];
+    let reduced = super::gram::Reduced::new(&sums, bench.gram.size, &elements);
+    let w = reduced.coefficients(&reduced.solve(true)?);
+    let steady = reduced.loss(&w) < 0.1 * at(INPUT, INPUT);
+    if rests {
+        return Some("The drive rests: this record does not tell its inertia.".to_owned());
+    }
+    let changes = at(ACCELERATION, ACCELERATION) > 0.0;
+    (steady && changes).then(|| {
+        format!(
+            "This record does not tell the inertia ({inertia:.2e} with an error of {error:.1e}): the speed hardly changes \
+             but for its noise. It tells friction. Let the input jump, and sample the run-up."
+        )
+    })
+}
+
+/// A delay with which the input explains half of what it leaves now.
+fn late(signals: &Signals, widths: &[Width], left: f64) -> Option<f64> {
+    let width = widths.last()?;
+    let longest = (signals.len() as f64 * LATEST) as usize;
+    let acceleration = width.motion(signals, 2);
+    let velocity = width.motion(signals, 1);
+    let tried = (1..=LATE).filter_map(|k| {
+        let back = longest * k / LATE;
+        let input: Vec<f64> = (0..signals.len())
+            .map(|i| signals.input[i.saturating_sub(back)])
+            .collect();
+        let column: Vec<f64> = width.integrals(&input, 0).collect();
+        let one: Vec<f64> = width.integrals(&vec![1.0; signals.len()], 0).collect();
+        let columns = [&column, &velocity, &one, &acceleration];
+        let mut values = vec![0.0; 16];
+        for i in 0..4 {
+            for j in 0..4 {
+                values[4 * i + j] = columns[i].iter().zip(columns[j]).map(|(a, b)| a * b).sum();
+            }
+        }
+        let reduced = super::gram::Reduced { order: 3, values };
+        let w = reduced.coefficients(&reduced.solve(false)?);
+        let of_all = (reduced.loss(&w) / reduced.square(3).max(f64::MIN_POSITIVE)).sqrt();
+        Some((of_all, back as f64 * signals.step))
+    });
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 < 0.5 * left.min(1.0)).then_some(best.1)
+}

@@ -1,0 +1,474 @@
+//! From signals to sums: which shapes of which atoms go into the subsets, and what each window counts.
+
+use super::gram::{AtomColumns, Gram, Halves, Reduced, Rows};
+use super::model::{BASE, Choice, Shaped, elements, found, unit};
+use super::signals::Signals;
+use super::subsets::{Bench, Tried, smallest};
+use super::tuning::{COARSE, DULL, EXACT, FINE, HUBER, KEPT_SHAPES, REFINED, ROUNDS};
+use super::window::Width;
+use crate::effect::{self, Atom, Extent, Shape, Solved};
+use crate::measurement::Kind;
+use crate::order::median;
+
+/// Sums and what they are of.
+pub(super) struct Prepared {
+    kind: Kind,
+    gram: Gram,
+    choices: Vec<Choice>,
+    extent: Extent,
+}
+
+struct Builder<'a> {
+    rows: Rows<'a>,
+    kind: Kind,
+    extent: Extent,
+    columns: Vec<Vec<f64>>,
+    choices: Vec<Choice>,
+    /// Of each window.
+    weights: Vec<f64>,
+    /// Widths that tell noise alone.
+    dull: Vec<bool>,
+}
+
+impl Prepared {
+    pub fn new(signals: &Signals, widths: &[Width]) -> Self {
+        let longest = widths.iter().map(|w| w.length).max().unwrap_or(1);
+        let rows = Rows::new(signals, widths);
+        let columns = vec![
+            rows.held(&signals.input),
+            rows.motion(2),
+            rows.motion(1),
+            rows.one(),
+        ];
+        let mut builder = Builder {
+            kind: signals.kind,
+            extent: signals.extent(longest as f64 * signals.step),
+            weights: vec![1.0; rows.len()],
+            choices: Vec::new(),
+            dull: vec![false; widths.len()],
+            rows,
+            columns,
+        };
+        builder.add_linear();
+        builder.weigh_by_everything();
+        builder.add_shaped();
+        for _ in 1..ROUNDS {
+            builder.weigh_by_best();
+        }
+        Self {
+            kind: builder.kind,
+            gram: builder.gram(),
+            extent: builder.extent,
+            choices: builder.choices,
+        }
+    }
+
+    pub fn bench(&self) -> Bench<'_> {
+        Bench::new(self.kind, &self.gram, &self.choices, &self.extent)
+    }
+}
+
+impl Builder<'_> {
+    fn gram(&self) -> Gram {
+        let columns: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).collect();
+        Gram::new(&columns, &self.weights, &self.rows.blocks)
+    }
+
+    fn push(&mut self, columns: AtomColumns, shape: Shape) -> Shaped {
+        let mut add = |column: Vec<f64>| {
+            self.columns.push(column);
+            self.columns.len() - 1
+        };
+        Shaped {
+            shape,
+            tied: columns.tied.map(&mut add),
+            free: columns.free.into_iter().map(add).collect(),
+        }
+    }
+
+    /// Atoms of all effects that have no shape to look for.
+    fn add_linear(&mut self) {
+        let kind = self.kind;
+        for (rank, effect) in effect::library()
+            .enumerate()
+            .filter(|(_, e)| e.kinds().contains(&kind))
+        {
+            for atom in effect
+                .atoms(self.kind)
+                .into_iter()
+                .filter(|a| a.shapes == 0)
+            {
+                let shapes = (atom.grid)(&self.extent);
+                for shape in shapes {
+                    let columns = self.rows.atom(&atom, &shape);
+                    let shapes = vec![self.push(columns, shape)];
+                    self.choices.push(Choice {
+                        rank,
+                        effect,
+                        atom,
+                        shapes,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Atoms with shapes, of which those are kept that leave least beside the body, or beside all that is linear.
+    fn add_shaped(&mut self) {
+        let kind = self.kind;
+        let effects = effect::library()
+            .enumerate()
+            .filter(|(_, e)| e.kinds().contains(&kind));
+        let atoms =
+            effects.flat_map(|(rank, e)| e.atoms(kind).into_iter().map(move |a| (rank, e, a)));
+        let shaped: Vec<_> = atoms.filter(|(_, _, a)| a.shapes > 0).collect();
+        let kept: Vec<Vec<Shape>> = {
+            let columns = self.columns.iter().map(Vec::as_slice).collect();
+            let halves = Halves::new(columns, &self.weights, &self.rows.blocks);
+            shaped
+                .iter()
+                .map(|(_, _, atom)| self.promising(atom, &halves))
+                .collect()
+        };
+        for ((rank, effect, atom), shapes) in shaped.into_iter().zip(kept) {
+            let columns = |builder: &mut Self, shape| {
+                let columns = builder.rows.atom(&atom, &shape);
+                builder.push(columns, shape)
+            };
+            let shapes: Vec<Shaped> = shapes
+                .into_iter()
+                .map(|shape| columns(self, shape))
+                .collect();
+            if !shapes.is_empty() {
+                self.choices.push(Choice {
+                    rank,
+                    effect,
+                    atom,
+                    shapes,
+                });
+            }
+        }
+        self.choices.sort_by_key(|c| c.rank);
+    }
+
+    /// Shapes of an atom that leave least of either half of the record.
+    fn promising(&self, atom: &Atom, halves: &Halves) -> Vec<Shape> {
+        let mut tried: Vec<([f64; 4], Shape)> = Vec::new();
+        for shape in (atom.grid)(&self.extent) {
+            let columns = self.rows.atom(atom, &shape);
+            tried.push((self.left(atom, &shape, &columns, halves), shape));
+        }
+        let mut kept: Vec<Shape> = Vec::new();
+        for beside in 0..4 {
+            let mut order: Vec<usize> = (0..tried.len()).collect();
+            order.sort_by(|a, b| tried[*a].0[beside].total_cmp(&tried[*b].0[beside]));
+            for k in order.into_iter().take(KEPT_SHAPES) {
+                if tried[k].0[beside].is_finite() && !kept.contains(&tried[k].1) {
+                    kept.push(tried[k].1);
+                }
+            }
+        }
+        kept
+    }
+
+    /// What an atom leaves of either half of the record, beside the body and beside all that is linear.
+    fn left(&self, kind_of: &Atom, shape: &Shape, atom: &AtomColumns, halves: &Halves) -> [f64; 4] {
+        let first = halves.len();
+        let shaped = Shaped {
+            shape: *shape,
+            tied: atom.tied.as_ref().map(|_| first),
+            free: (0..atom.free.len())
+                .map(|k| first + usize::from(atom.tied.is_some()) + k)
+                .collect(),
+        };
+        let mut extra: Vec<&[f64]> = atom.tied.as_deref().into_iter().collect();
+        extra.extend(atom.free.iter().map(Vec::as_slice));
+        let size = first + extra.len();
+        let sums = halves.with(&extra);
+        let beside = |sums: &[f64], others: std::ops::Range<usize>| {
+            let mut all = elements(self.kind, &[&shaped]);
+            let target = all.pop()?;
+            all.extend(others.map(|c| vec![c]));
+            all.push(target);
+            let reduced = Reduced::new(sums, size, &all);
+            let w = reduced.coefficients(&reduced.solve(true)?);
+            let found = found(self.kind, &w);
+            let solved = Solved {
+                body: found.body,
+                shape: *shape,
+                extent: &self.extent,
+                coefficients: &found.coefficients[..atom.free.len()],
+            };
+            (kind_of.values)(&solved)?;
+            let left = reduced.loss(&w) / unit(self.kind, &w);
+            left.is_finite().then_some(left)
+        };
+        let [a, b] = &sums;
+        let (none, everything) = (0..0, BASE..first);
+        let worst = f64::INFINITY;
+        [
+            beside(a, none.clone()).unwrap_or(worst),
+            beside(b, none).unwrap_or(worst),
+            beside(a, everything.clone()).unwrap_or(worst),
+            beside(b, everything).unwrap_or(worst),
+        ]
+    }
+
+    /// Residual of each window, in the unit of the target.
+    fn residuals(&self, elements: &[Vec<usize>], w: &[f64]) -> Vec<f64> {
+        let column =
+            |element: &[usize], k: usize| element.iter().map(|c| self.columns[*c][k]).sum::<f64>();
+        let (target, regressors) = match elements.split_last() {
+            Some((target, regressors)) => (target.as_slice(), regressors),
+            None => return Vec::new(),
+        };
+        (0..self.rows.len())
+            .map(|k| {
+                let said: f64 = regressors
+                    .iter()
+                    .zip(w)
+                    .map(|(e, w)| w * column(e, k))
+                    .sum();
+                column(target, k) - said
+            })
+            .collect()
+    }
+
+    /// Weights by a model: windows of each width count by its robust scale, and those far off less.
+    fn weigh(&mut self, elements: &[Vec<usize>], w: &[f64]) {
+        let residuals = self.residuals(elements, w);
+        let target = elements.last().map_or(&[][..], Vec::as_slice);
+        for width in 0..self.rows.widths.len() {
+            let of_width = || (0..residuals.len()).filter(|k| self.rows.width_of[*k] == width);
+            let mut sizes: Vec<f64> = of_width().map(|k| residuals[k].abs()).collect();
+            let squares: f64 = of_width()
+                .map(|k| {
+                    target
+                        .iter()
+                        .map(|c| self.columns[*c][k])
+                        .sum::<f64>()
+                        .powi(2)
+                })
+                .sum();
+            let exact = EXACT * (squares / sizes.len().max(1) as f64).sqrt();
+            // The median of the absolute values of a normal distribution is 0.6745 of its deviation.
+            let scale = (median(&mut sizes) / 0.6745)
+                .max(exact)
+                .max(f64::MIN_POSITIVE);
+            let windows: Vec<usize> = of_width().collect();
+            for k in windows {
+                let far = residuals[k].abs() / (HUBER * scale);
+                self.weights[k] = if self.dull[width] {
+                    0.0
+                } else {
+                    1.0 / (scale * scale * far.max(1.0))
+                };
+            }
+        }
+    }
+
+    /// By the model with everything that is linear, from equal weights within each width.
+    fn weigh_by_everything(&mut self) {
+        let mut all = elements(self.kind, &[]);
+        let Some(target) = all.pop() else { return };
+        all.extend((BASE..self.columns.len()).map(|c| vec![c]));
+        all.push(target.clone());
+        self.drop_dull_widths(&all);
+        self.scale_widths(&target);
+        let gram = self.gram();
+        let reduced = Reduced::new(&gram.sum(|_| true), gram.size, &all);
+        if let Some(solution) = reduced.solve(true) {
+            let w = reduced.coefficients(&solution);
+            self.weigh(&all, &w);
+        }
+    }
+
+    /// Leaves out the widths whose windows are too short, or too long, to tell more than noise.
+    fn drop_dull_widths(&mut self, all: &[Vec<usize>]) {
+        let left: Vec<f64> = (0..self.rows.widths.len())
+            .map(|width| {
+                for (weight, of) in self.weights.iter_mut().zip(&self.rows.width_of) {
+                    *weight = f64::from(u8::from(*of == width));
+                }
+                let gram = self.gram();
+                let sums = gram.sum(|_| true);
+                let reduced = Reduced::new(&sums, gram.size, all);
+                let w = reduced
+                    .solve(true)
+                    .map(|s| reduced.coefficients(&s))
+                    .unwrap_or_default();
+                if w.is_empty() {
+                    return f64::INFINITY;
+                }
+                let windows = self.rows.widths[width].starts.len() as f64;
+                let free = (windows - w.len() as f64).max(1.0) / windows;
+                (reduced.loss(&w) / reduced.square(w.len()).max(f64::MIN_POSITIVE) / free).sqrt()
+            })
+            .collect();
+        let least = left.iter().copied().fold(f64::INFINITY, f64::min);
+        self.dull = left.iter().map(|l| *l > DULL * least).collect();
+    }
+
+    /// All widths count alike.
+    fn scale_widths(&mut self, target: &[usize]) {
+        let mut squares = vec![(0.0, 0.0); self.rows.widths.len()];
+        let of = |k: usize| {
+            target
+                .iter()
+                .map(|c| self.columns[*c][k])
+                .sum::<f64>()
+                .powi(2)
+        };
+        for k in 0..self.rows.len() {
+            let sum = &mut squares[self.rows.width_of[k]];
+            *sum = (sum.0 + of(k), sum.1 + 1.0);
+        }
+        for (k, weight) in self.weights.iter_mut().enumerate() {
+            let (sum, count) = squares[self.rows.width_of[k]];
+            let dull = self.dull[self.rows.width_of[k]];
+            *weight = if dull {
+                0.0
+            } else {
+                count / f64::max(sum, f64::MIN_POSITIVE)
+            };
+        }
+    }
+
+    /// Finer shapes about those of the best subsets, then weights by what the best one leaves.
+    fn weigh_by_best(&mut self) {
+        let gram = self.gram();
+        let bench = Bench::new(self.kind, &gram, &self.choices, &self.extent);
+        let tried: Vec<Tried> = bench.all();
+        let class = smallest(&tried, bench.motion());
+        let members: Vec<Vec<(usize, usize)>> = class
+            .iter()
+            .take(REFINED)
+            .map(|t| t.members.clone())
+            .collect();
+        let Some(best) = members.first() else { return };
+        let elements = bench.elements(best);
+        if let Some(fit) = super::model::Fit::new(&gram, &elements) {
+            self.weigh(&elements, &fit.w);
+        }
+        for members in &members {
+            self.refine(members);
+        }
+    }
+
+    /// Adds the shapes with which these members leave least, found by steps of halving length along each number.
+    fn refine(&mut self, members: &[(usize, usize)]) {
+        let mut shaped: Vec<Shaped> = members
+            .iter()
+            .map(|(c, s)| self.choices[*c].shapes[*s].clone())
+            .collect();
+        for (at, (choice, _)) in members.iter().enumerate() {
+            let atom = self.choices[*choice].atom;
+            if atom.shapes == 0 {
+                continue;
+            }
+            let rest: Vec<&Shaped> = shaped
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| *k != at)
+                .map(|(_, s)| s)
+                .collect();
+            let from = shaped[at].shape;
+            let best = {
+                let mut stay: Vec<usize> = (0..BASE).collect();
+                stay.extend(
+                    rest.iter()
+                        .flat_map(|s| s.tied.iter().chain(&s.free).copied()),
+                );
+                let place = |c: usize| stay.iter().position(|s| *s == c).unwrap_or(0);
+                let moved: Vec<Shaped> = rest
+                    .iter()
+                    .map(|s| Shaped {
+                        shape: s.shape,
+                        tied: s.tied.map(place),
+                        free: s.free.iter().map(|c| place(*c)).collect(),
+                    })
+                    .collect();
+                let columns = stay.iter().map(|c| self.columns[*c].as_slice()).collect();
+                let halves = Halves::new(columns, &self.weights, &self.rows.blocks);
+                let left = |shape: &Shape| {
+                    let columns = self.rows.atom(&atom, shape);
+                    self.left_beside(&atom, shape, &columns, &halves, &moved)
+                };
+                search(from, left)
+            };
+            if best != from {
+                let columns = self.rows.atom(&atom, &best);
+                let found = self.push(columns, best);
+                shaped[at] = found.clone();
+                self.choices[*choice].shapes.push(found);
+            }
+        }
+    }
+
+    /// What an atom leaves of the whole record beside others.
+    fn left_beside(
+        &self,
+        atom: &Atom,
+        shape: &Shape,
+        columns: &AtomColumns,
+        halves: &Halves,
+        others: &[Shaped],
+    ) -> f64 {
+        let first = halves.len();
+        let tied = usize::from(columns.tied.is_some());
+        let own = Shaped {
+            shape: *shape,
+            tied: columns.tied.as_ref().map(|_| first),
+            free: (0..columns.free.len()).map(|k| first + tied + k).collect(),
+        };
+        let mut extra: Vec<&[f64]> = columns.tied.as_deref().into_iter().collect();
+        extra.extend(columns.free.iter().map(Vec::as_slice));
+        let [mut sums, other] = halves.with(&extra);
+        sums.iter_mut().zip(&other).for_each(|(a, b)| *a += b);
+        let mut all: Vec<&Shaped> = vec![&own];
+        all.extend(others);
+        let reduced = Reduced::new(&sums, first + extra.len(), &elements(self.kind, &all));
+        let Some(solution) = reduced.solve(false) else {
+            return f64::INFINITY;
+        };
+        let w = reduced.coefficients(&solution);
+        let found = found(self.kind, &w);
+        let solved = Solved {
+            body: found.body,
+            shape: *shape,
+            extent: &self.extent,
+            coefficients: &found.coefficients[..own.free.len()],
+        };
+        if (atom.values)(&solved).is_none() {
+            return f64::INFINITY;
+        }
+        reduced.loss(&w) / unit(self.kind, &w)
+    }
+}
+
+/// The shape from here on that leaves least: each number that it has up and down by a share that is halved where nothing
+/// gets better.
+fn search(from: Shape, left: impl Fn(&Shape) -> f64) -> Shape {
+    let (mut at, mut least) = (from, left(&from));
+    let mut share = COARSE;
+    while share > FINE {
+        let before = at;
+        for k in 0..at.len() {
+            for factor in [1.0 + share, 1.0 / (1.0 + share)] {
+                let mut other = at;
+                other[k] *= factor;
+                if other == at {
+                    continue;
+                }
+                let tried = left(&other);
+                if tried < least {
+                    (at, least) = (other, tried);
+                }
+            }
+        }
+        if at == before {
+            share /= 2.0;
+        }
+    }
+    at
+}

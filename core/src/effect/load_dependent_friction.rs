@@ -1,0 +1,77 @@
+//! Friction that grows with the load of the gear: what the motor pushes, the teeth rub.
+//!
+//! It comes beside the friction that is always there.
+
+use super::atom::not_negative;
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("load_dependent_friction");
+
+pub(super) struct LoadDependentFriction;
+
+/// The largest share with which a fit begins.
+const MOST: f64 = 0.5;
+
+impl Effect for LoadDependentFriction {
+    fn id(&self) -> EffectId {
+        ID
+    }
+
+    fn name(&self) -> &'static str {
+        "Load-dependent friction"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The harder the motor pushes, the harder the teeth of the gear are pressed together and the more they rub."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = -m |u| sgn(v) while moving; at rest it holds against the share m of the input"
+    }
+
+    fn source(&self) -> &'static str {
+        "Hirschkorn and Kövecses, The role of the normal force in the observed friction of gears, 2013; Dupont, 1990"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[ParameterSpec {
+            symbol: "m",
+            label: "share of the input that friction takes",
+            dimension: Dimension::Ratio,
+            range: Range::UnitInterval,
+        }]
+    }
+
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
+        let found = probe.balanced_in_motion(|_, v| -v.signum());
+        let level = found.map_or(0.0, |balance| balance.forces[0]);
+        vec![vec![(level / probe.scales.force).clamp(0.0, MOST)]]
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.input.abs() * m.direction)];
+        vec![Atom::linear(COLUMNS, |solved| {
+            let (body, share) = not_negative(solved)?;
+            (share[0] < 1.0).then_some((body, share))
+        })]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        let share = values[0];
+        model.own_forces.push(Box::new(move |now| {
+            // At rest it holds as far as it can, which is against its share of the push.
+            let sign = if now.velocity == 0.0 {
+                now.input
+            } else {
+                now.velocity
+            };
+            -share * now.input.abs() * if sign == 0.0 { 0.0 } else { sign.signum() }
+        }));
+    }
+}
