@@ -21,6 +21,7 @@ mod import_mat;
 mod limit_cycles;
 mod lost_rows;
 mod missing_force;
+mod measured_tuning;
 mod mystery;
 mod next_experiment;
 mod other_machines;
