@@ -19,7 +19,9 @@ struct Outcome {
 fn outcome(plant: &Plant, test: &Test, seed: u64) -> Outcome {
     let record = relay_test(plant, test, seed);
     let result = tune_record(&record, &Settings::default()).unwrap();
-    let point = result.point.unwrap_or_else(|| panic!("{}, {}: {}", plant.name, test.name, result.text));
+    let point = result
+        .point
+        .unwrap_or_else(|| panic!("{}, {}: {}", plant.name, test.name, result.text));
     let [magnitude, phase] = plant.response(point.omega);
     let [gain, period] = plant.ultimate();
     let turn = (point.phase_deg - phase.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
@@ -27,8 +29,12 @@ fn outcome(plant: &Plant, test: &Test, seed: u64) -> Outcome {
         name: format!("{}, {}", plant.name, test.name),
         magnitude: point.magnitude / magnitude - 1.0,
         phase: turn,
-        ultimate: result.ultimate.map(|u| [u.gain / gain - 1.0, u.period / period - 1.0]),
-        formula: result.conventional.map(|c| [c.gain / gain - 1.0, c.period / period - 1.0]),
+        ultimate: result
+            .ultimate
+            .map(|u| [u.gain / gain - 1.0, u.period / period - 1.0]),
+        formula: result
+            .conventional
+            .map(|c| [c.gain / gain - 1.0, c.period / period - 1.0]),
         result,
     }
 }
@@ -51,9 +57,13 @@ fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
 
 #[test]
 fn blind_relay_tests_show_the_point_and_the_ultimate_gain() {
-    let outcomes = bench(1);
+    let outcomes = bench(std::env::var("TUNE_SEED").map_or(1, |s| s.parse().unwrap()));
     for o in &outcomes {
-        let p = |v: Option<[f64; 2]>| v.map_or("-".to_owned(), |v| format!("{:+.1} {:+.1}", 100.0 * v[0], 100.0 * v[1]));
+        let p = |v: Option<[f64; 2]>| {
+            v.map_or("-".to_owned(), |v| {
+                format!("{:+.1} {:+.1}", 100.0 * v[0], 100.0 * v[1])
+            })
+        };
         let point = o.result.point.unwrap();
         println!(
             "{:55} |P| {:+6.2} % ({:.2}) phase {:+6.2} ({:.2})  at {:.0}  Ku Tu {:12} formula {:12} {} {:.4}",

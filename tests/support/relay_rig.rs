@@ -71,7 +71,14 @@ pub fn plants() -> Vec<Plant> {
         plant("two lags and dead time", 3.0, &[30.0, 6.0], false, 0.0, 3.0),
         plant("three equal lags", 1.0, &[1.0, 1.0, 1.0], false, 0.0, 0.0),
         plant("five equal lags", 5.0, &[4.0; 5], false, 0.0, 0.0),
-        plant("four falling lags", 1.5, &[8.0, 4.0, 2.0, 1.0], false, 0.0, 0.5),
+        plant(
+            "four falling lags",
+            1.5,
+            &[8.0, 4.0, 2.0, 1.0],
+            false,
+            0.0,
+            0.5,
+        ),
         plant("integrator and dead time", 0.1, &[], true, 0.0, 4.0),
         plant("integrator, lag, dead time", 0.05, &[6.0], true, 0.0, 2.0),
         plant("inverse response", 1.0, &[10.0, 5.0], false, -3.0, 1.0),
@@ -144,7 +151,8 @@ impl Motion<'_> {
 
     fn step(&mut self, u: f64, h: f64) {
         let x = self.states.clone();
-        let moved = |k: &[f64], by: f64| -> Vec<f64> { x.iter().zip(k).map(|(x, k)| x + by * k).collect() };
+        let moved =
+            |k: &[f64], by: f64| -> Vec<f64> { x.iter().zip(k).map(|(x, k)| x + by * k).collect() };
         let a = self.slopes(&x, u);
         let b = self.slopes(&moved(&a, 0.5 * h), u);
         let c = self.slopes(&moved(&b, 0.5 * h), u);
@@ -189,8 +197,20 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
     // Counts of a sensor do not lie on the set point.
     let offset = relay.step * random.uniform();
     for i in 0..count {
-        let delayed = |inputs: &[f64]| inputs.len().checked_sub(late).and_then(|k| inputs.get(k)).copied().unwrap_or(0.0);
-        let now = inputs.len().checked_sub(late + 1).and_then(|k| inputs.get(k)).copied().unwrap_or(0.0);
+        let delayed = |inputs: &[f64]| {
+            inputs
+                .len()
+                .checked_sub(late)
+                .and_then(|k| inputs.get(k))
+                .copied()
+                .unwrap_or(0.0)
+        };
+        let now = inputs
+            .len()
+            .checked_sub(late + 1)
+            .and_then(|k| inputs.get(k))
+            .copied()
+            .unwrap_or(0.0);
         let mut seen = motion.output(now) + relay.noise * random.normal();
         if relay.step > 0.0 {
             seen = ((seen - offset) / relay.step).round() * relay.step + offset;
@@ -208,7 +228,11 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
             let load = relay.drift * inputs.len() as f64 / (count * STEPS) as f64;
             inputs.push(u - relay.holds - load);
             let acting = delayed(&inputs[..inputs.len()]);
-            let acting = if late == 0 { u - relay.holds - load } else { acting };
+            let acting = if late == 0 {
+                u - relay.holds - load
+            } else {
+                acting
+            };
             motion.step(acting, h);
         }
     }
@@ -237,13 +261,27 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
         drift: 0.0,
     };
     // Tried once without noise, to know what amplitude there will be.
-    let trial = run(plant, &relay, sampling, (6.0 * samples) as usize, &mut random.clone());
+    let trial = run(
+        plant,
+        &relay,
+        sampling,
+        (6.0 * samples) as usize,
+        &mut random.clone(),
+    );
     let later = &trial.output[trial.output.len() / 2..];
-    let (low, high) = later.iter().fold((0.0_f64, 0.0_f64), |(a, b), y| (a.min(*y), b.max(*y)));
+    let (low, high) = later
+        .iter()
+        .fold((0.0_f64, 0.0_f64), |(a, b), y| (a.min(*y), b.max(*y)));
     let amplitude = 0.5 * (high - low);
     relay.hysteresis = test.hysteresis * amplitude;
     relay.noise = test.noise * amplitude;
     relay.step = test.step * amplitude;
     relay.drift = test.drift;
-    run(plant, &relay, sampling, (test.periods * samples * (1.0 + 2.0 * test.hysteresis)) as usize, &mut random)
+    run(
+        plant,
+        &relay,
+        sampling,
+        (test.periods * samples * (1.0 + 2.0 * test.hysteresis)) as usize,
+        &mut random,
+    )
 }

@@ -10,6 +10,7 @@ mod limit_cycle;
 mod limit_cycle_drive;
 mod simulate;
 mod text;
+mod tune;
 
 use std::ffi::{OsStr, OsString};
 use std::io::{self, Write as _};
@@ -41,6 +42,8 @@ enum Command {
     LimitCycle(limit_cycle::Arguments),
     /// Say how wide a drive's hidden gap is, from the motor's columns of a drifting test.
     Gap(gap::Arguments),
+    /// From a measured relay test, or the log of an auto-tuner, to gains: what it shows, models, and why it stalls.
+    Tune(tune::Arguments),
 }
 
 /// How a result is written.
@@ -58,6 +61,7 @@ fn dispatch(command: &Command) -> ExitCode {
         Command::Simulate(arguments) => finish(simulate::run(arguments)),
         Command::LimitCycle(arguments) => finish(limit_cycle::run(arguments)),
         Command::Gap(arguments) => finish(gap::run(arguments)),
+        Command::Tune(arguments) => finish(tune::run(arguments)),
     }
 }
 

@@ -50,7 +50,11 @@ pub(super) fn threshold(record: &Record) -> Option<f64> {
         return None;
     }
     let between = BETWEEN.map(|share| low + share * (high - low));
-    let seldom = record.input.iter().filter(|u| between[0] < **u && **u < between[1]).count();
+    let seldom = record
+        .input
+        .iter()
+        .filter(|u| between[0] < **u && **u < between[1])
+        .count();
     (seldom as f64 <= SELDOM * record.input.len() as f64).then_some(0.5 * (low + high))
 }
 
@@ -82,7 +86,8 @@ fn without_flicker(mut switches: Vec<(f64, bool)>) -> (Vec<(f64, bool)>, usize) 
             })
             .copied()
             .unwrap_or(0.0);
-        let Some(shortest) = (0..lengths.len()).min_by(|a, b| lengths[*a].total_cmp(&lengths[*b])) else {
+        let Some(shortest) = (0..lengths.len()).min_by(|a, b| lengths[*a].total_cmp(&lengths[*b]))
+        else {
             break;
         };
         if lengths[shortest] >= FLICKER * usual {
@@ -94,17 +99,53 @@ fn without_flicker(mut switches: Vec<(f64, bool)>) -> (Vec<(f64, bool)>, usize) 
     (switches, left_out)
 }
 
+/// Times at which the output passes its middle upwards, after it was well below: whole rounds, whatever the input does
+/// in between.
+pub(super) fn rounds(record: &Record) -> Vec<f64> {
+    let mut sorted = record.output.clone();
+    let (low, high) = (quantile(&mut sorted, 0.05), quantile(&mut sorted, 0.95));
+    let [below, above] = BETWEEN.map(|share| low + share * (high - low));
+    let mut was_below = false;
+    let mut marks = Vec::new();
+    for (t, y) in record.time.iter().zip(&record.output) {
+        if *y < below {
+            was_below = true;
+        } else if *y > above && was_below {
+            was_below = false;
+            marks.push(*t);
+        }
+    }
+    marks
+}
+
 /// The cycle, if input and output go round at least twice.
 pub(super) fn find(record: &Record) -> Option<Cycle> {
-    let (switches, flicker) = without_flicker(switches(record, threshold(record)?));
-    let ups: Vec<f64> = switches.iter().filter(|s| s.1).map(|s| s.0).collect();
-    let downs: Vec<f64> = switches.iter().filter(|s| !s.1).map(|s| s.0).collect();
-    // Counted from the kind of switch that makes more whole periods, but for the first, which ends the start.
-    let marks = if ups.len() > downs.len() { &ups } else { &downs };
-    let marks = settled(marks);
+    let all = switches(record, threshold(record)?);
+    let raw = all.len();
+    let (switches, left_out) = without_flicker(all);
+    let at = |up: bool| {
+        switches
+            .iter()
+            .filter(|s| s.1 == up)
+            .map(|s| s.0)
+            .collect::<Vec<f64>>()
+    };
+    let (ups, downs) = (at(true), at(false));
+    // Counted from the kind of switch that makes more whole periods; where the input flickers, by the output.
+    let marks = match left_out {
+        0 if ups.len() > downs.len() => ups,
+        0 => downs,
+        _ => rounds(record),
+    };
+    let marks = settled(&marks);
     if marks.len() < 3 {
         return None;
     }
+    let flicker = if left_out > 0 {
+        raw.saturating_sub(2 * marks.len()) / 2
+    } else {
+        0
+    };
     let (from, to) = (marks[0], marks[marks.len() - 1]);
     let lengths: Vec<f64> = marks.windows(2).map(|m| m[1] - m[0]).collect();
     let periods = lengths.len();
@@ -129,7 +170,8 @@ pub(super) fn find(record: &Record) -> Option<Cycle> {
     }
     let up = time_up / periods as f64;
     let (hysteresis, middle) = thresholds(record, &switches, from, to);
-    let scatter = (lengths.iter().map(|l| (l - period).powi(2)).sum::<f64>() / periods as f64).sqrt();
+    let scatter =
+        (lengths.iter().map(|l| (l - period).powi(2)).sum::<f64>() / periods as f64).sqrt();
     Some(Cycle {
         period,
         amplitude: amplitude(record, marks),

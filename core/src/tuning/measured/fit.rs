@@ -25,20 +25,32 @@ const GRID_TIMES: [f64; 9] = [0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.56, 5.12, 10
 const GRID_DEAD_TIMES: [f64; 7] = [0.003, 0.03, 0.08, 0.15, 0.25, 0.35, 0.46];
 
 /// Second time constants of the grid, as shares of the first.
-const GRID_SHARES: [f64; 4] = [0.05, 0.2, 0.5, 0.85];
+const GRID_SHARES: [f64; 3] = [0.1, 0.4, 0.8];
 
-/// Largest share of the second time constant of the first: equal ones would make their partial fractions meaningless.
-const LARGEST_SHARE: f64 = 0.98;
+/// Largest share of a time constant of the one before: equal ones would make their partial fractions meaningless.
+const LARGEST_SHARE: f64 = 0.95;
 
 /// Evaluations of a simplex, and steps of the last improvement.
-const SIMPLEX_EVALUATIONS: usize = 240;
+const SIMPLEX_EVALUATIONS: usize = 160;
 const IMPROVEMENTS: usize = 40;
 
 /// A time constant of more than this many lengths of the record is an integrator's.
 const LONGEST: f64 = 20.0;
 
+/// A time constant of less than this share of the largest has no effect.
+const SHORTEST: f64 = 1e-6;
+
 /// Share of the diagonal that is added, so that columns that say the same do no harm.
-const RIDGE: f64 = 1e-14;
+const RIDGE: f64 = 1e-12;
+
+/// What a model misses of the motion below this share is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// By how much the score must be better with a drift: strong evidence on Raftery's scale (1995).
+const DRIFT_EVIDENCE: f64 = 10.0;
+
+/// Relative standard error from which a gain is not known.
+const VAGUE: f64 = 0.5;
 
 /// Step of a numerical derivative.
 const DERIVATIVE: f64 = 1e-5;
@@ -53,6 +65,8 @@ pub enum Structure {
     Sopdt,
     /// `K (Tz s + 1) e^(-Ls)/((T1 s + 1)(T2 s + 1))`; an inverse response where `Tz` is below 0.
     SopdtZero,
+    /// `K e^(-Ls)/((T1 s + 1)(T2 s + 1)(T3 s + 1))` with `T1 : T2 = T2 : T3`, for plants of high order.
+    Topdt,
     /// `K e^(-Ls)/s`.
     Integrator,
     /// `K e^(-Ls)/(s (T s + 1))`.
@@ -61,11 +75,12 @@ pub enum Structure {
 
 impl Structure {
     /// All, simplest first.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Fopdt,
         Self::Integrator,
         Self::Sopdt,
         Self::IntegratorLag,
+        Self::Topdt,
         Self::SopdtZero,
     ];
 
@@ -75,6 +90,7 @@ impl Structure {
             Self::Fopdt => "fopdt",
             Self::Sopdt => "sopdt",
             Self::SopdtZero => "sopdt_zero",
+            Self::Topdt => "topdt",
             Self::Integrator => "integrator",
             Self::IntegratorLag => "integrator_lag",
         }
@@ -86,6 +102,7 @@ impl Structure {
             Self::Fopdt => "a lag with dead time",
             Self::Sopdt => "two lags with dead time",
             Self::SopdtZero => "two lags with a zero and dead time",
+            Self::Topdt => "three lags with dead time",
             Self::Integrator => "an integrator with dead time",
             Self::IntegratorLag => "an integrator with a lag and dead time",
         }
@@ -102,6 +119,16 @@ impl Structure {
             Self::Integrator => 0,
             Self::Fopdt | Self::IntegratorLag => 1,
             Self::Sopdt | Self::SopdtZero => 2,
+            Self::Topdt => 3,
+        }
+    }
+
+    /// Numbers that are searched for the time constants.
+    const fn searched(self) -> usize {
+        match self {
+            Self::Integrator => 0,
+            Self::Fopdt | Self::IntegratorLag => 1,
+            Self::Sopdt | Self::SopdtZero | Self::Topdt => 2,
         }
     }
 
@@ -171,6 +198,9 @@ pub(super) struct Fit {
     /// Output of the model at the compared samples, and the record's there.
     pub simulated: Vec<f64>,
     pub score: f64,
+    /// Noise of the output: what changes from sample to sample of what the model leaves.
+    pub noise: f64,
+    motion: f64,
     rss: f64,
     scale: f64,
     parameters: usize,
@@ -182,8 +212,18 @@ impl Fit {
         response(self.model.structure, &self.theta, self.scale, omega)
     }
 
+    /// Share of the motion that the model misses beyond what changes from sample to sample.
+    pub fn misfit(&self) -> f64 {
+        (self.model.left.powi(2) - (self.noise / self.motion).powi(2))
+            .max(0.0)
+            .sqrt()
+    }
+
     /// Standard error of a number that is computed from the model's response.
-    pub fn error_of(&self, number: impl Fn(&dyn Fn(f64) -> Complex<f64>) -> Option<f64>) -> Option<f64> {
+    pub fn error_of(
+        &self,
+        number: impl Fn(&dyn Fn(f64) -> Complex<f64>) -> Option<f64>,
+    ) -> Option<f64> {
         let at = |theta: &[f64]| number(&|w| response(self.model.structure, theta, self.scale, w));
         let middle = at(&self.theta)?;
         let mut gradient = DVector::zeros(self.theta.len());
@@ -198,35 +238,78 @@ impl Fit {
     }
 }
 
-/// Time constants and dead time, s, of what is searched.
-fn times(structure: Structure, p: &[f64], scale: f64) -> ([f64; 2], f64) {
-    let lags = structure.lags();
-    let first = if lags > 0 { scale * libm::exp(p[0]) } else { 0.0 };
-    let second = if lags > 1 {
-        first * LARGEST_SHARE / (1.0 + libm::exp(-p[1]))
+/// Time constants, largest first and 0 where there are none, and dead time, s, of what is searched.
+fn times(structure: Structure, p: &[f64], scale: f64) -> ([f64; 3], f64) {
+    let searched = structure.searched();
+    let first = if searched > 0 {
+        scale * libm::exp(p[0])
     } else {
         0.0
     };
-    ([first, second], scale * p[lags].abs())
+    let share = if searched > 1 {
+        LARGEST_SHARE / (1.0 + libm::exp(-p[1]))
+    } else {
+        0.0
+    };
+    let third = if structure.lags() > 2 {
+        first * share * share
+    } else {
+        0.0
+    };
+    ([first, first * share, third], scale * p[searched].abs())
 }
 
-/// Static or velocity gain, time constants, zero and dead time.
-fn physical(structure: Structure, theta: &[f64], scale: f64) -> [f64; 5] {
+/// Static or velocity gain, three time constants, zero and dead time.
+fn physical(structure: Structure, theta: &[f64], scale: f64) -> [f64; 6] {
     let forced = structure.forced();
-    let ([t1, t2], dead_time) = times(structure, &theta[forced..], scale);
+    let ([t1, t2, t3], dead_time) = times(structure, &theta[forced..], scale);
     if structure == Structure::SopdtZero {
         let gain = theta[0] + theta[1];
-        return [gain, t1, t2, (theta[0] * t2 + theta[1] * t1) / gain, dead_time];
+        return [
+            gain,
+            t1,
+            t2,
+            t3,
+            (theta[0] * t2 + theta[1] * t1) / gain,
+            dead_time,
+        ];
     }
-    [theta[0], t1, t2, 0.0, dead_time]
+    [theta[0], t1, t2, t3, 0.0, dead_time]
 }
 
 fn response(structure: Structure, theta: &[f64], scale: f64, omega: f64) -> Complex<f64> {
-    let [gain, t1, t2, zero, dead_time] = physical(structure, theta, scale);
+    let [gain, t1, t2, t3, zero, dead_time] = physical(structure, theta, scale);
     let s = Complex::new(0.0, omega);
-    let pole = if structure.integrates() { s } else { Complex::new(1.0, 0.0) };
+    let pole = if structure.integrates() {
+        s
+    } else {
+        Complex::new(1.0, 0.0)
+    };
+    let lags = (s * t1 + 1.0) * (s * t2 + 1.0) * (s * t3 + 1.0);
     let (sin, cos) = libm::sincos(-omega * dead_time);
-    (s * zero + 1.0) * gain * Complex::new(cos, sin) / (pole * (s * t1 + 1.0) * (s * t2 + 1.0))
+    (s * zero + 1.0) * gain * Complex::new(cos, sin) / (pole * lags)
+}
+
+/// Weights of the single lags in the response of several in a row: `Ti^(n-1)/prod_(j != i) (Ti - Tj)`.
+fn partial_fractions(lags: &[f64]) -> Vec<f64> {
+    let others = |i: usize| {
+        lags.iter()
+            .enumerate()
+            .filter(move |(j, _)| *j != i)
+            .map(|(_, t)| *t)
+    };
+    (0..lags.len())
+        .map(|i| others(i).map(|t| lags[i] / (lags[i] - t)).product())
+        .collect()
+}
+
+/// Sum of series with weights.
+fn weighted(weights: &[f64], series: &[Vec<f64>]) -> Vec<f64> {
+    let mut sum = vec![0.0; series.first().map_or(0, Vec::len)];
+    for (w, values) in weights.iter().zip(series) {
+        sum.iter_mut().zip(values).for_each(|(s, v)| *s += w * v);
+    }
+    sum
 }
 
 /// The record as the fits see it.
@@ -240,6 +323,8 @@ pub(super) struct Compared {
     motion: f64,
     span: f64,
     scale: f64,
+    /// Whether the load may change steadily.
+    drifts: bool,
 }
 
 impl Compared {
@@ -250,7 +335,8 @@ impl Compared {
         let (time, output) = (taken(&record.time), taken(&record.output));
         let origin = record.input.iter().sum::<f64>() / record.input.len() as f64;
         let mean = output.iter().sum::<f64>() / output.len() as f64;
-        let motion = (output.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / output.len() as f64).sqrt();
+        let motion =
+            (output.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / output.len() as f64).sqrt();
         Self {
             held: Held::new(&record.time, &record.input),
             origin,
@@ -259,20 +345,17 @@ impl Compared {
             motion,
             span: record.span(),
             scale,
+            drifts: false,
         }
     }
 
-    /// Columns of the linear problem: forced responses, then operating point, free motions, and what acted before.
+    /// Columns of the linear problem: forced responses, operating point, of an integrator its slope, free motions, what
+    /// acted before the record, and the drift.
     fn columns(&self, structure: Structure, p: &[f64]) -> Vec<Vec<f64>> {
-        let ([t1, t2], dead_time) = times(structure, p, self.scale);
-        let lag = |t: f64| -> Vec<f64> {
-            let mut x = self.held.lag(&self.time, t, dead_time);
-            x.iter_mut().for_each(|x| *x -= self.origin);
-            x
-        };
+        let (all, dead_time) = times(structure, p, self.scale);
+        let lags = &all[..structure.lags()];
         let start = self.time[0];
         let since = || self.time.iter().map(move |t| t - start);
-        let free = |t: f64| since().map(|s| libm::exp(-s / t)).collect::<Vec<f64>>();
         // Another input before the record acts until the dead time is over.
         let early = |t: f64| -> Vec<f64> {
             since()
@@ -282,38 +365,50 @@ impl Compared {
                 })
                 .collect()
         };
-        let early_integral = || since().map(|s| s.min(dead_time)).collect::<Vec<f64>>();
-        let combined = |a: &[f64], x: &[f64], b: &[f64], y: &[f64], by: f64| -> Vec<f64> {
-            x.iter().zip(y).zip(a.iter().zip(b)).map(|((x, y), (a, b))| (a * x - b * y) / by).collect()
-        };
-        let ones = vec![1.0; self.time.len()];
-        let of = |v: f64| vec![v; self.time.len()];
-        let is_early = self.time.partition_point(|t| t - start < dead_time) > 2;
-        let mut columns = match structure {
-            Structure::Fopdt => vec![lag(t1), ones, free(t1)],
-            Structure::Sopdt => {
-                let forced = combined(&of(t1), &lag(t1), &of(t2), &lag(t2), t1 - t2);
-                vec![forced, ones, free(t1), free(t2)]
-            }
-            Structure::SopdtZero => vec![lag(t1), lag(t2), ones, free(t1), free(t2)],
-            Structure::Integrator => {
-                vec![self.held.integral(&self.time, self.origin, dead_time), ones, since().collect()]
-            }
-            Structure::IntegratorLag => {
-                let integral = self.held.integral(&self.time, self.origin, dead_time);
-                let forced = combined(&of(1.0), &integral, &of(t1), &lag(t1), 1.0);
-                vec![forced, ones, since().collect(), free(t1)]
-            }
-        };
-        if is_early {
-            columns.push(match structure {
-                Structure::Fopdt => early(t1),
-                Structure::Sopdt | Structure::SopdtZero => {
-                    combined(&of(t1), &early(t1), &of(t2), &early(t2), t1 - t2)
-                }
-                Structure::Integrator => early_integral(),
-                Structure::IntegratorLag => combined(&of(1.0), &early_integral(), &of(t1), &early(t1), 1.0),
-            });
+        let forced: Vec<Vec<f64>> = lags
+            .iter()
+            .map(|t| self.held.lag(&self.time, *t, self.origin, dead_time))
+            .collect();
+        let before: Vec<Vec<f64>> = lags.iter().map(|t| early(*t)).collect();
+        let weights = partial_fractions(lags);
+        let mut columns = Vec::with_capacity(8);
+        let acted;
+        if structure.integrates() {
+            // 1/(s (T s + 1)) = 1/s - T/(T s + 1).
+            let through: Vec<f64> = std::iter::once(1.0)
+                .chain(lags.iter().map(|t| -t))
+                .collect();
+            let own = |first: Vec<f64>, rest: Vec<Vec<f64>>| {
+                let all: Vec<Vec<f64>> = std::iter::once(first).chain(rest).collect();
+                weighted(&through, &all)
+            };
+            columns.push(own(
+                self.held.integral(&self.time, self.origin, dead_time),
+                forced,
+            ));
+            acted = own(since().map(|s| s.min(dead_time)).collect(), before);
+        } else if structure == Structure::SopdtZero {
+            acted = weighted(&weights, &before);
+            columns.extend(forced);
+        } else {
+            acted = weighted(&weights, &before);
+            columns.push(weighted(&weights, &forced));
+        }
+        columns.push(vec![1.0; self.time.len()]);
+        if structure.integrates() {
+            columns.push(since().map(|s| s / self.span).collect());
+        }
+        columns.extend(
+            lags.iter()
+                .map(|t| since().map(|s| libm::exp(-s / t)).collect::<Vec<f64>>()),
+        );
+        if self.time.partition_point(|t| t - start < dead_time) > 2 {
+            columns.push(acted);
+        }
+        // A steady change of the load: behind lags a slope, behind an integrator a parabola.
+        if self.drifts {
+            let power = if structure.integrates() { 2 } else { 1 };
+            columns.push(since().map(|s| (s / self.span).powi(power)).collect());
         }
         columns
     }
@@ -323,23 +418,28 @@ impl Compared {
         let coefficients = least_squares(columns, &self.output)?;
         let mut residuals = self.output.clone();
         for (c, column) in coefficients.iter().zip(columns) {
-            residuals.iter_mut().zip(column).for_each(|(r, x)| *r -= c * x);
+            residuals
+                .iter_mut()
+                .zip(column)
+                .for_each(|(r, x)| *r -= c * x);
         }
         Some((coefficients, residuals))
     }
 
     fn cost(&self, structure: Structure, p: &[f64]) -> f64 {
         let allowed = {
-            let ([t1, t2], dead_time) = times(structure, p, self.scale);
-            let too_long = t1 > LONGEST * self.span || dead_time > 0.5 * self.span;
-            // A lag far below the sampling time is none.
-            p.iter().all(|v| v.is_finite()) && !too_long && (structure.lags() < 2 || t2 > 1e-6 * t1)
+            let (lags, dead_time) = times(structure, p, self.scale);
+            let too_long = lags[0] > LONGEST * self.span || dead_time > 0.5 * self.span;
+            // A lag that is far below the others is none.
+            let none = (1..structure.lags()).any(|i| lags[i] < SHORTEST * lags[0]);
+            p.iter().all(|v| v.is_finite()) && !too_long && !none
         };
         if !allowed {
             return f64::INFINITY;
         }
         let columns = self.columns(structure, p);
-        self.solve(&columns).map_or(f64::INFINITY, |(_, r)| dot(&r, &r))
+        self.solve(&columns)
+            .map_or(f64::INFINITY, |(_, r)| dot(&r, &r))
     }
 
     /// Fits one structure.
@@ -355,7 +455,7 @@ impl Compared {
         starts.sort_by(|a, b| a.1.total_cmp(&b.1));
         let best = starts
             .into_iter()
-            .take(3)
+            .take(2)
             .map(|(p, _)| self.descend(structure, p))
             .min_by(|a, b| a.1.total_cmp(&b.1))?;
         let p = self.improve(structure, best.0);
@@ -365,7 +465,7 @@ impl Compared {
     fn grid(&self, structure: Structure) -> Vec<Vec<f64>> {
         let mut grid = Vec::new();
         for l in GRID_DEAD_TIMES {
-            match structure.lags() {
+            match structure.searched() {
                 0 => grid.push(vec![l]),
                 1 => grid.extend(GRID_TIMES.iter().map(|t| vec![libm::log(*t), l])),
                 _ => {
@@ -383,9 +483,27 @@ impl Compared {
     fn descend(&self, structure: Structure, p: Vec<f64>) -> (Vec<f64>, f64) {
         let cost = |p: &[f64]| self.cost(structure, p);
         match p.as_slice() {
-            [a] => descended(minimise(|p: &[f64; 1]| cost(p), [*a], 0.1, SIMPLEX_EVALUATIONS, 0.0)),
-            [a, b] => descended(minimise(|p: &[f64; 2]| cost(p), [*a, *b], 0.1, SIMPLEX_EVALUATIONS, 0.0)),
-            [a, b, c] => descended(minimise(|p: &[f64; 3]| cost(p), [*a, *b, *c], 0.1, SIMPLEX_EVALUATIONS, 0.0)),
+            [a] => descended(minimise(
+                |p: &[f64; 1]| cost(p),
+                [*a],
+                0.1,
+                SIMPLEX_EVALUATIONS,
+                0.0,
+            )),
+            [a, b] => descended(minimise(
+                |p: &[f64; 2]| cost(p),
+                [*a, *b],
+                0.1,
+                SIMPLEX_EVALUATIONS,
+                0.0,
+            )),
+            [a, b, c] => descended(minimise(
+                |p: &[f64; 3]| cost(p),
+                [*a, *b, *c],
+                0.1,
+                SIMPLEX_EVALUATIONS,
+                0.0,
+            )),
             _ => (p, f64::INFINITY),
         }
     }
@@ -401,17 +519,29 @@ impl Compared {
             for i in 0..p.len() {
                 let mut moved = p.clone();
                 moved[i] += DERIVATIVE;
-                let Some(other) = residuals(&moved) else { return p };
-                jacobian.push(other.iter().zip(&r).map(|(a, b)| (a - b) / DERIVATIVE).collect());
+                let Some(other) = residuals(&moved) else {
+                    return p;
+                };
+                jacobian.push(
+                    other
+                        .iter()
+                        .zip(&r)
+                        .map(|(a, b)| (a - b) / DERIVATIVE)
+                        .collect(),
+                );
             }
             let mut better = false;
             while damping < 1e9 {
-                let Some(step) = damped(&jacobian, &r, damping) else { break };
+                let Some(step) = damped(&jacobian, &r, damping) else {
+                    break;
+                };
                 let moved: Vec<f64> = p.iter().zip(&step).map(|(a, b)| a - b).collect();
                 let new_cost = self.cost(structure, &moved);
                 if new_cost < cost {
                     let done = cost - new_cost < 1e-15 * cost;
-                    let Some(new) = residuals(&moved) else { return p };
+                    let Some(new) = residuals(&moved) else {
+                        return p;
+                    };
                     (p, r, better) = (moved, new, !done);
                     damping = (damping * 0.1).max(1e-12);
                     break;
@@ -450,7 +580,9 @@ impl Compared {
         let variance = rss / n.saturating_sub(parameters).max(1) as f64 * coherence(&residuals);
         let full = inverse_gram(&jacobian)? * variance;
         // What matters outside: forced coefficients and searched parameters.
-        let kept: Vec<usize> = (0..forced).chain(columns.len()..columns.len() + p.len()).collect();
+        let kept: Vec<usize> = (0..forced)
+            .chain(columns.len()..columns.len() + p.len())
+            .collect();
         let covariance = DMatrix::from_fn(kept.len(), kept.len(), |i, j| full[(kept[i], kept[j])]);
         let theta: Vec<f64> = coefficients[..forced].iter().chain(p).copied().collect();
         let values = physical(structure, &theta, self.scale);
@@ -460,18 +592,23 @@ impl Compared {
             std_error: errors[i],
         };
         let operating_point = if structure.integrates() {
-            self.origin - coefficients[forced + 1] / values[0]
+            self.origin - coefficients[forced + 1] / (self.span * values[0])
         } else {
             coefficients[forced] - values[0] * self.origin
         };
-        let simulated = self.output.iter().zip(&residuals).map(|(y, r)| y - r).collect();
+        let simulated = self
+            .output
+            .iter()
+            .zip(&residuals)
+            .map(|(y, r)| y - r)
+            .collect();
         values.iter().all(|v| v.is_finite()).then(|| Fit {
             model: FittedModel {
                 structure,
                 gain: value(0),
                 time_constants: (1..=structure.lags()).map(value).collect(),
-                zero: (structure == Structure::SopdtZero).then(|| value(3)),
-                dead_time: value(4),
+                zero: (structure == Structure::SopdtZero).then(|| value(4)),
+                dead_time: value(5),
                 operating_point,
                 left: (rss / n as f64).sqrt() / self.motion,
                 preferred: false,
@@ -480,29 +617,67 @@ impl Compared {
             covariance,
             simulated,
             score: f64::INFINITY,
+            noise: (0.5
+                * residuals
+                    .windows(2)
+                    .map(|r| (r[1] - r[0]).powi(2))
+                    .sum::<f64>()
+                / n as f64)
+                .sqrt(),
+            motion: self.motion,
             rss,
             scale: self.scale,
             parameters,
         })
     }
 
-    /// Fits all structures and marks the one that the data prefer: by Schwarz's criterion, where residuals that hang
-    /// together count as fewer samples.
-    pub fn fit_all(&self) -> Vec<Fit> {
-        let mut fits: Vec<Fit> = Structure::ALL.iter().filter_map(|s| self.fit(*s)).collect();
+    /// Fits all structures, the one that the data prefer first: by Schwarz's criterion, where residuals that hang together
+    /// count as fewer samples. A drift is allowed where the data ask for it.
+    pub fn fit_all(&mut self) -> Vec<Fit> {
+        let steady = self.fit_each(&Structure::ALL);
+        let Some(best) = steady.first() else {
+            return steady;
+        };
+        self.drifts = true;
+        let drifting = self.fit(best.model.structure);
+        let better = drifting.is_some_and(|d| {
+            let independent = self.independent(&d);
+            independent * libm::log(best.rss / d.rss)
+                > DRIFT_EVIDENCE + libm::log(independent.max(2.0))
+        });
+        if better && best.model.left > ROUND_OFF {
+            return self.fit_each(&Structure::ALL);
+        }
+        self.drifts = false;
+        steady
+    }
+
+    /// Samples that count.
+    fn independent(&self, fit: &Fit) -> f64 {
+        let residuals: Vec<f64> = self
+            .output
+            .iter()
+            .zip(&fit.simulated)
+            .map(|(y, s)| y - s)
+            .collect();
+        (residuals.len() as f64 / coherence(&residuals)).max(1.0)
+    }
+
+    fn fit_each(&self, structures: &[Structure]) -> Vec<Fit> {
+        let mut fits: Vec<Fit> = structures.iter().filter_map(|s| self.fit(*s)).collect();
         let n = self.output.len() as f64;
-        // Below this share of the motion it is round-off.
-        let floor = n * (1e-9 * self.motion).powi(2);
+        let floor = n * (ROUND_OFF * self.motion).powi(2);
         let Some(least) = fits.iter().min_by(|a, b| a.rss.total_cmp(&b.rss)) else {
             return fits;
         };
-        let residuals: Vec<f64> = self.output.iter().zip(&least.simulated).map(|(y, s)| y - s).collect();
-        let independent = (n / coherence(&residuals)).max(1.0);
+        let independent = self.independent(least);
         for fit in &mut fits {
             fit.score = independent * libm::log((fit.rss + floor) / n)
                 + fit.parameters as f64 * libm::log(independent.max(2.0));
         }
-        fits.sort_by(|a, b| a.score.total_cmp(&b.score));
+        // A model whose gain is not known at all is of no use, however well it follows.
+        let vague = |f: &Fit| !(f.model.gain.std_error < VAGUE * f.model.gain.value.abs());
+        fits.sort_by(|a, b| vague(a).cmp(&vague(b)).then(a.score.total_cmp(&b.score)));
         if let Some(first) = fits.first_mut() {
             first.model.preferred = true;
         }
@@ -515,9 +690,9 @@ fn descended<const N: usize>((p, cost): ([f64; N], f64)) -> (Vec<f64>, f64) {
 }
 
 /// Standard errors of the physical parameters.
-fn errors(structure: Structure, theta: &[f64], scale: f64, covariance: &DMatrix<f64>) -> [f64; 5] {
+fn errors(structure: Structure, theta: &[f64], scale: f64, covariance: &DMatrix<f64>) -> [f64; 6] {
     let middle = physical(structure, theta, scale);
-    let gradients: Vec<[f64; 5]> = (0..theta.len())
+    let gradients: Vec<[f64; 6]> = (0..theta.len())
         .map(|i| {
             let step = DERIVATIVE * theta[i].abs().max(1e-3);
             let mut moved = theta.to_vec();
@@ -534,7 +709,10 @@ fn errors(structure: Structure, theta: &[f64], scale: f64, covariance: &DMatrix<
 
 /// Scaled normal equations: the columns' lengths, and their Gram matrix with unit diagonal.
 fn gram(columns: &[Vec<f64>]) -> (Vec<f64>, DMatrix<f64>) {
-    let lengths: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt().max(f64::MIN_POSITIVE)).collect();
+    let lengths: Vec<f64> = columns
+        .iter()
+        .map(|c| dot(c, c).sqrt().max(f64::MIN_POSITIVE))
+        .collect();
     let m = columns.len();
     let mut gram = DMatrix::zeros(m, m);
     for i in 0..m {
@@ -552,9 +730,15 @@ pub(super) fn least_squares(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f
     let (lengths, gram) = gram(columns);
     let cholesky = gram.cholesky()?;
     let solved = |right: &[f64]| {
-        let rhs = DVector::from_iterator(columns.len(), columns.iter().zip(&lengths).map(|(c, l)| dot(c, right) / l));
+        let rhs = DVector::from_iterator(
+            columns.len(),
+            columns.iter().zip(&lengths).map(|(c, l)| dot(c, right) / l),
+        );
         let x = cholesky.solve(&rhs);
-        x.iter().zip(&lengths).map(|(x, l)| x / l).collect::<Vec<f64>>()
+        x.iter()
+            .zip(&lengths)
+            .map(|(x, l)| x / l)
+            .collect::<Vec<f64>>()
     };
     let mut x = solved(right);
     // Once more on what is left, which takes off most of the round-off of the normal equations.
@@ -570,7 +754,9 @@ pub(super) fn inverse_gram(columns: &[Vec<f64>]) -> Option<DMatrix<f64>> {
     let (lengths, gram) = gram(columns);
     let inverse = gram.cholesky()?.inverse();
     let m = columns.len();
-    Some(DMatrix::from_fn(m, m, |i, j| inverse[(i, j)] / (lengths[i] * lengths[j])))
+    Some(DMatrix::from_fn(m, m, |i, j| {
+        inverse[(i, j)] / (lengths[i] * lengths[j])
+    }))
 }
 
 fn damped(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
@@ -580,7 +766,10 @@ fn damped(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<
     }
     let rhs = DVector::from_iterator(
         jacobian.len(),
-        jacobian.iter().zip(&lengths).map(|(c, l)| dot(c, residuals) / l),
+        jacobian
+            .iter()
+            .zip(&lengths)
+            .map(|(c, l)| dot(c, residuals) / l),
     );
     let x = gram.cholesky()?.solve(&rhs);
     Some(x.iter().zip(&lengths).map(|(x, l)| x / l).collect())
@@ -606,7 +795,11 @@ pub(super) fn coherence(residuals: &[f64]) -> f64 {
 }
 
 /// Frequency at which the phase passes -180 degrees first, searched from `low` to `high` rad/s; the gain is positive.
-pub(super) fn crossover(response: &dyn Fn(f64) -> Complex<f64>, low: f64, high: f64) -> Option<f64> {
+pub(super) fn crossover(
+    response: &dyn Fn(f64) -> Complex<f64>,
+    low: f64,
+    high: f64,
+) -> Option<f64> {
     let points = crate::tuning::scan::grid(low, high);
     let turned = |w: f64| {
         let r = response(w);
@@ -619,7 +812,12 @@ pub(super) fn crossover(response: &dyn Fn(f64) -> Complex<f64>, low: f64, high: 
         phase = raw + 2.0 * PI * ((phase - raw) / (2.0 * PI)).round();
         if before.1 > -PI && phase <= -PI {
             let f = |x: f64| response(x).im;
-            return Some(crate::tuning::scan::bisect(before.0, w, f(before.0) > 0.0, f));
+            return Some(crate::tuning::scan::bisect(
+                before.0,
+                w,
+                f(before.0) > 0.0,
+                f,
+            ));
         }
         before = (w, phase);
     }

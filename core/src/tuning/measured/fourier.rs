@@ -57,7 +57,12 @@ impl Point {
 }
 
 /// The point of the cycle; `fit` is the model that helps.
-pub(super) fn point(record: &Record, cycle: &Cycle, compared: &Compared, fit: Option<&Fit>) -> Option<Point> {
+pub(super) fn point(
+    record: &Record,
+    cycle: &Cycle,
+    compared: &Compared,
+    fit: Option<&Fit>,
+) -> Option<Point> {
     let [from, to] = cycle.window;
     let (whole, noise) = part(record, cycle, compared, fit, from, to)?;
     // The two halves of the window should say the same: where they do not, by so much it is not known.
@@ -66,13 +71,15 @@ pub(super) fn point(record: &Record, cycle: &Cycle, compared: &Compared, fit: Op
     if half >= 1 {
         let middle = from + half as f64 * cycle.period;
         let second = to - half as f64 * cycle.period;
-        let halves = [(from, middle), (second, to)].map(|(a, b)| part(record, cycle, compared, fit, a, b));
+        let halves =
+            [(from, middle), (second, to)].map(|(a, b)| part(record, cycle, compared, fit, a, b));
         if let [Some(a), Some(b)] = halves {
             error = error.max(0.5 * (a.0 - b.0).norm() / 2.0_f64.sqrt());
         }
     }
     let value = whole;
-    (value.norm() > 0.0 && error.is_finite()).then(|| Point::new(2.0 * PI / cycle.period, value, error))
+    (value.norm() > 0.0 && error.is_finite())
+        .then(|| Point::new(2.0 * PI / cycle.period, value, error))
 }
 
 /// The point by whole periods from `from` to `to`, and its error from noise.
@@ -87,8 +94,9 @@ fn part(
     let omega = 2.0 * PI / cycle.period;
     let [re, im] = Held::new(&record.time, &record.input).fourier(omega, from, to);
     let input = Complex::new(re, im);
-    let inside: Vec<usize> =
-        (0..compared.time.len()).filter(|&i| (from..to).contains(&compared.time[i])).collect();
+    let inside: Vec<usize> = (0..compared.time.len())
+        .filter(|&i| (from..to).contains(&compared.time[i]))
+        .collect();
     let time: Vec<f64> = inside.iter().map(|&i| compared.time[i] - from).collect();
     let rest: Vec<f64> = inside
         .iter()
@@ -99,7 +107,10 @@ fn part(
     let harmonics = ((each / SAMPLES_EACH) as usize).clamp(1, HARMONICS);
     let mut columns: Vec<Vec<f64>> = Vec::new();
     for h in 1..=harmonics {
-        let waves: Vec<(f64, f64)> = time.iter().map(|t| libm::sincos(omega * h as f64 * t)).collect();
+        let waves: Vec<(f64, f64)> = time
+            .iter()
+            .map(|t| libm::sincos(omega * h as f64 * t))
+            .collect();
         columns.push(waves.iter().map(|w| w.1).collect());
         columns.push(waves.iter().map(|w| w.0).collect());
     }

@@ -9,8 +9,8 @@ use super::fourier::Point;
 use super::ultimate::MeasuredUltimate;
 use crate::plant::TransferFunction;
 use crate::tuning::{
-    Disturbance, Identified, Margins, Model, NyquistPoint, Pid, Response, Target, TuningError, Ultimate, Wish, margins,
-    move_with_pi, move_with_pid, respond, rule, unstable_poles,
+    Disturbance, Identified, Margins, Model, NyquistPoint, Pid, Response, Target, TuningError,
+    Ultimate, Wish, margins, move_with_pi, move_with_pid, respond, rule, unstable_poles,
 };
 
 /// Full scale of the output of Klipper's and Marlin's controllers.
@@ -151,11 +151,14 @@ impl Reduced {
 
     fn model(&self) -> Model {
         let (gain, dead_time) = (self.gain, self.dead_time);
-        self.first.map_or(Model::Integrating { gain, dead_time }, |time_constant| Model::Lag {
-            gain,
-            time_constant,
-            dead_time,
-        })
+        self.first
+            .map_or(Model::Integrating { gain, dead_time }, |time_constant| {
+                Model::Lag {
+                    gain,
+                    time_constant,
+                    dead_time,
+                }
+            })
     }
 
     /// `Kc = T1/(K (tc + L))`, `Ti = min(T1, 4 (tc + L))`, `Td = T2` in the series form, `tc = L` (Skogestad 2003).
@@ -193,21 +196,48 @@ pub(super) fn all(basis: &Basis<'_>, form: Form, full_scale: f64) -> Vec<TunedGa
     if let Some(ultimate) = basis.ultimate {
         let identified = identified(Some(ultimate), None, basis.point);
         for (id, name, controller, entry) in [
-            ("ziegler_nichols", "Ziegler-Nichols", "pi", "ziegler_nichols_pi"),
-            ("ziegler_nichols", "Ziegler-Nichols", "pid", "ziegler_nichols_pid"),
+            (
+                "ziegler_nichols",
+                "Ziegler-Nichols",
+                "pi",
+                "ziegler_nichols_pi",
+            ),
+            (
+                "ziegler_nichols",
+                "Ziegler-Nichols",
+                "pid",
+                "ziegler_nichols_pid",
+            ),
             ("tyreus_luyben", "Tyreus-Luyben", "pi", "tyreus_luyben_pi"),
             ("tyreus_luyben", "Tyreus-Luyben", "pid", "tyreus_luyben_pid"),
         ] {
-            add(id, name, controller, rule(entry).and_then(|r| (r.tune)(&identified)));
+            add(
+                id,
+                name,
+                controller,
+                rule(entry).and_then(|r| (r.tune)(&identified)),
+            );
         }
     }
     // Without a model the point alone is moved.
-    if reduced.is_none() && let Some(point) = basis.point {
+    if reduced.is_none()
+        && let Some(point) = basis.point
+    {
         let from = identified(None, None, Some(point)).point;
         let target = Target::PhaseMargin(Wish::default().phase_margin).point();
-        add("moving_point", "Moving point", "pi", move_with_pi(&from, target));
+        add(
+            "moving_point",
+            "Moving point",
+            "pi",
+            move_with_pi(&from, target),
+        );
         let wish = Wish::default();
-        add("moving_point", "Moving point", "pid", move_with_pid(&from, target, wish.time_ratio, wish.filter));
+        add(
+            "moving_point",
+            "Moving point",
+            "pid",
+            move_with_pid(&from, target, wish.time_ratio, wish.filter),
+        );
     }
     if let Some(reduced) = reduced {
         let filter = Wish::default().filter;
@@ -217,7 +247,12 @@ pub(super) fn all(basis: &Basis<'_>, form: Form, full_scale: f64) -> Vec<TunedGa
         }
         let identified = identified(None, Some(reduced.half_rule().model()), basis.point);
         for (controller, entry) in [("pi", "amigo_pi"), ("pid", "amigo_pid")] {
-            add("amigo", "AMIGO", controller, rule(entry).and_then(|r| (r.tune)(&identified)));
+            add(
+                "amigo",
+                "AMIGO",
+                controller,
+                rule(entry).and_then(|r| (r.tune)(&identified)),
+            );
         }
     }
     found
@@ -232,7 +267,11 @@ fn for_rules<'a>(basis: &Basis<'a>) -> Option<&'a FittedModel> {
 }
 
 /// As the registry of rules wants it; rules ask only for what is given.
-fn identified(ultimate: Option<&MeasuredUltimate>, model: Option<Model>, point: Option<&Point>) -> Identified {
+fn identified(
+    ultimate: Option<&MeasuredUltimate>,
+    model: Option<Model>,
+    point: Option<&Point>,
+) -> Identified {
     let value = point.map(Point::value);
     Identified {
         ultimate: ultimate.map_or(
@@ -254,17 +293,28 @@ fn identified(ultimate: Option<&MeasuredUltimate>, model: Option<Model>, point: 
     }
 }
 
-fn tuned(pid: Pid, form: Form, full_scale: f64, plant: Option<&TransferFunction>) -> Option<TunedGains> {
+fn tuned(
+    pid: Pid,
+    form: Form,
+    full_scale: f64,
+    plant: Option<&TransferFunction>,
+) -> Option<TunedGains> {
     let scale = form.scale().map_or(1.0, |s| s / full_scale);
     let (kp, ti, td) = if form == Form::Series {
         // A PI controller is the same in both; a PID controller may have no series form.
         let series = pid.series()?;
-        (series.gain, Some(series.integral_time), series.derivative_time)
+        (
+            series.gain,
+            Some(series.integral_time),
+            series.derivative_time,
+        )
     } else {
         (pid.gain * scale, pid.integral_time, pid.derivative_time)
     };
     let unstable = plant.map(|p| unstable_poles(p, &pid));
-    let achieved: Option<Margins> = plant.filter(|_| unstable == Some(0)).map(|p| margins(p, &pid));
+    let achieved: Option<Margins> = plant
+        .filter(|_| unstable == Some(0))
+        .map(|p| margins(p, &pid));
     Some(TunedGains {
         rule: String::new(),
         name: String::new(),
@@ -276,7 +326,9 @@ fn tuned(pid: Pid, form: Form, full_scale: f64, plant: Option<&TransferFunction>
         ti,
         td,
         pid,
-        phase_margin_deg: achieved.and_then(|m| m.phase_margin).map(|p| p * 180.0 / PI),
+        phase_margin_deg: achieved
+            .and_then(|m| m.phase_margin)
+            .map(|p| p * 180.0 / PI),
         gain_margin: achieved.and_then(|m| m.gain_margin),
         max_sensitivity: achieved.map(|m| m.max_sensitivity),
         stable: unstable == Some(0),
@@ -287,7 +339,11 @@ fn tuned(pid: Pid, form: Form, full_scale: f64, plant: Option<&TransferFunction>
 ///
 /// # Errors
 /// A horizon that is not above 0.
-pub fn steps(model: &FittedModel, gains: &TunedGains, horizon: f64) -> Result<[Response; 2], TuningError> {
+pub fn steps(
+    model: &FittedModel,
+    gains: &TunedGains,
+    horizon: f64,
+) -> Result<[Response; 2], TuningError> {
     let plant = model.plant();
     let of = |disturbance| respond(&plant, &gains.pid, disturbance, horizon, horizon / 400.0);
     Ok([of(Disturbance::SetPoint)?, of(Disturbance::Load)?])

@@ -25,6 +25,7 @@ mod cycle;
 mod fit;
 mod fourier;
 mod gains;
+pub mod log;
 mod readings;
 mod record;
 mod report;

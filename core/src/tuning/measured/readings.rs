@@ -76,23 +76,47 @@ impl Readings {
     /// # Errors
     /// [`RecordError::Reading`] with the first out of its range.
     pub fn validate(&self) -> Result<(), RecordError> {
-        check("the amplitude", self.amplitude, self.amplitude > 0.0, "above 0")?;
+        check(
+            "the amplitude",
+            self.amplitude,
+            self.amplitude > 0.0,
+            "above 0",
+        )?;
         check("the period", self.period, self.period > 0.0, "above 0 s")?;
         let [low, high] = self.levels;
         check("the lower level", low, true, "a number")?;
-        check("the upper level", high, high != low, "a number other than the lower level")?;
+        check(
+            "the upper level",
+            high,
+            high != low,
+            "a number other than the lower level",
+        )?;
         let a = self.half_amplitude();
-        let range = format!("0 or more, and less than the amplitude of {} (half of peak to peak)", number(a));
-        check("the hysteresis", self.hysteresis, (0.0..a).contains(&self.hysteresis), &range)?;
+        let range = format!(
+            "0 or more, and less than the amplitude of {} (half of peak to peak)",
+            number(a)
+        );
+        check(
+            "the hysteresis",
+            self.hysteresis,
+            (0.0..a).contains(&self.hysteresis),
+            &range,
+        )?;
         if let Some([up, down]) = self.half_periods {
             let fits = up > 0.0 && down > 0.0 && ((up + down) / self.period - 1.0).abs() < 0.01;
-            check("the sum of the half periods", up + down, fits, "the period, of two times above 0 s")?;
+            check(
+                "the sum of the half periods",
+                up + down,
+                fits,
+                "the period, of two times above 0 s",
+            )?;
         }
         Ok(())
     }
 
     fn symmetric(&self) -> bool {
-        self.half_periods.is_none_or(|[up, down]| (up - down).abs() < 0.02 * self.period)
+        self.half_periods
+            .is_none_or(|[up, down]| (up - down).abs() < 0.02 * self.period)
     }
 
     /// The point by the describing function, with the error of not knowing the waveform.
@@ -116,7 +140,11 @@ impl Readings {
             .collect();
         let spread = |of: fn(&(f64, f64)) -> f64, middle: f64| {
             // Between the ends of the range every value is as likely.
-            family.iter().map(|p| (of(p) - middle).abs()).fold(0.0, f64::max) / 3.0_f64.sqrt()
+            family
+                .iter()
+                .map(|p| (of(p) - middle).abs())
+                .fold(0.0, f64::max)
+                / 3.0_f64.sqrt()
         };
         Point {
             omega,
@@ -148,7 +176,10 @@ fn lag_with_dead_time(ratio: f64, a: f64, eps: f64, period: f64) -> Option<Compl
 ///
 /// # Errors
 /// A number out of its range.
-pub fn tune_readings(readings: &Readings, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
+pub fn tune_readings(
+    readings: &Readings,
+    settings: &Settings,
+) -> Result<MeasuredTuning, RecordError> {
     readings.validate()?;
     let point = readings.point();
     let a = readings.half_amplitude();
@@ -167,7 +198,9 @@ pub fn tune_readings(readings: &Readings, settings: &Settings) -> Result<Measure
         point: Some(&point),
         sampling: 0.0,
     };
-    let full_scale = settings.full_scale.unwrap_or_else(|| super::report::full_scale(readings.levels[1]));
+    let full_scale = settings
+        .full_scale
+        .unwrap_or_else(|| super::report::full_scale(readings.levels[1]));
     let gains = gains::all(&basis, settings.form, full_scale);
     let mut troubles = Vec::new();
     if !readings.symmetric()

@@ -37,7 +37,9 @@ pub enum RecordError {
     #[error("sample {0} is not a number, or its time is not after that of the sample before")]
     Sample(usize),
     /// The output never moves.
-    #[error("the output is {0} from the first sample to the last: there is nothing to learn from it")]
+    #[error(
+        "the output is {0} from the first sample to the last: there is nothing to learn from it"
+    )]
     Still(f64),
     /// The input never moves.
     #[error(
@@ -62,7 +64,9 @@ impl Record {
         let (output, unit) = measurement
             .outputs
             .first()
-            .map_or((Vec::new(), "1".to_owned()), |c| (c.values.clone(), c.unit.clone()));
+            .map_or((Vec::new(), "1".to_owned()), |c| {
+                (c.values.clone(), c.unit.clone())
+            });
         Self {
             name: measurement.name.clone(),
             time: measurement.time.clone(),
@@ -84,7 +88,10 @@ impl Record {
         }
         let wrong = (0..lengths[0]).find(|&i| {
             let late = i == 0 || self.time[i] > self.time[i - 1];
-            !(late && self.time[i].is_finite() && self.input[i].is_finite() && self.output[i].is_finite())
+            !(late
+                && self.time[i].is_finite()
+                && self.input[i].is_finite()
+                && self.output[i].is_finite())
         });
         if let Some(i) = wrong {
             return Err(RecordError::Sample(i));

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use super::cycle::{self, Cycle};
-use super::fit::{Compared, Fit, FittedModel, Value};
+use super::fit::{Compared, FittedModel, Value};
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
 use super::record::{Record, RecordError};
@@ -118,7 +118,10 @@ pub(super) fn number(value: f64) -> String {
 pub(super) fn full_scale(level: f64) -> f64 {
     // Readings may pass a full scale by round-off.
     let level = level.abs();
-    FULL_SCALES.into_iter().find(|s| level <= s * 1.001).unwrap_or(level)
+    FULL_SCALES
+        .into_iter()
+        .find(|s| level <= s * 1.001)
+        .unwrap_or(level)
 }
 
 /// What the record tells.
@@ -129,7 +132,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     record.validate()?;
     let cycle = cycle::find(record);
     let scale = cycle.as_ref().map_or(PART * record.span(), |c| c.period);
-    let compared = Compared::new(record, scale);
+    let mut compared = Compared::new(record, scale);
     let fits = compared.fit_all();
     let point = cycle
         .as_ref()
@@ -145,12 +148,16 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         sampling: record.sampling(),
     };
     let (_, high) = range(&record.input);
-    let gains = gains::all(&basis, settings.form, settings.full_scale.unwrap_or_else(|| full_scale(high)));
+    let gains = gains::all(
+        &basis,
+        settings.form,
+        settings.full_scale.unwrap_or_else(|| full_scale(high)),
+    );
     let troubles = trouble::find(&Evidence {
         record,
         cycle: cycle.as_ref(),
         fit: fits.first(),
-        noise: noise(&compared, fits.first()),
+        noise: fits.first().map_or(0.0, |f| f.noise),
         target: settings.target,
     });
     let conventional = cycle.as_ref().map(|c| Conventional {
@@ -192,18 +199,13 @@ fn summary(cycle: &Cycle) -> Summary {
     }
 }
 
-/// Noise of the output: what changes from sample to sample of what the best model leaves.
-fn noise(compared: &Compared, fit: Option<&Fit>) -> f64 {
-    let Some(fit) = fit else { return 0.0 };
-    let left: Vec<f64> = compared.output.iter().zip(&fit.simulated).map(|(y, s)| y - s).collect();
-    let squares: f64 = left.windows(2).map(|r| (r[1] - r[0]).powi(2)).sum();
-    (0.5 * squares / (left.len().saturating_sub(1)).max(1) as f64).sqrt()
-}
-
 impl MeasuredTuning {
     /// The first fatal cause, in words.
     pub fn stall(&self) -> Option<&str> {
-        self.troubles.iter().find(|t| t.fatal).map(|t| t.text.as_str())
+        self.troubles
+            .iter()
+            .find(|t| t.fatal)
+            .map(|t| t.text.as_str())
     }
 
     /// Unit of the gain from input to output.
@@ -240,7 +242,11 @@ impl MeasuredTuning {
     /// Ultimate gain and period, or why they do not follow and what would help.
     fn of_ultimate(&self) -> Option<String> {
         let formula = self.conventional.map_or_else(String::new, |c| {
-            format!(" (4d/(pi a) would say {} at {} s)", number(c.gain), number(c.period))
+            format!(
+                " (4d/(pi a) would say {} at {} s)",
+                number(c.gain),
+                number(c.period)
+            )
         });
         if let Some(u) = &self.ultimate {
             return Some(format!(
@@ -276,7 +282,10 @@ impl MeasuredTuning {
     fn of_model(&self, model: &FittedModel) -> String {
         let seconds = |v: &Value| with_error(v.value, v.std_error, "s");
         let times: Vec<String> = model.time_constants.iter().map(seconds).collect();
-        let zero = model.zero.as_ref().map_or_else(String::new, |z| format!(", zero {}", seconds(z)));
+        let zero = model
+            .zero
+            .as_ref()
+            .map_or_else(String::new, |z| format!(", zero {}", seconds(z)));
         let lags = match times.len() {
             0 => String::new(),
             1 => format!(", time constant {}", times[0]),

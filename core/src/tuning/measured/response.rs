@@ -25,7 +25,9 @@ impl Held {
     /// Calls `step(duration, value)` for the stretches with a constant input after the dead time, and `sample(i)` at
     /// each of the `samples`, in order; before the first sample the input had its first value.
     fn walk(&self, samples: &[f64], dead_time: f64, mut step: impl FnMut(Part)) {
-        let Some(&start) = samples.first() else { return };
+        let Some(&start) = samples.first() else {
+            return;
+        };
         let mut now = start;
         // The change that acts next.
         let mut next = self.times.partition_point(|t| t + dead_time <= start);
@@ -48,8 +50,14 @@ impl Held {
         }
     }
 
-    /// Response of the lag `e^(-Ls)/(T s + 1)` at the `samples`, from rest at the first value.
-    pub fn lag(&self, samples: &[f64], time_constant: f64, dead_time: f64) -> Vec<f64> {
+    /// Response of the lag `e^(-Ls)/(T s + 1)` at the `samples`, from rest at the first value, less `origin`.
+    pub fn lag(
+        &self,
+        samples: &[f64],
+        time_constant: f64,
+        origin: f64,
+        dead_time: f64,
+    ) -> Vec<f64> {
         let mut x = self.values.first().copied().unwrap_or(0.0);
         let mut out = vec![0.0; samples.len()];
         // Samples are mostly as far apart: the last exponential is kept.
@@ -61,7 +69,7 @@ impl Held {
                 }
                 x = u + (x - u) * kept.1;
             }
-            Part::Sample(i) => out[i] = x,
+            Part::Sample(i) => out[i] = x - origin,
         });
         out
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::cycle::{Cycle, threshold};
+use super::cycle::{Cycle, rounds, threshold};
 use super::fit::Fit;
 use super::record::Record;
 use crate::order::{median, range};
@@ -33,6 +33,9 @@ const STUCK: f64 = 0.5;
 const SAME_LENGTH: f64 = 1.01;
 const SCATTERS: f64 = 3.0;
 
+/// Share of the input's variance that a straight line in the output explains where a controller is at work.
+const FOLLOWS: f64 = 0.95;
+
 /// Whole periods from which the window is long enough.
 const WHOLE_PERIODS: usize = 2;
 
@@ -58,6 +61,8 @@ pub enum TroubleKind {
     WindowTooShort,
     /// The input is not a relay's.
     NoRelay,
+    /// A controller makes the input of the output.
+    Controller,
 }
 
 /// One cause.
@@ -113,7 +118,11 @@ fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
     let [up, down] = cycle.half_periods;
     let share = up / cycle.period;
     let ratio = up.min(down) / up.max(down);
-    let (slower, faster) = if up > down { ("rise", "fall") } else { ("fall", "rise") };
+    let (slower, faster) = if up > down {
+        ("rise", "fall")
+    } else {
+        ("fall", "rise")
+    };
     let weak = (share > WEAK).then(|| {
         let percent = n(100.0 * share);
         trouble(
@@ -141,7 +150,14 @@ fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
             ),
         )
     });
-    vec![weak, asymmetric, noise(e, cycle), quantised(e, cycle), drift(e, cycle), minimum_time(e, cycle)]
+    vec![
+        weak,
+        asymmetric,
+        noise(e, cycle),
+        quantised(e, cycle),
+        drift(e, cycle),
+        minimum_time(e, cycle),
+    ]
 }
 
 fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
@@ -281,23 +297,66 @@ fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
     let record = e.record;
     let Some(middle) = threshold(record) else {
         let (low, high) = range(&record.input);
-        return vec![Some(trouble(
-            TroubleKind::NoRelay,
-            false,
-            high - low,
-            format!(
-                "The input takes values all over {} to {}: this is no relay test, so there is no cycle to read; the \
+        return vec![
+            controller(record),
+            Some(trouble(
+                TroubleKind::NoRelay,
+                false,
+                high - low,
+                format!(
+                    "The input takes values all over {} to {}: this is no relay test, so there is no cycle to read; the \
                  models are fitted to the record as it is.",
-                n(low),
-                n(high)
-            ),
-        ))];
+                    n(low),
+                    n(high)
+                ),
+            )),
+        ];
     };
     let last = record.input.len() - 1;
     let up = record.input[last] > middle;
-    let since = (0..=last).rev().find(|&i| (record.input[i] > middle) != up).map_or(0, |i| i + 1);
+    let since = (0..=last)
+        .rev()
+        .find(|&i| (record.input[i] > middle) != up)
+        .map_or(0, |i| i + 1);
     let stuck = (record.time[last] - record.time[since]) / record.span();
-    vec![(stuck > STUCK).then(|| stalled(e, since, up)).flatten().or_else(|| too_short(e))]
+    vec![
+        (stuck > STUCK)
+            .then(|| stalled(e, since, up))
+            .flatten()
+            .or_else(|| too_short(e)),
+    ]
+}
+
+/// Whether the input is a straight line in the output: then the record shows the controller at least as much as the plant.
+fn controller(record: &Record) -> Option<Trouble> {
+    let count = record.input.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / count;
+    let (u0, y0) = (mean(&record.input), mean(&record.output));
+    let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+        record
+            .input
+            .iter()
+            .zip(&record.output)
+            .map(|(u, y)| of(u - u0, y - y0))
+            .sum()
+    };
+    let (uu, uy, yy) = (sum(&|u, _| u * u), sum(&|u, y| u * y), sum(&|_, y| y * y));
+    let explained = uy * uy / (uu * yy);
+    (explained > FOLLOWS).then(|| {
+        let slope = uy / yy;
+        trouble(
+            TroubleKind::Controller,
+            true,
+            slope,
+            format!(
+                "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the \
+                 models below are as much of it as of the plant. Record a step or a relay test with the controller off.",
+                n(slope),
+                n(u0 - slope * y0),
+                n(100.0 * explained)
+            ),
+        )
+    })
 }
 
 /// The input no longer changes: where does the output go?
@@ -312,7 +371,9 @@ fn stalled(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
     let (low, high) = range(&record.output[since..]);
     let reached = if up { high } else { low };
     let word = if up { "up" } else { "down" };
-    let wanted = e.target.map_or_else(String::new, |t| format!(", {} short of the target of {}", n((t - ends).abs()), n(t)));
+    let wanted = e.target.map_or_else(String::new, |t| {
+        format!(", {} short of the target of {}", n((t - ends).abs()), n(t))
+    });
     if let Some(target) = e.target
         && ((up && ends > target) || (!up && ends < target))
     {
@@ -335,16 +396,21 @@ fn stalled(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
 
 fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
     let middle = threshold(e.record)?;
-    let switched = e.record.input.windows(2).filter(|u| (u[0] > middle) != (u[1] > middle)).count();
-    let whole = switched.saturating_sub(1) / 2;
-    (whole <= WHOLE_PERIODS).then(|| {
+    let switched = e
+        .record
+        .input
+        .windows(2)
+        .filter(|u| (u[0] > middle) != (u[1] > middle))
+        .count();
+    let rounds = rounds(e.record).len().saturating_sub(1).min(switched / 2);
+    (rounds <= WHOLE_PERIODS).then(|| {
         trouble(
             TroubleKind::WindowTooShort,
             true,
-            switched as f64,
+            rounds as f64,
             format!(
-                "The input switches {switched} times in {} s: at least {WHOLE_PERIODS} whole periods after the first are \
-                 needed, so let the test run on to 6 switches or more.",
+                "In {} s the input switches {switched} times and the output goes round {rounds} times: the window is too \
+                 short, at least {WHOLE_PERIODS} whole periods after the first are needed.",
                 n(e.record.span()),
             ),
         )

@@ -58,25 +58,38 @@ fn through(
 }
 
 /// The ultimate point, and which models were asked; `omega` is a frequency in the plant's range.
-pub(super) fn ultimate(fits: &[Fit], point: Option<&Point>, omega: f64) -> Option<MeasuredUltimate> {
+pub(super) fn ultimate(
+    fits: &[Fit],
+    point: Option<&Point>,
+    omega: f64,
+) -> Option<MeasuredUltimate> {
     let all = candidate(fits, point, omega)?;
     let told = all.std_error_gain <= TOLD * all.gain && all.std_error_period <= TOLD * all.period;
     told.then_some(all)
 }
 
 /// The same, however uncertain.
-pub(super) fn candidate(fits: &[Fit], point: Option<&Point>, omega: f64) -> Option<MeasuredUltimate> {
+pub(super) fn candidate(
+    fits: &[Fit],
+    point: Option<&Point>,
+    omega: f64,
+) -> Option<MeasuredUltimate> {
     let best = fits.first()?;
     let sign = best.model.gain.value.signum();
-    let not_ruled_out = |f: &&Fit| f.score - best.score <= SCORE || f.model.left <= MISSED * best.model.left;
-    let of = |fit: &Fit, change: (f64, f64)| through(&|w| fit.response(w), sign, point, omega, change);
+    let not_ruled_out =
+        |f: &&Fit| f.score - best.score <= SCORE || f.model.left <= MISSED * best.model.left;
+    let of =
+        |fit: &Fit, change: (f64, f64)| through(&|w| fit.response(w), sign, point, omega, change);
     let (gain, period) = of(best, (1.0, 0.0))?;
     let mut variances = [0.0; 2];
     let mut widest = [0.0_f64; 2];
     for other in fits.iter().skip(1).filter(not_ruled_out) {
         // A model without such a point disagrees as much as can be.
         let (g, p) = of(other, (1.0, 0.0))?;
-        widest = [widest[0].max((g - gain).abs()), widest[1].max((p - period).abs())];
+        widest = [
+            widest[0].max((g - gain).abs()),
+            widest[1].max((p - period).abs()),
+        ];
     }
     for (variance, wide) in variances.iter_mut().zip(widest) {
         *variance += wide * wide;
@@ -88,9 +101,14 @@ pub(super) fn candidate(fits: &[Fit], point: Option<&Point>, omega: f64) -> Opti
         add(0, turned.0 - gain);
         add(1, turned.1 - period);
     }
+    // What the best model misses beyond noise it may get wrong on the way from the cycle to -180 degrees as well.
+    let way = point.map_or(1.0, |p| ((p.phase_deg + 180.0).abs() / 90.0).min(1.0));
+    add(0, gain * best.misfit() * way);
+    add(1, period * best.misfit() * way);
     for (index, middle) in [gain, period].into_iter().enumerate() {
         let number = |response: &dyn Fn(f64) -> Complex<f64>| {
-            through(response, sign, point, omega, (1.0, 0.0)).map(|r| if index == 0 { r.0 } else { r.1 })
+            through(response, sign, point, omega, (1.0, 0.0))
+                .map(|r| if index == 0 { r.0 } else { r.1 })
         };
         // Where the Jacobian tells nothing, the error is as large as the value.
         add(index, best.error_of(number).unwrap_or(middle));
