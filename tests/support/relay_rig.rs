@@ -101,6 +101,8 @@ pub struct Test {
     pub step: f64,
     /// Drift of the load, in input levels over the whole test.
     pub drift: f64,
+    /// Least time up and down, in periods without it.
+    pub least_time: f64,
     /// Samples of a period, and periods.
     pub samples: f64,
     pub periods: f64,
@@ -116,6 +118,7 @@ pub fn tests() -> Vec<Test> {
         noise,
         step,
         drift,
+        least_time: 0.0,
         samples: 100.0,
         periods: 10.0,
     };
@@ -180,6 +183,8 @@ struct Relay {
     noise: f64,
     step: f64,
     drift: f64,
+    /// Samples.
+    least_time: usize,
 }
 
 /// Runs the plant about its set point (output 0) for `count` samples every `sampling` s.
@@ -193,6 +198,7 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
     let late = (plant.dead_time / h).round() as usize;
     let mut inputs: Vec<f64> = Vec::new();
     let mut up = true;
+    let mut switched = 0;
     let (mut time, mut input, mut output) = (Vec::new(), Vec::new(), Vec::new());
     // Counts of a sensor do not lie on the set point.
     let offset = relay.step * random.uniform();
@@ -215,10 +221,10 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
         if relay.step > 0.0 {
             seen = ((seen - offset) / relay.step).round() * relay.step + offset;
         }
-        if up && seen > relay.hysteresis {
-            up = false;
-        } else if !up && seen < -relay.hysteresis {
-            up = true;
+        let may = i - switched >= relay.least_time;
+        if may && ((up && seen > relay.hysteresis) || (!up && seen < -relay.hysteresis)) {
+            up = !up;
+            switched = i;
         }
         let u = relay.levels[usize::from(up)];
         time.push(i as f64 * sampling);
@@ -259,6 +265,7 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
         noise: 0.0,
         step: 0.0,
         drift: 0.0,
+        least_time: 0,
     };
     // Tried once without noise, to know what amplitude there will be.
     let trial = run(
@@ -277,6 +284,7 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
     relay.noise = test.noise * amplitude;
     relay.step = test.step * amplitude;
     relay.drift = test.drift;
+    relay.least_time = (test.least_time * samples) as usize;
     run(
         plant,
         &relay,

@@ -46,7 +46,7 @@ pub struct Cycle {
 /// Two levels of a relay's input: the middle, or none where it takes values between.
 pub(super) fn threshold(record: &Record) -> Option<f64> {
     let (low, high) = range(&record.input);
-    if !(high > low) {
+    if high <= low {
         return None;
     }
     let between = BETWEEN.map(|share| low + share * (high - low));
@@ -165,7 +165,7 @@ pub(super) fn find(record: &Record) -> Option<Cycle> {
         }
     }
     let time_down = to - from - time_up;
-    if !(time_up > 0.0 && time_down > 0.0) {
+    if time_up <= 0.0 || time_down <= 0.0 {
         return None;
     }
     let up = time_up / periods as f64;

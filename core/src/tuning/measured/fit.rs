@@ -5,15 +5,13 @@
 //! by Gauss and Newton with the damping of Levenberg and Marquardt. Standard errors come from the Jacobian of all
 //! parameters; residuals that hang together count as fewer samples.
 
-use std::f64::consts::PI;
-
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
-use serde::{Deserialize, Serialize};
 
+use super::least_squares::{coherence, damped, inverse_gram, least_squares};
 use super::record::Record;
 use super::response::Held;
-use crate::plant::TransferFunction;
+use super::structure::{FittedModel, LARGEST_SHARE, Structure, Value, physical, response, times};
 use crate::simplex::minimise;
 use crate::sums::dot;
 
@@ -27,9 +25,6 @@ const GRID_DEAD_TIMES: [f64; 7] = [0.003, 0.03, 0.08, 0.15, 0.25, 0.35, 0.46];
 /// Second time constants of the grid, as shares of the first.
 const GRID_SHARES: [f64; 3] = [0.1, 0.4, 0.8];
 
-/// Largest share of a time constant of the one before: equal ones would make their partial fractions meaningless.
-const LARGEST_SHARE: f64 = 0.95;
-
 /// Evaluations of a simplex, and steps of the last improvement.
 const SIMPLEX_EVALUATIONS: usize = 160;
 const IMPROVEMENTS: usize = 40;
@@ -39,9 +34,6 @@ const LONGEST: f64 = 20.0;
 
 /// A time constant of less than this share of the largest has no effect.
 const SHORTEST: f64 = 1e-6;
-
-/// Share of the diagonal that is added, so that columns that say the same do no harm.
-const RIDGE: f64 = 1e-12;
 
 /// What a model misses of the motion below this share is round-off.
 const ROUND_OFF: f64 = 1e-9;
@@ -54,139 +46,6 @@ const VAGUE: f64 = 0.5;
 
 /// Step of a numerical derivative.
 const DERIVATIVE: f64 = 1e-5;
-
-/// What a model consists of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Structure {
-    /// `K e^(-Ls)/(T s + 1)`.
-    Fopdt,
-    /// `K e^(-Ls)/((T1 s + 1)(T2 s + 1))`.
-    Sopdt,
-    /// `K (Tz s + 1) e^(-Ls)/((T1 s + 1)(T2 s + 1))`; an inverse response where `Tz` is below 0.
-    SopdtZero,
-    /// `K e^(-Ls)/((T1 s + 1)(T2 s + 1)(T3 s + 1))` with `T1 : T2 = T2 : T3`, for plants of high order.
-    Topdt,
-    /// `K e^(-Ls)/s`.
-    Integrator,
-    /// `K e^(-Ls)/(s (T s + 1))`.
-    IntegratorLag,
-}
-
-impl Structure {
-    /// All, simplest first.
-    pub const ALL: [Self; 6] = [
-        Self::Fopdt,
-        Self::Integrator,
-        Self::Sopdt,
-        Self::IntegratorLag,
-        Self::Topdt,
-        Self::SopdtZero,
-    ];
-
-    /// Its name in files.
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Fopdt => "fopdt",
-            Self::Sopdt => "sopdt",
-            Self::SopdtZero => "sopdt_zero",
-            Self::Topdt => "topdt",
-            Self::Integrator => "integrator",
-            Self::IntegratorLag => "integrator_lag",
-        }
-    }
-
-    /// Its name in sentences.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Fopdt => "a lag with dead time",
-            Self::Sopdt => "two lags with dead time",
-            Self::SopdtZero => "two lags with a zero and dead time",
-            Self::Topdt => "three lags with dead time",
-            Self::Integrator => "an integrator with dead time",
-            Self::IntegratorLag => "an integrator with a lag and dead time",
-        }
-    }
-
-    /// Whether its output goes on rising with a constant input.
-    pub const fn integrates(self) -> bool {
-        matches!(self, Self::Integrator | Self::IntegratorLag)
-    }
-
-    /// Time constants.
-    const fn lags(self) -> usize {
-        match self {
-            Self::Integrator => 0,
-            Self::Fopdt | Self::IntegratorLag => 1,
-            Self::Sopdt | Self::SopdtZero => 2,
-            Self::Topdt => 3,
-        }
-    }
-
-    /// Numbers that are searched for the time constants.
-    const fn searched(self) -> usize {
-        match self {
-            Self::Integrator => 0,
-            Self::Fopdt | Self::IntegratorLag => 1,
-            Self::Sopdt | Self::SopdtZero | Self::Topdt => 2,
-        }
-    }
-
-    /// Coefficients of the forced response.
-    const fn forced(self) -> usize {
-        match self {
-            Self::SopdtZero => 2,
-            _ => 1,
-        }
-    }
-}
-
-/// A value with its standard error, both in the value's unit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Value {
-    /// The value.
-    pub value: f64,
-    /// Its standard error.
-    pub std_error: f64,
-}
-
-/// A model with the standard errors of its parameters.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FittedModel {
-    /// What it consists of.
-    pub structure: Structure,
-    /// Static gain, unit of the output over that of the input; of an integrator its velocity gain, per s.
-    pub gain: Value,
-    /// Time constants, s, the largest first.
-    pub time_constants: Vec<Value>,
-    /// Time constant of the zero, s.
-    pub zero: Option<Value>,
-    /// Dead time, s.
-    pub dead_time: Value,
-    /// Output without input (the surroundings); of an integrator the input that holds it still.
-    pub operating_point: f64,
-    /// Root mean square of what it misses over that of the motion, on the record itself.
-    pub left: f64,
-    /// Whether it is the one that the data prefer.
-    pub preferred: bool,
-}
-
-impl FittedModel {
-    /// As a plant.
-    pub fn plant(&self) -> TransferFunction {
-        let mut denominator = if self.structure.integrates() {
-            vec![1.0, 0.0]
-        } else {
-            vec![1.0]
-        };
-        for t in &self.time_constants {
-            denominator = crate::tuning::scan::product(&denominator, &[t.value, 1.0]);
-        }
-        let k = self.gain.value;
-        let numerator = self.zero.map_or_else(|| vec![k], |z| vec![k * z.value, k]);
-        TransferFunction::new(&numerator, &denominator, self.dead_time.value)
-    }
-}
 
 /// A model with all that its fit knows.
 #[derive(Clone, Debug)]
@@ -236,58 +95,6 @@ impl Fit {
         let variance = (&self.covariance * &gradient).dot(&gradient);
         (variance.is_finite() && variance >= 0.0).then(|| variance.sqrt())
     }
-}
-
-/// Time constants, largest first and 0 where there are none, and dead time, s, of what is searched.
-fn times(structure: Structure, p: &[f64], scale: f64) -> ([f64; 3], f64) {
-    let searched = structure.searched();
-    let first = if searched > 0 {
-        scale * libm::exp(p[0])
-    } else {
-        0.0
-    };
-    let share = if searched > 1 {
-        LARGEST_SHARE / (1.0 + libm::exp(-p[1]))
-    } else {
-        0.0
-    };
-    let third = if structure.lags() > 2 {
-        first * share * share
-    } else {
-        0.0
-    };
-    ([first, first * share, third], scale * p[searched].abs())
-}
-
-/// Static or velocity gain, three time constants, zero and dead time.
-fn physical(structure: Structure, theta: &[f64], scale: f64) -> [f64; 6] {
-    let forced = structure.forced();
-    let ([t1, t2, t3], dead_time) = times(structure, &theta[forced..], scale);
-    if structure == Structure::SopdtZero {
-        let gain = theta[0] + theta[1];
-        return [
-            gain,
-            t1,
-            t2,
-            t3,
-            (theta[0] * t2 + theta[1] * t1) / gain,
-            dead_time,
-        ];
-    }
-    [theta[0], t1, t2, t3, 0.0, dead_time]
-}
-
-fn response(structure: Structure, theta: &[f64], scale: f64, omega: f64) -> Complex<f64> {
-    let [gain, t1, t2, t3, zero, dead_time] = physical(structure, theta, scale);
-    let s = Complex::new(0.0, omega);
-    let pole = if structure.integrates() {
-        s
-    } else {
-        Complex::new(1.0, 0.0)
-    };
-    let lags = (s * t1 + 1.0) * (s * t2 + 1.0) * (s * t3 + 1.0);
-    let (sin, cos) = libm::sincos(-omega * dead_time);
-    (s * zero + 1.0) * gain * Complex::new(cos, sin) / (pole * lags)
 }
 
 /// Weights of the single lags in the response of several in a row: `Ti^(n-1)/prod_(j != i) (Ti - Tj)`.
@@ -460,24 +267,6 @@ impl Compared {
             .min_by(|a, b| a.1.total_cmp(&b.1))?;
         let p = self.improve(structure, best.0);
         self.finish(structure, &p)
-    }
-
-    fn grid(&self, structure: Structure) -> Vec<Vec<f64>> {
-        let mut grid = Vec::new();
-        for l in GRID_DEAD_TIMES {
-            match structure.searched() {
-                0 => grid.push(vec![l]),
-                1 => grid.extend(GRID_TIMES.iter().map(|t| vec![libm::log(*t), l])),
-                _ => {
-                    for t in GRID_TIMES {
-                        grid.extend(GRID_SHARES.iter().map(|share| {
-                            vec![libm::log(t), -libm::log(LARGEST_SHARE / share - 1.0), l]
-                        }));
-                    }
-                }
-            }
-        }
-        grid
     }
 
     fn descend(&self, structure: Structure, p: Vec<f64>) -> (Vec<f64>, f64) {
@@ -676,13 +465,32 @@ impl Compared {
                 + fit.parameters as f64 * libm::log(independent.max(2.0));
         }
         // A model whose gain is not known at all is of no use, however well it follows.
-        let vague = |f: &Fit| !(f.model.gain.std_error < VAGUE * f.model.gain.value.abs());
+        let vague = |f: &Fit| f.model.gain.std_error >= VAGUE * f.model.gain.value.abs();
         fits.sort_by(|a, b| vague(a).cmp(&vague(b)).then(a.score.total_cmp(&b.score)));
         if let Some(first) = fits.first_mut() {
             first.model.preferred = true;
         }
         fits
     }
+}
+
+/// Starts of the search.
+fn grid(structure: Structure) -> Vec<Vec<f64>> {
+    let mut grid = Vec::new();
+    for l in GRID_DEAD_TIMES {
+        match structure.searched() {
+            0 => grid.push(vec![l]),
+            1 => grid.extend(GRID_TIMES.iter().map(|t| vec![libm::log(*t), l])),
+            _ => {
+                for t in GRID_TIMES {
+                    grid.extend(GRID_SHARES.iter().map(|share| {
+                        vec![libm::log(t), -libm::log(LARGEST_SHARE / share - 1.0), l]
+                    }));
+                }
+            }
+        }
+    }
+    grid
 }
 
 fn descended<const N: usize>((p, cost): ([f64; N], f64)) -> (Vec<f64>, f64) {
@@ -705,121 +513,4 @@ fn errors(structure: Structure, theta: &[f64], scale: f64, covariance: &DMatrix<
         let g = DVector::from_iterator(theta.len(), gradients.iter().map(|g| g[k]));
         (covariance * &g).dot(&g).max(0.0).sqrt()
     })
-}
-
-/// Scaled normal equations: the columns' lengths, and their Gram matrix with unit diagonal.
-fn gram(columns: &[Vec<f64>]) -> (Vec<f64>, DMatrix<f64>) {
-    let lengths: Vec<f64> = columns
-        .iter()
-        .map(|c| dot(c, c).sqrt().max(f64::MIN_POSITIVE))
-        .collect();
-    let m = columns.len();
-    let mut gram = DMatrix::zeros(m, m);
-    for i in 0..m {
-        for j in 0..=i {
-            let g = dot(&columns[i], &columns[j]) / (lengths[i] * lengths[j]);
-            gram[(i, j)] = g;
-            gram[(j, i)] = g;
-        }
-        gram[(i, i)] += RIDGE;
-    }
-    (lengths, gram)
-}
-
-pub(super) fn least_squares(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
-    let (lengths, gram) = gram(columns);
-    let cholesky = gram.cholesky()?;
-    let solved = |right: &[f64]| {
-        let rhs = DVector::from_iterator(
-            columns.len(),
-            columns.iter().zip(&lengths).map(|(c, l)| dot(c, right) / l),
-        );
-        let x = cholesky.solve(&rhs);
-        x.iter()
-            .zip(&lengths)
-            .map(|(x, l)| x / l)
-            .collect::<Vec<f64>>()
-    };
-    let mut x = solved(right);
-    // Once more on what is left, which takes off most of the round-off of the normal equations.
-    let mut rest = right.to_vec();
-    for (c, column) in x.iter().zip(columns) {
-        rest.iter_mut().zip(column).for_each(|(r, v)| *r -= c * v);
-    }
-    x.iter_mut().zip(solved(&rest)).for_each(|(a, b)| *a += b);
-    x.iter().all(|v| v.is_finite()).then_some(x)
-}
-
-pub(super) fn inverse_gram(columns: &[Vec<f64>]) -> Option<DMatrix<f64>> {
-    let (lengths, gram) = gram(columns);
-    let inverse = gram.cholesky()?.inverse();
-    let m = columns.len();
-    Some(DMatrix::from_fn(m, m, |i, j| {
-        inverse[(i, j)] / (lengths[i] * lengths[j])
-    }))
-}
-
-fn damped(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
-    let (lengths, mut gram) = gram(jacobian);
-    for i in 0..jacobian.len() {
-        gram[(i, i)] += damping;
-    }
-    let rhs = DVector::from_iterator(
-        jacobian.len(),
-        jacobian
-            .iter()
-            .zip(&lengths)
-            .map(|(c, l)| dot(c, residuals) / l),
-    );
-    let x = gram.cholesky()?.solve(&rhs);
-    Some(x.iter().zip(&lengths).map(|(x, l)| x / l).collect())
-}
-
-/// By how much residuals that hang together count less: `1 + 2 sum of autocorrelations`, summed until the first that is
-/// not above 0; at least 1.
-pub(super) fn coherence(residuals: &[f64]) -> f64 {
-    let n = residuals.len();
-    let own = dot(residuals, residuals);
-    if !(own > 0.0) {
-        return 1.0;
-    }
-    let mut sum = 1.0;
-    for lag in 1..n / 4 {
-        let r = dot(&residuals[lag..], &residuals[..n - lag]) / own;
-        if r <= 0.0 {
-            break;
-        }
-        sum += 2.0 * r;
-    }
-    sum
-}
-
-/// Frequency at which the phase passes -180 degrees first, searched from `low` to `high` rad/s; the gain is positive.
-pub(super) fn crossover(
-    response: &dyn Fn(f64) -> Complex<f64>,
-    low: f64,
-    high: f64,
-) -> Option<f64> {
-    let points = crate::tuning::scan::grid(low, high);
-    let turned = |w: f64| {
-        let r = response(w);
-        libm::atan2(r.im, r.re)
-    };
-    let mut phase = turned(low);
-    let mut before = (low, phase);
-    for &w in points.iter().skip(1) {
-        let raw = turned(w);
-        phase = raw + 2.0 * PI * ((phase - raw) / (2.0 * PI)).round();
-        if before.1 > -PI && phase <= -PI {
-            let f = |x: f64| response(x).im;
-            return Some(crate::tuning::scan::bisect(
-                before.0,
-                w,
-                f(before.0) > 0.0,
-                f,
-            ));
-        }
-        before = (w, phase);
-    }
-    None
 }

@@ -11,7 +11,8 @@ use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::cycle::Cycle;
-use super::fit::{Compared, Fit, coherence, inverse_gram, least_squares};
+use super::fit::{Compared, Fit};
+use super::least_squares::{coherence, inverse_gram, least_squares};
 use super::record::Record;
 use super::response::Held;
 use crate::sums::dot;

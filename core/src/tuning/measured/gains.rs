@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::fit::{FittedModel, Structure};
 use super::fourier::Point;
+use super::structure::{FittedModel, Structure};
 use super::ultimate::MeasuredUltimate;
 use crate::plant::TransferFunction;
 use crate::tuning::{
@@ -31,7 +31,7 @@ pub enum Form {
     Klipper,
     /// `P`, `I` and `D` of Marlin's `M301`: parallel, the output from 0 to 255.
     Marlin,
-    /// `kp`, `ki` and `kd` of ESPHome: parallel, the output from 0 (or -1) to 1.
+    /// `kp`, `ki` and `kd` of `ESPHome`: parallel, the output from 0 (or -1) to 1.
     Esphome,
 }
 

@@ -10,6 +10,8 @@
 //! | `record` | time, input and output, checked |
 //! | `cycle` | switches, half periods, amplitude, hysteresis |
 //! | `response` | exact responses of lags and integrators to a held input with dead time |
+//! | `structure` | lags, integrators, a zero: what a model consists of |
+//! | `least_squares` | linear least squares, residuals that hang together |
 //! | `fit` | models by least squares on the whole record |
 //! | `fourier` | the point of the Nyquist curve |
 //! | `ultimate` | ultimate gain and period, where they follow |
@@ -25,20 +27,22 @@ mod cycle;
 mod fit;
 mod fourier;
 mod gains;
+mod least_squares;
 pub mod log;
 mod readings;
 mod record;
 mod report;
 mod response;
+mod structure;
 mod trouble;
 mod ultimate;
 
 pub use cycle::Cycle;
-pub use fit::{FittedModel, Structure, Value};
 pub use fourier::Point;
 pub use gains::{Form, TunedGains, steps};
 pub use readings::{AmplitudeConvention, Readings, tune_readings};
 pub use record::{Record, RecordError};
 pub use report::{Conventional, MeasuredTuning, Settings, Summary, tune_record};
+pub use structure::{FittedModel, Structure, Value};
 pub use trouble::{Trouble, TroubleKind};
 pub use ultimate::MeasuredUltimate;

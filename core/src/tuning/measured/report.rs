@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use super::cycle::{self, Cycle};
-use super::fit::{Compared, FittedModel, Value};
+use super::fit::Compared;
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
 use super::record::{Record, RecordError};
+use super::structure::{FittedModel, Value};
 use super::trouble::{self, Evidence, Trouble};
 use super::ultimate::{self, MeasuredUltimate};
 use crate::order::range;
@@ -106,9 +107,10 @@ pub(super) fn number(value: f64) -> String {
     if (-4..7).contains(&power) {
         let decimals = usize::try_from(3 - power).unwrap_or(0);
         let text = format!("{value:.decimals$}");
-        return match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
+        return if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
         };
     }
     format!("{value:.3e}")

@@ -36,6 +36,9 @@ const SCATTERS: f64 = 3.0;
 /// Share of the input's variance that a straight line in the output explains where a controller is at work.
 const FOLLOWS: f64 = 0.95;
 
+/// Values of an input that a controller makes; a relay, or steps by hand, have fewer.
+const LEVELS: usize = 12;
+
 /// Whole periods from which the window is long enough.
 const WHOLE_PERIODS: usize = 2;
 
@@ -295,22 +298,22 @@ fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
 
 fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
     let record = e.record;
+    if let Some(controller) = controller(record) {
+        return vec![Some(controller)];
+    }
     let Some(middle) = threshold(record) else {
         let (low, high) = range(&record.input);
-        return vec![
-            controller(record),
-            Some(trouble(
-                TroubleKind::NoRelay,
-                false,
-                high - low,
-                format!(
-                    "The input takes values all over {} to {}: this is no relay test, so there is no cycle to read; the \
+        return vec![Some(trouble(
+            TroubleKind::NoRelay,
+            false,
+            high - low,
+            format!(
+                "The input takes values all over {} to {}: this is no relay test, so there is no cycle to read; the \
                  models are fitted to the record as it is.",
-                    n(low),
-                    n(high)
-                ),
-            )),
-        ];
+                n(low),
+                n(high)
+            ),
+        ))];
     };
     let last = record.input.len() - 1;
     let up = record.input[last] > middle;
@@ -342,7 +345,11 @@ fn controller(record: &Record) -> Option<Trouble> {
     };
     let (uu, uy, yy) = (sum(&|u, _| u * u), sum(&|u, y| u * y), sum(&|_, y| y * y));
     let explained = uy * uy / (uu * yy);
-    (explained > FOLLOWS).then(|| {
+    // A relay has two levels: that these follow the output says nothing.
+    let mut levels = record.input.clone();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    (levels.len() > LEVELS && explained > FOLLOWS).then(|| {
         let slope = uy / yy;
         trouble(
             TroubleKind::Controller,

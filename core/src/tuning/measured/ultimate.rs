@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-use super::fit::{Fit, crossover};
+use super::fit::Fit;
 use super::fourier::Point;
 
 /// Largest relative standard error of gain and period with which they are told.
@@ -119,4 +119,30 @@ pub(super) fn candidate(
         std_error_gain: variances[0].sqrt(),
         std_error_period: variances[1].sqrt(),
     })
+}
+
+/// Frequency at which the phase passes -180 degrees first, searched from `low` to `high` rad/s; the gain is positive.
+fn crossover(response: &dyn Fn(f64) -> Complex<f64>, low: f64, high: f64) -> Option<f64> {
+    let points = crate::tuning::scan::grid(low, high);
+    let turned = |w: f64| {
+        let r = response(w);
+        libm::atan2(r.im, r.re)
+    };
+    let mut phase = turned(low);
+    let mut before = (low, phase);
+    for &w in points.iter().skip(1) {
+        let raw = turned(w);
+        phase = raw + 2.0 * PI * ((phase - raw) / (2.0 * PI)).round();
+        if before.1 > -PI && phase <= -PI {
+            let f = |x: f64| response(x).im;
+            return Some(crate::tuning::scan::bisect(
+                before.0,
+                w,
+                f(before.0) > 0.0,
+                f,
+            ));
+        }
+        before = (w, phase);
+    }
+    None
 }

@@ -1,4 +1,4 @@
-//! ESPHome: the log of `climate.pid.autotune`, at any log level.
+//! `ESPHome`: the log of `climate.pid.autotune`, at any log level.
 
 use std::f64::consts::PI;
 

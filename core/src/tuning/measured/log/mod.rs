@@ -24,7 +24,7 @@ pub enum Source {
     Klipper,
     /// Marlin's `M303`.
     Marlin,
-    /// ESPHome's `climate.pid.autotune`.
+    /// `ESPHome`'s `climate.pid.autotune`.
     Esphome,
     /// Mycodo's PID autotune, and thermostats of Home Assistant with the same tuner.
     Mycodo,
