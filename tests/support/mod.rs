@@ -23,5 +23,6 @@ pub mod relay_rig;
 pub mod rig;
 pub mod score;
 pub mod servo;
+pub mod shared;
 pub mod sparse;
 pub mod value;

@@ -2,8 +2,8 @@
 
 use super::cycles::Cycles;
 use super::drift::Drift;
-use super::estimate::Side;
 use super::free_motor::FreeMotor;
+use super::gap::Side;
 use super::record::{DIFFERENCE, Record};
 use crate::order::{drop_marked, median};
 
