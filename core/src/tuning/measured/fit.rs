@@ -251,8 +251,7 @@ impl Compared {
 
     /// Fits one structure.
     pub fn fit(&self, structure: Structure) -> Option<Fit> {
-        let mut starts: Vec<(Vec<f64>, f64)> = self
-            .grid(structure)
+        let mut starts: Vec<(Vec<f64>, f64)> = grid(structure)
             .into_iter()
             .map(|p| {
                 let cost = self.cost(structure, &p);

@@ -29,6 +29,7 @@ mod fourier;
 mod gains;
 mod least_squares;
 pub mod log;
+mod number;
 mod readings;
 mod record;
 mod report;

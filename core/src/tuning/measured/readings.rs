@@ -11,8 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use super::fourier::Point;
 use super::gains::{self, Basis};
+use super::number::{full_scale, number};
 use super::record::RecordError;
-use super::report::{Conventional, MeasuredTuning, Settings, Summary, number};
+use super::report::{Conventional, MeasuredTuning, Settings, Summary};
 use super::trouble::{Trouble, TroubleKind};
 use super::ultimate::MeasuredUltimate;
 
@@ -198,10 +199,10 @@ pub fn tune_readings(
         point: Some(&point),
         sampling: 0.0,
     };
-    let full_scale = settings
+    let scale = settings
         .full_scale
-        .unwrap_or_else(|| super::report::full_scale(readings.levels[1]));
-    let gains = gains::all(&basis, settings.form, full_scale);
+        .unwrap_or_else(|| full_scale(readings.levels[1]));
+    let gains = gains::all(&basis, settings.form, scale);
     let mut troubles = Vec::new();
     if !readings.symmetric()
         && let Some([up, down]) = readings.half_periods

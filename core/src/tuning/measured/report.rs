@@ -8,6 +8,7 @@ use super::cycle::{self, Cycle};
 use super::fit::Compared;
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
+use super::number::{full_scale, number};
 use super::record::{Record, RecordError};
 use super::structure::{FittedModel, Value};
 use super::trouble::{self, Evidence, Trouble};
@@ -23,9 +24,6 @@ const MUCH_HYSTERESIS: f64 = 0.2;
 
 /// A static gain is told with at most this relative error.
 const GAIN_TOLD: f64 = 0.2;
-
-/// Full scales of inputs in use: a switch, per cent, eight bits.
-const FULL_SCALES: [f64; 3] = [1.0, 100.0, 255.0];
 
 /// What the user wants besides.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -96,34 +94,6 @@ pub struct MeasuredTuning {
     pub output_unit: String,
     /// What it means, in sentences.
     pub text: String,
-}
-
-/// Four significant digits, without needless zeros.
-pub(super) fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let power = libm::log10(value.abs()).floor() as i32;
-    if (-4..7).contains(&power) {
-        let decimals = usize::try_from(3 - power).unwrap_or(0);
-        let text = format!("{value:.decimals$}");
-        return if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        };
-    }
-    format!("{value:.3e}")
-}
-
-/// The least usual full scale that holds the upper level; the level itself where none does.
-pub(super) fn full_scale(level: f64) -> f64 {
-    // Readings may pass a full scale by round-off.
-    let level = level.abs();
-    FULL_SCALES
-        .into_iter()
-        .find(|s| level <= s * 1.001)
-        .unwrap_or(level)
 }
 
 /// What the record tells.

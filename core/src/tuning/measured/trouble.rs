@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cycle::{Cycle, rounds, threshold};
 use super::fit::Fit;
+use super::number::number;
 use super::record::Record;
 use crate::order::{median, range};
 
@@ -16,7 +17,7 @@ const WEAK: f64 = 0.85;
 /// Fewest steps of the sensor in the amplitude.
 const FEWEST_STEPS: f64 = 5.0;
 
-/// Drift of the mean over one period, as a share of the amplitude, that is worth a word.
+/// Drift of a mean from the first to the last period, as a share of the swing, that is worth a word.
 const DRIFT: f64 = 0.1;
 
 /// Noise, as a share of the hysteresis, from which the relay switches on noise.
@@ -114,7 +115,7 @@ fn trouble(kind: TroubleKind, fatal: bool, number: f64, text: String) -> Trouble
 
 /// Four significant digits.
 fn n(value: f64) -> String {
-    super::report::number(value)
+    number(value)
 }
 
 fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
@@ -217,42 +218,53 @@ fn quantised(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     })
 }
 
-/// Mean output of each period.
-fn means(record: &Record, cycle: &Cycle) -> Vec<f64> {
+/// Mean of a column in each period.
+fn means(record: &Record, column: &[f64], cycle: &Cycle) -> Vec<f64> {
     (0..cycle.periods)
         .filter_map(|k| {
             let from = cycle.window[0] + k as f64 * cycle.period;
-            let inside: Vec<f64> = record
-                .time
-                .iter()
-                .zip(&record.output)
+            let rows = record.time.iter().zip(column);
+            let inside: Vec<f64> = rows
                 .filter(|(t, _)| (from..from + cycle.period).contains(*t))
-                .map(|(_, y)| *y)
+                .map(|(_, v)| *v)
                 .collect();
             (!inside.is_empty()).then(|| inside.iter().sum::<f64>() / inside.len() as f64)
         })
         .collect()
 }
 
+/// A relay keeps the output where it is: what drifts is the input that this takes, and seldom the output too.
 fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
-    let means = means(e.record, cycle);
-    let (first, last) = (means.first()?, means.last()?);
-    if means.len() < 3 {
-        return None;
-    }
-    let each = (last - first) / (means.len() - 1) as f64;
-    let share = each.abs() / cycle.amplitude;
-    (share > DRIFT).then(|| {
+    let ends = |column: &[f64]| {
+        let means = means(e.record, column, cycle);
+        (means.len() >= 3)
+            .then(|| means.first().copied().zip(means.last().copied()))
+            .flatten()
+    };
+    let (u, y) = (ends(&e.record.input)?, ends(&e.record.output)?);
+    let swing = (cycle.levels[1] - cycle.levels[0]).abs();
+    let shares = [(u.1 - u.0) / swing, (y.1 - y.0) / (2.0 * cycle.amplitude)];
+    let (word, unit, ends, share) = if shares[0].abs() >= shares[1].abs() {
+        ("mean input", &e.record.input_unit, u, shares[0])
+    } else {
+        ("mean output", &e.record.output_unit, y, shares[1])
+    };
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    (share.abs() > DRIFT).then(|| {
         trouble(
             TroubleKind::Drift,
             false,
-            each,
+            share,
             format!(
-                "The middle of the cycle drifts by {} {} each period, {} % of the amplitude: the test began before the \
-                 plant was settled, or something else acts on it.",
-                n(each),
-                e.record.output_unit,
-                n(100.0 * share),
+                "From the first to the last period the {word} drifts from {} to {}{unit}, {} % of its swing: the plant was not \
+                 settled when the test began, or something else acts on it.",
+                n(ends.0),
+                n(ends.1),
+                n(100.0 * share.abs()),
             ),
         )
     })

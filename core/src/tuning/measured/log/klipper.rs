@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::lines::{after, leading};
-use super::{Held, LogError, Source};
+use super::source::{Held, LogError, Source};
 use crate::order::median;
 use crate::tuning::measured::gains::Form;
 use crate::tuning::measured::readings::{AmplitudeConvention, Readings};

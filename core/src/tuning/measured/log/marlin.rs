@@ -1,7 +1,7 @@
 //! Marlin: the serial log of `M303`.
 
 use super::lines::{after, time, unwrapped};
-use super::{Held, LogError, Source};
+use super::source::{Held, LogError, Source};
 use crate::tuning::measured::gains::Form;
 use crate::tuning::measured::readings::{AmplitudeConvention, Readings};
 use crate::tuning::measured::record::Record;
