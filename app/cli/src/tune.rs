@@ -17,10 +17,13 @@ use crate::output::Format;
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
 
+/// What may be given.
+const FILE_HELP: &str = "Record of a relay test as CSV or MATLAB file, or the log of an auto-tuner: Klipper, Marlin, \
+                         ESPHome, Mycodo, Home Assistant";
+
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Record of a relay test as CSV or MATLAB file, or the log of a Klipper, Marlin, ESPHome, Mycodo or Home Assistant auto-tuner
-    #[arg(value_name = "FILE.csv|LOG", required_unless_present_all = ["amplitude", "period", "levels"])]
+    #[arg(value_name = "FILE.csv|LOG", help = FILE_HELP, required_unless_present_all = ["amplitude", "period", "levels"])]
     file: Option<PathBuf>,
     /// Amplitude of the output, in its unit: half of peak to peak, unless --peak-to-peak
     #[arg(long, value_name = "A", conflicts_with = "file", requires_all = ["period", "levels"])]
@@ -125,7 +128,7 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         return Err(format!("--full-scale is {scale}: it must be above 0"));
     }
     let result = match (&arguments.file, of_numbers(arguments)) {
-        (Some(file), _) => of_file(file, arguments, settings)?,
+        (Some(file), _) => of_file(file, arguments, &settings)?,
         (None, Some(readings)) => tune_readings(&readings, &settings).map_err(|e| e.to_string())?,
         (None, None) => {
             return Err("expected a file, or --amplitude, --period and --levels".to_owned());
@@ -155,7 +158,7 @@ fn of_numbers(arguments: &Arguments) -> Option<Readings> {
 fn of_file(
     file: &Path,
     arguments: &Arguments,
-    settings: Settings,
+    settings: &Settings,
 ) -> Result<MeasuredTuning, String> {
     let shown = file.display();
     if file.is_dir() {
@@ -194,7 +197,7 @@ fn of_file(
     let measurement = measurement.map_err(|e| e.to_string())?;
     let settings = Settings {
         notes: measurement.warnings.clone(),
-        ..settings
+        ..settings.clone()
     };
     tune_record(&Record::of(&measurement), &settings).map_err(|e| format!("{shown}: {e}"))
 }
