@@ -226,7 +226,7 @@ fn each_cause_is_recognised_with_its_number() {
         TroubleKind::NoiseLargerThanHysteresis,
     );
     has(
-        &tried(|t| (t.drift, t.periods) = (0.8, 8.0)),
+        &tried(|t| (t.drift, t.periods) = (0.3, 12.0)),
         TroubleKind::Drift,
     );
     let number = has(&tried(|t| t.periods = 1.6), TroubleKind::WindowTooShort);
