@@ -68,35 +68,39 @@ fn switches(record: &Record, threshold: f64) -> Vec<(f64, bool)> {
         .collect()
 }
 
-/// Leaves out pulses that are much shorter than the others, shortest first.
+/// The half period in which half of the time passes: between long ones there may be many short pulses.
+fn usual(switches: &[(f64, bool)]) -> f64 {
+    let mut lengths: Vec<f64> = switches.windows(2).map(|s| s[1].0 - s[0].0).collect();
+    lengths.sort_by(f64::total_cmp);
+    let half = 0.5 * lengths.iter().sum::<f64>();
+    let mut sum = 0.0;
+    let middle = lengths.iter().find(|l| {
+        sum += **l;
+        sum >= half
+    });
+    middle.copied().unwrap_or(0.0)
+}
+
+/// Leaves out pulses that are much shorter than the usual half period, which grows as they go.
 fn without_flicker(mut switches: Vec<(f64, bool)>) -> (Vec<(f64, bool)>, usize) {
-    let mut left_out = 0;
-    while switches.len() > 4 {
-        let lengths: Vec<f64> = switches.windows(2).map(|s| s[1].0 - s[0].0).collect();
-        // Long half periods decide: between them there may be many short pulses.
-        let total: f64 = lengths.iter().sum();
-        let mut sorted = lengths.clone();
-        sorted.sort_by(f64::total_cmp);
-        let mut sum = 0.0;
-        let usual = sorted
-            .iter()
-            .find(|l| {
-                sum += **l;
-                sum >= 0.5 * total
-            })
-            .copied()
-            .unwrap_or(0.0);
-        let Some(shortest) = (0..lengths.len()).min_by(|a, b| lengths[*a].total_cmp(&lengths[*b]))
-        else {
-            break;
-        };
-        if lengths[shortest] >= FLICKER * usual {
-            break;
+    let all = switches.len();
+    loop {
+        let shortest = FLICKER * usual(&switches);
+        let mut kept: Vec<(f64, bool)> = Vec::with_capacity(switches.len());
+        for s in &switches {
+            // Both ends of a pulse go, so that what was before it goes on.
+            if kept.last().is_some_and(|k| s.0 - k.0 < shortest) {
+                kept.pop();
+            } else {
+                kept.push(*s);
+            }
         }
-        switches.drain(shortest..shortest + 2);
-        left_out += 1;
+        if kept.len() == switches.len() || kept.len() < 4 {
+            let left_out = (all - switches.len()) / 2;
+            return (switches, left_out);
+        }
+        switches = kept;
     }
-    (switches, left_out)
 }
 
 /// Times at which the output passes its middle upwards, after it was well below: whole rounds, whatever the input does
@@ -205,10 +209,7 @@ fn settled(marks: &[f64]) -> &[f64] {
 fn amplitude(record: &Record, marks: &[f64]) -> f64 {
     let mut sum = 0.0;
     for m in marks.windows(2) {
-        let mut values: Vec<f64> = (0..record.time.len())
-            .filter(|&i| (m[0]..=m[1]).contains(&record.time[i]))
-            .map(|i| record.output[i])
-            .collect();
+        let mut values = record.output[record.between(m[0], m[1])].to_vec();
         let (low, high) = (quantile(&mut values, 0.01), quantile(&mut values, 0.99));
         sum += 0.5 * (high - low);
     }

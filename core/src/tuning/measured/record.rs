@@ -116,6 +116,12 @@ impl Record {
         }
     }
 
+    /// Samples from a time up to another.
+    pub(super) fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let at = |t: f64| self.time.partition_point(|s| *s < t);
+        at(from)..at(to).max(at(from))
+    }
+
     /// Median time between samples, s.
     pub(super) fn sampling(&self) -> f64 {
         let mut steps: Vec<f64> = self.time.windows(2).map(|t| t[1] - t[0]).collect();

@@ -223,11 +223,7 @@ fn means(record: &Record, column: &[f64], cycle: &Cycle) -> Vec<f64> {
     (0..cycle.periods)
         .filter_map(|k| {
             let from = cycle.window[0] + k as f64 * cycle.period;
-            let rows = record.time.iter().zip(column);
-            let inside: Vec<f64> = rows
-                .filter(|(t, _)| (from..from + cycle.period).contains(*t))
-                .map(|(_, v)| *v)
-                .collect();
+            let inside = &column[record.between(from, from + cycle.period)];
             (!inside.is_empty()).then(|| inside.iter().sum::<f64>() / inside.len() as f64)
         })
         .collect()
