@@ -1,5 +1,6 @@
 //! `hysteron tune` as a person and a script meet it.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
@@ -38,7 +39,7 @@ fn record() -> String {
             up = true;
         }
         let u = if up { 100.0 } else { 0.0 };
-        text += &format!("{:.1},{u},{output:.6}\n", 0.1 * i as f64);
+        writeln!(text, "{:.1},{u},{output:.6}", 0.1 * i as f64).unwrap();
         // The lag goes on exactly from sample to sample.
         let end = 35.0 + 0.3 * late[i % 50];
         output = end + (output - end) * (-0.1_f64 / 20.0).exp();
