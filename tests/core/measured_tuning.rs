@@ -1,5 +1,10 @@
 //! From a measured relay test to the plant's point, ultimate gain, models and gains.
 
+#![allow(
+    clippy::disallowed_macros,
+    reason = "the core does not print; its bench does"
+)]
+
 use hysteron_core::tuning::measured::{
     AmplitudeConvention, Form, MeasuredTuning, Readings, Record, Settings, Structure, TroubleKind,
     steps, tune_readings, tune_record,
@@ -169,7 +174,7 @@ fn the_asymmetric_example_is_identified_to_a_millionth() {
             (a / b - 1.0).abs() < 1e-6,
             "{a} is not {b}: {}",
             result.text
-        )
+        );
     };
     near(cycle.period, on + off);
     near(cycle.half_periods[0], on);
