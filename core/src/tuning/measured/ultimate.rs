@@ -135,7 +135,7 @@ fn crossover(response: &dyn Fn(f64) -> Complex<f64>, low: f64, high: f64) -> Opt
         phase = raw + 2.0 * PI * ((phase - raw) / (2.0 * PI)).round();
         if before.1 > -PI && phase <= -PI {
             let f = |x: f64| response(x).im;
-            return Some(crate::tuning::scan::bisect(
+            return Some(crate::tuning::scan::crossing(
                 before.0,
                 w,
                 f(before.0) > 0.0,
