@@ -14,7 +14,7 @@
 //! | [`plant`] | what does it act on? |
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
-//! | [`tuning`] | how do I tune a controller from it? |
+//! | [`tuning`] | how do I tune a controller from it, or from a measured test? |
 //! | [`explore`] | everything about one loop at once |
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |

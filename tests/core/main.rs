@@ -21,6 +21,8 @@ mod import;
 mod import_mat;
 mod limit_cycles;
 mod lost_rows;
+
+mod measured_tuning;
 mod missing_force;
 mod mystery;
 mod next_experiment;
@@ -39,5 +41,6 @@ mod simulation;
 mod slow_and_short;
 mod surroundings;
 mod tuning;
+mod tuning_logs;
 mod tuning_loop;
 mod user_model;

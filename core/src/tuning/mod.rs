@@ -12,6 +12,7 @@
 //! | `controller` | the PID controller and its forms |
 //! | `closed_loop`, `margins` | the loop with the controller |
 //! | `report` | all of it at once |
+//! | [`measured`] | from a measured test instead of a simulated one |
 //!
 //! **Amplitude** is half of peak to peak everywhere.
 //!
@@ -30,6 +31,7 @@ mod error;
 mod experiment;
 mod linear;
 mod margins;
+pub mod measured;
 mod moving_point;
 mod phase_margin;
 mod report;
