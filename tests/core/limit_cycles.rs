@@ -274,8 +274,6 @@ fn a_dead_time_far_beyond_the_plant_is_counted_right_or_refused() {
         };
         let error = period - 2.0 * dead_time - rest;
         assert!(error.abs() < 1e-14 * period + 1e-9, "{dead_time}: {error}");
-        let said = format!("period {period:.4} s");
-        assert!(found.text.contains(&said), "{}", found.text);
     }
     for dead_time in [1.1e9, 1e12] {
         let refused = predict(&lag(dead_time), &relay).unwrap_err().to_string();

@@ -24,6 +24,7 @@ mod missing_force;
 mod mystery;
 mod next_experiment;
 mod other_machines;
+mod outcomes;
 mod own_effect;
 mod parameter_maps;
 mod plants;

@@ -94,6 +94,48 @@ pub fn exact_cycles(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) -> 
     found
 }
 
+/// Half periods of which [`continuum`] looks at the balance, as multiples of the guess.
+const TRIED: [f64; 7] = [0.2, 0.4, 0.7, 1.0, 1.6, 2.5, 5.0];
+
+/// Balance, as share of the swing, that is none but round-off.
+const BALANCED: f64 = 1e-10;
+
+/// Cycles of a loop in which every half period balances, so that each start has its own cycle: examples at half, once
+/// and twice the half period `guess` in s. `None` for any other loop.
+///
+/// `1/s^2` under an ideal relay is one: period `4 sqrt(2a/k)` at any amplitude `a`.
+pub(super) fn continuum(
+    plant: &StateSpace,
+    relay: &Relay,
+    lag: f64,
+    guess: f64,
+) -> Option<Vec<Cycle>> {
+    let search = Search::new(plant, relay, lag, guess)?;
+    if !relay.is_symmetric() {
+        return None;
+    }
+    let balances = |h: f64| {
+        let Some(x) = search.start(relay, h) else {
+            return false;
+        };
+        let middle = search.after(relay, [h, h], &x, 0.5 * h);
+        let swing = middle.map_or(0.0, |m| search.flow.output(&m, 0).abs());
+        search.balance(relay, h).abs() <= BALANCED * swing
+    };
+    if !TRIED.iter().all(|share| balances(share * guess)) {
+        return None;
+    }
+    let example = |share: f64| {
+        let h = share * guess;
+        let cycle = search.finish(relay, [h, h], search.start(relay, h)?)?.cycle;
+        Some(Cycle {
+            stable: None,
+            ..cycle
+        })
+    };
+    Some([0.5, 1.0, 2.0].into_iter().filter_map(example).collect())
+}
+
 /// The exact limit cycle into which a simulation from rest settles, if it does; `guess` in s is the half period by
 /// which the length of the run goes.
 pub(super) fn settled_cycle(

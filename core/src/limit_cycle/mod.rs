@@ -1,11 +1,16 @@
 //! Does it oscillate, how, and is it stable?
 
 mod describing_function;
+mod divergence;
 mod exact;
 mod existence;
 mod harmonics;
+mod noisy;
+mod outcome;
+mod pattern;
 mod prediction;
 mod stability;
+mod words;
 
 use std::f64::consts::PI;
 
@@ -17,10 +22,11 @@ use crate::relay::Relay;
 pub use describing_function::{
     Intersection, MAX_INTERSECTIONS, TRUSTED_DISTORTION, describing_function,
 };
-use exact::settled_cycle;
 pub use exact::{ExactCycle, exact_cycle, exact_cycles, exact_symmetric};
+use exact::{continuum, settled_cycle};
 pub use existence::{Existence, existence};
 pub use harmonics::{Harmonic, harmonics};
+pub use outcome::{LongRun, LongRunResult, Outcome};
 pub use prediction::{PredictError, Prediction, Trust, dominant, predict};
 
 /// A limit cycle.
