@@ -1,7 +1,5 @@
 //! Everything about one relay loop, for drawing: prediction beside simulation.
 
-use std::f64::consts::PI;
-
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +10,7 @@ use crate::limit_cycle::{
 use crate::plant::{PlantError, StateSpace, TransferFunction, presets};
 use crate::relay::{Relay, RelayError};
 use crate::simulate::{Noise, Options, SimulateError, Trajectory, run, simulate};
+use crate::tuning::{RelayGain, relay_gain};
 
 /// A relay loop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,6 +78,8 @@ pub struct ExploreData {
     pub simulated: Option<Cycle>,
     /// Switches of the relay per exact period in the later half of the simulation; 2 without noise.
     pub switches_per_period: Option<f64>,
+    /// Ultimate gain by the relay, equation (9), with what the cycle shows of the plant and the true limits.
+    pub ultimate: Option<RelayGain>,
     /// First harmonics of the output in the exact cycle.
     pub harmonics: Vec<Harmonic>,
     /// How far the describing function can be trusted here.
@@ -140,11 +141,6 @@ impl ExploreData {
     }
 }
 
-/// Ultimate gain by equation (4), `K_u = 4k/(pi a)`; `amplitude` is half of peak to peak.
-pub fn ultimate_gain(relay: &Relay, amplitude: f64) -> f64 {
-    4.0 * relay.gain / (PI * amplitude)
-}
-
 /// Computes everything; the same input gives the same data.
 pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     input.validate()?;
@@ -201,6 +197,10 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
         simulated,
         switches_per_period,
         harmonics: exact.map_or_else(Vec::new, |c| harmonics(plant, relay, c, HARMONICS)),
+        ultimate: exact
+            .map(|c| c.cycle)
+            .or(simulated)
+            .map(|c| relay_gain(plant, relay, &c)),
         text: long_run.text,
         outcome: long_run.outcome,
         stability: stability(exact, &prediction),

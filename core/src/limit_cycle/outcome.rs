@@ -386,9 +386,9 @@ impl<'a> View<'a> {
             None => Some(true),
         };
         let mut text = words::limit_cycle(&last, stable, self.prediction);
-        let from = seen.run.rises.last().map_or(0.0, |t| t - last[0]);
-        let slides = seen.run.sliding.iter().filter(|s| s[0] >= from);
-        let slid: f64 = slides.map(|s| s[1] - s[0]).sum();
+        let to = seen.run.rises.last().copied().unwrap_or(0.0);
+        let overlap = |s: &[f64; 2]| (s[1].min(to) - s[0].max(to - last[0])).max(0.0);
+        let slid: f64 = seen.run.sliding.iter().map(overlap).sum();
         if slid > 0.0 {
             text += &words::slides_within(slid);
         }
