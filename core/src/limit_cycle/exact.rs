@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Cycle, illinois, stability};
+use super::{Cycle, MAX_INTERSECTIONS, illinois, stability};
 use crate::plant::StateSpace;
 use crate::relay::Relay;
 use crate::simulate::{Change, Engine, Flow, State};
@@ -32,6 +32,9 @@ const SCAN_RATIO: f64 = 1.02;
 
 /// Scanned half periods reach from the guess divided to the guess multiplied by this.
 const SCAN_REACH: f64 = 5.0;
+
+/// Step of the scan as share of the distance of neighbouring cycles of a long delay.
+const FAMILY_STEP: f64 = 0.25;
 
 /// Share of the period to which the replay must meet the switches that were assumed.
 const REPLAY: f64 = 1e-7;
@@ -79,6 +82,7 @@ pub fn exact_cycles(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) -> 
         .roots(&even)
         .into_iter()
         .filter_map(|h| search.finish(&even, [h, h], search.start(&even, h)?))
+        .filter(|c| c.cycle.stable != Some(false) || c.durations[0] >= search.least_of_family())
         .collect();
     if relay.is_symmetric() {
         return symmetric;
@@ -235,16 +239,33 @@ impl Search {
 
     /// Half periods that balance, near ones of the guess in both directions.
     fn roots(&self, relay: &Relay) -> Vec<f64> {
-        let count = (libm::log(SCAN_REACH) / libm::log(SCAN_RATIO)).ceil() as i32;
-        let at = |i: i32| self.guess * SCAN_RATIO.powi(i);
         let mut found = Vec::new();
-        let mut low = (at(-count), self.balance(relay, at(-count)));
-        for i in 1 - count..=count {
-            let high = (at(i), self.balance(relay, at(i)));
+        let mut low = {
+            let h = self.guess / SCAN_REACH;
+            (h, self.balance(relay, h))
+        };
+        while low.0 < self.guess * SCAN_REACH {
+            let h = low.0 + self.scan_step(low.0);
+            let high = (h, self.balance(relay, h));
             found.extend(self.root(relay, low, high));
             low = high;
         }
         found
+    }
+
+    /// Step of the scan from the half period `h`: a delay has cycles about `h^2/delay` apart, of which none may be missed.
+    fn scan_step(&self, h: f64) -> f64 {
+        let step = (SCAN_RATIO - 1.0) * h;
+        if h < self.least_of_family() {
+            step
+        } else {
+            step.min(FAMILY_STEP * h * h / self.lag)
+        }
+    }
+
+    /// Half period of the shortest unstable cycle of a dead time that is reported, s: there are infinitely many.
+    fn least_of_family(&self) -> f64 {
+        self.lag / (2 * MAX_INTERSECTIONS) as f64
     }
 
     /// The root between two half periods, if the balance changes sign there without a jump.
