@@ -29,6 +29,7 @@ mod free_motor;
 mod likelihood;
 mod map;
 mod record;
+mod switches;
 mod verdict;
 
 pub use change_points::{Segment, pelt};
