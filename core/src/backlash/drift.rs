@@ -12,10 +12,6 @@ const PENALTY: f64 = 3.0;
 const DEVIATION: f64 = 4.0;
 const LEAST_SHARE: f64 = 5e-3;
 
-/// Times the spread of the calmest phase, or the noise, that a changing friction moves the mean of cycles: it shows in
-/// that spread as well, so that a record without noise shows lighter contacts.
-const RESTFUL: f64 = 20.0;
-
 /// Deviation of a single engaged cycle, in standard deviations of the free ones.
 const SINGLE: f64 = 6.0;
 
@@ -59,6 +55,7 @@ impl Drift {
         let mut base = vec![0.0; change.len()];
         let mut engaged = vec![false; change.len()];
         let penalty = PENALTY * libm::log(cycles.count() as f64);
+        let least = LEAST_SHARE * 2.0 * cycles.speed;
         let phases = cycles.phases();
         let spreads: Vec<(f64, bool)> = phases
             .iter()
@@ -76,7 +73,6 @@ impl Drift {
             .filter(|((from, to), _)| to - from >= 2 * FREE)
             .map(|(_, (spread, _))| *spread)
             .fold(f64::INFINITY, f64::min);
-        let least = (LEAST_SHARE * 2.0 * cycles.speed).min(RESTFUL * calmest.max(noise));
         for ((from, to), (own, alternates)) in phases.into_iter().zip(spreads) {
             let part = &change[from..to];
             // The free motor is as restless in every phase; what is more is the load.

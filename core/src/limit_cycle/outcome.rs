@@ -200,17 +200,21 @@ impl LongRun<'_> {
         if run.cut == Some(Cut::TooFast) {
             return Ok(LongRunResult::of(None, words::too_fast()));
         }
+        let late = run
+            .rises
+            .iter()
+            .chain(&run.falls)
+            .filter(|t| **t > 0.5 * end)
+            .count();
+        if late == 0 {
+            return Ok(LongRunResult::of(
+                Some(Outcome::Rest),
+                words::rest_in_noise(),
+            ));
+        }
         let Some(found) = noisy_cycle(&run) else {
-            let result = if run.rises.is_empty() && run.falls.len() <= 1 {
-                LongRunResult::of(Some(Outcome::Rest), words::rest_in_noise())
-            } else {
-                let switches = run.rises.len() + run.falls.len();
-                LongRunResult::of(
-                    Some(Outcome::Chatter),
-                    words::chatter_at_rest(switches, end),
-                )
-            };
-            return Ok(result);
+            let text = words::chatter_at_rest(late, 0.5 * end);
+            return Ok(LongRunResult::of(Some(Outcome::Chatter), text));
         };
         Ok(noisy_result(&found, self.relay, noise, prediction))
     }
