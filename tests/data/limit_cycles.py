@@ -2,7 +2,7 @@
 
 Needs mpmath (pip install mpmath). Half period h and state x0 at the rise solve
     (I + e^{Ah}) x0 = k [G(h-L) - e^{A(h-L)} G(L)],  C x0 = eps,  G(t) = int_0^t e^{As} ds B,   0 <= L < h,
-by the secant method from the describing function's frequency. The crossing must be the first one: y stays beyond the
+from the first change of sign about the describing function's frequency on. The crossing must be the first one: y stays beyond the
 threshold on a grid of 400 points. The amplitude is the largest |y| of the half period, at a zero of its derivative or where
 the input jumps. Run it in this folder: python limit_cycles.py > limit_cycles_more.csv
 """
@@ -10,6 +10,9 @@ the input jumps. Run it in this folder: python limit_cycles.py > limit_cycles_mo
 import mpmath as mp
 
 mp.mp.dps = 40
+
+# Ratio of the half periods between which a change of sign is looked for.
+STEP = mp.mpf("1.03")
 
 
 def polynomial(*roots):
@@ -76,7 +79,12 @@ def output(a, b, c, k, lag, x0, t):
 def solve(num, den, lag, k, eps, guess):
     a, b, c = companion(num, den)
     lag, k, eps = mp.mpf(lag), mp.mpf(k), mp.mpf(eps)
-    h = mp.findroot(lambda h: balance(a, b, c, k, lag, eps, h), (guess, guess * mp.mpf("1.001")), solver="secant")
+    at = lambda h: balance(a, b, c, k, lag, eps, h)
+    low = max(guess / 3, lag * mp.mpf("1.01"))
+    while (at(low) < 0) == (at(low * STEP) < 0):
+        low *= STEP
+        assert low < 30 * guess, "no root"
+    h = mp.findroot(at, (low, low * STEP), solver="anderson")
     x0 = start(a, b, k, lag, h)
     grid = [h * i / 400 for i in range(401)]
     values = [output(a, b, c, k, lag, x0, t) for t in grid]
