@@ -7,29 +7,31 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::util::undoer::Undoer;
 
-pub use give::GivenFile;
-
 use crate::address;
-use crate::bar::{self, Bar};
-use crate::document::{Document, not_enclosed};
+use crate::bar::Bar;
+use crate::command::Command;
+use crate::desk::Desk;
+use crate::document::Document;
 #[cfg(target_arch = "wasm32")]
 use crate::edges;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::files;
+use crate::files::{Door, MEASUREMENT};
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
-use crate::pages::{Command, Desk, Hint, View, chart_menu, chart_zoom, registry, typed};
+use crate::page::{Hint, Page, View};
+use crate::pages::registry;
+use crate::save::GivenFile;
 use crate::shortcuts;
 use crate::theme::{self, Look};
-use crate::{lessons, link, purpose};
+use crate::widgets::{chart_menu, chart_zoom, typed};
+use crate::{lessons, link, purpose_line};
 
 /// Width of a window below which it is taken for a phone's, points.
 const PHONE: f32 = 500.0;
 
 /// The app: the pages and what they share.
 pub struct HysteronApp {
-    pages: Vec<Box<dyn View>>,
+    pages: Vec<Page>,
     front: usize,
     desk: Desk,
     /// What is set when nothing was touched.
@@ -116,23 +118,24 @@ impl HysteronApp {
 
     /// Ids of all pages, in the order of their tabs.
     pub fn page_ids(&self) -> Vec<&'static str> {
-        self.pages.iter().map(|p| p.id()).collect()
+        self.pages.iter().map(|p| p.id).collect()
     }
 
     /// Opens the bytes of a file on the page in front, or on the first one that takes files.
     pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        if let Some(page) = self.go_to_files() {
-            page.open(ctx, name, bytes);
+        if let Some((page, door)) = self.go_to_files() {
+            door.entrance.open(name, bytes);
+            page.update(ctx);
         }
     }
 
     /// Opens a measurement from where it is in the file system, as the user does by a dialog.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open_path(&mut self, ctx: &egui::Context, path: &std::path::Path) {
-        let file: egui::DroppedFileHandle = std::sync::Arc::new(files::Given::new(path));
+        let file: egui::DroppedFileHandle = std::sync::Arc::new(crate::files::Given::new(path));
         self.go("compare");
-        if let Some(page) = self.pages.get_mut(self.front) {
-            page.open_dropped(ctx, &file);
+        if let Some((_, door)) = self.go_to_files() {
+            door.entrance.open_dropped(ctx, &file);
         }
     }
 
@@ -196,10 +199,10 @@ impl HysteronApp {
         self.take_dropped_files(ui.ctx());
         self.take_pasted_link(ui.ctx());
         for page in &mut self.pages {
-            page.update(ui.ctx());
-            for recent in page.opened() {
+            page.view.update(ui.ctx());
+            for recent in page.door.iter().flat_map(Door::opened) {
                 // A link that was refused for want of this file.
-                let wanted = not_enclosed(&recent.name);
+                let wanted = link::not_enclosed(&recent.name);
                 self.notice.take_if(|notice| notice.text() == wanted);
                 self.desk.recent.note(recent);
             }
@@ -211,19 +214,21 @@ impl HysteronApp {
         egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present));
         let desk = &mut self.desk;
         desk.study.ui(ui, &mut desk.targets, &mut desk.commands);
-        let hint = self.pages.get(self.front).and_then(|p| p.hint());
+        let hint = self.pages.get(self.front).and_then(|p| p.view.offer().hint);
         if let Some(hint) = hint
             && desk.study.lesson.is_none()
         {
             egui::Panel::bottom("hint").show(ui, |ui| hint_ui(ui, hint, desk));
         }
         let foot = ui.available_rect_before_wrap().bottom();
-        purpose::ui(ui, &present.page, desk);
+        purpose_line::ui(ui, &present.page, desk);
         if let Some(page) = self.pages.get_mut(self.front) {
-            desk.zooms.follow(page.id(), &present.settings[page.id()]);
-            chart_zoom::begin(ui.ctx(), desk.zooms.of(page.id()));
-            page.ui(ui, desk);
-            desk.zooms.note(page.id(), chart_zoom::end(ui.ctx()));
+            desk.zooms.follow(page.id, &present.settings[page.id]);
+            chart_zoom::begin(ui.ctx(), desk.zooms.of(page.id));
+            page.view.ui(ui, desk);
+            // Nothing moves on it.
+            desk.play = false;
+            desk.zooms.note(page.id, chart_zoom::end(ui.ctx()));
         }
         self.give_plots(ui);
         self.plots = chart_menu::axes(ui.ctx());
@@ -262,8 +267,8 @@ impl HysteronApp {
         match command {
             Command::Undo | Command::Redo => self.travel(ctx, command == Command::Undo),
             Command::AskForFile => {
-                if let Some(page) = self.go_to_files() {
-                    page.open_dialog(ctx);
+                if let Some((_, door)) = self.go_to_files() {
+                    door.entrance.open_dialog(ctx, MEASUREMENT);
                 }
             }
             Command::Reset => {
@@ -289,9 +294,8 @@ impl HysteronApp {
                 self.desk.study.check(&state);
             }
             Command::Play => {
-                if let Some(page) = self.pages.get_mut(self.front) {
-                    page.toggle_play(ctx);
-                }
+                self.desk.play = true;
+                ctx.request_repaint();
             }
             Command::SaveSvg => self.save_svg(ui, &self.document().page, ctx.content_rect()),
             Command::SavePng => self.save_png(ctx, &self.document().page, ctx.content_rect()),
@@ -351,11 +355,11 @@ impl HysteronApp {
             Command::SetPurpose(purpose) => self.desk.purpose = purpose,
             Command::Set(page, field, value) => {
                 self.desk.purpose.take_if(|purpose| purpose.page == page);
-                let page = self.pages.iter_mut().find(|p| p.id() == page);
+                let page = self.pages.iter_mut().find(|p| p.id == page);
                 let refused = page.and_then(|page| {
-                    let mut settings = page.settings();
+                    let mut settings = page.view.settings();
                     settings[field] = value;
-                    page.set(ctx, &settings, &self.desk).err()
+                    page.view.set(ctx, &settings, &self.desk).err()
                 });
                 if let Some(sentence) = refused {
                     self.notice = Some(Notice::refused(&sentence));
@@ -402,7 +406,7 @@ impl HysteronApp {
     }
 
     fn go(&mut self, id: &str) {
-        if let Some(index) = self.pages.iter().position(|p| p.id() == id) {
+        if let Some(index) = self.pages.iter().position(|p| p.id == id) {
             self.front = index;
         }
     }
@@ -411,16 +415,19 @@ impl HysteronApp {
     /// and what concerns all.
     pub fn hook_state(&self) -> serde_json::Value {
         let front = self.pages.get(self.front);
-        let states: Vec<_> = self.pages.iter().map(|p| p.hook_state()).collect();
+        let states: Vec<_> = self.pages.iter().map(|p| p.view.hook_state()).collect();
         let busy = states.iter().any(|own| own["busy"] == true);
         let mut state = states.get(self.front).cloned().unwrap_or_default();
         for (page, own) in self.pages.iter().zip(states) {
-            state[page.id()] = own;
+            state[page.id] = own;
         }
         state["ready"] = true.into();
-        state["hint"] = front.and_then(|p| p.hint()).map(|h| h.sentence).into();
+        state["hint"] = front
+            .and_then(|p| p.view.offer().hint)
+            .map(|h| h.sentence)
+            .into();
         state["busy"] = busy.into();
-        state["page"] = front.map(|p| p.id()).into();
+        state["page"] = front.map(|p| p.id).into();
         state["frame"] = self.frame.into();
         state["studied"] = self.desk.study.lesson.clone().into();
         state["solved"] = serde_json::json!(self.desk.study.solved);
@@ -442,9 +449,9 @@ impl HysteronApp {
     }
 
     fn bar_ui(&mut self, ui: &mut egui::Ui, present: &Document) {
-        let pages: Vec<_> = self.pages.iter().map(|p| (p.id(), p.title())).collect();
+        let pages: Vec<_> = self.pages.iter().map(|p| (p.id, p.title)).collect();
         let front = self.pages.get(self.front);
-        let tables: Vec<_> = front.map_or_else(Vec::new, |p| p.table_names());
+        let tables: Vec<_> = front.map_or_else(Vec::new, |p| p.view.offer().tables.names);
         let bar = Bar {
             pages: &pages,
             tables: &tables,
@@ -462,11 +469,14 @@ impl HysteronApp {
 
     /// What lies over the page, which ends at `foot`.
     fn overlays_ui(&mut self, ctx: &egui::Context, foot: f32) {
-        if let Some(page) = self.pages.get(self.front) {
-            drop_hint_ui(ctx, page.drop_hint());
+        // Another page than one that takes files makes way for the first that does.
+        let front = self.pages.get(self.front).and_then(|p| p.door.as_ref());
+        let door = front.or_else(|| self.pages.iter().find_map(|p| p.door.as_ref()));
+        if let Some(door) = door {
+            drop_hint_ui(ctx, door.drop_hint);
         }
         if self.sheet {
-            let titles: Vec<_> = self.pages.iter().map(|p| p.title()).collect();
+            let titles: Vec<_> = self.pages.iter().map(|p| p.title).collect();
             self.sheet = shortcuts::sheet_ui(ctx, &titles);
         }
         if let Some(text) = self.said.1.try_iter().last() {
@@ -483,8 +493,8 @@ impl HysteronApp {
         let Some(file) = first else {
             return;
         };
-        if let Some(page) = self.go_to_files() {
-            page.open_dropped(ctx, &file);
+        if let Some((_, door)) = self.go_to_files() {
+            door.entrance.open_dropped(ctx, &file);
         }
         if count > 1 {
             let name = file.path().file_name().unwrap_or_default();
@@ -511,12 +521,13 @@ impl HysteronApp {
     }
 
     /// Brings a page that takes files to the front, unless one is there.
-    fn go_to_files(&mut self) -> Option<&mut Box<dyn View>> {
-        let here = self.pages.get(self.front).is_some_and(|p| p.takes_files());
-        if !here {
-            self.front = self.pages.iter().position(|p| p.takes_files())?;
+    fn go_to_files(&mut self) -> Option<(&mut Box<dyn View>, &Door)> {
+        let takes = |page: &Page| page.door.is_some();
+        if !self.pages.get(self.front).is_some_and(takes) {
+            self.front = self.pages.iter().position(takes)?;
         }
-        self.pages.get_mut(self.front)
+        let page = self.pages.get_mut(self.front)?;
+        Some((&mut page.view, page.door.as_ref()?))
     }
 }
 
@@ -529,7 +540,7 @@ fn hint_ui(ui: &mut egui::Ui, hint: Hint, desk: &mut Desk) {
     }
     ui.horizontal(|ui| {
         // The sentence breaks beside the button, which stays on the screen.
-        let room = ui.available_width() - bar::button(ui, "Try it");
+        let room = ui.available_width() - theme::button_width(ui, "Try it");
         ui.scope(|ui| {
             ui.set_max_width(room);
             ui.add(egui::Label::new(sentence).wrap());

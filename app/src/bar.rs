@@ -2,10 +2,11 @@
 
 use egui::Ui;
 
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::hook::Targets;
 use crate::language::{Language, tr};
-use crate::pages::{Command, Desk};
-use crate::theme::Look;
+use crate::theme::{self, Look};
 
 /// Between two buttons where the usual gap would break the line, points.
 const GAP: f32 = 4.0;
@@ -180,26 +181,12 @@ const SEPARATOR: f32 = 6.0;
 
 /// Width of buttons with their gaps, points.
 fn buttons<'a>(ui: &Ui, names: impl IntoIterator<Item = &'a str>) -> f32 {
-    names.into_iter().map(|name| button(ui, name)).sum()
-}
-
-/// Width of a button with its gap, points.
-pub fn button(ui: &Ui, name: &str) -> f32 {
-    button_of(ui, &tr(name))
-}
-
-/// The same of a name in the language that is spoken.
-pub fn button_of(ui: &Ui, text: &str) -> f32 {
-    let font = egui::TextStyle::Button.resolve(ui.style());
-    let around = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
-    width_of(ui, text.to_owned(), font) + around
+    names
+        .into_iter()
+        .map(|name| theme::button_width(ui, name))
+        .sum()
 }
 
 fn width(ui: &Ui, name: &str, font: egui::FontId) -> f32 {
-    width_of(ui, tr(name), font)
-}
-
-fn width_of(ui: &Ui, text: String, font: egui::FontId) -> f32 {
-    let color = egui::Color32::PLACEHOLDER;
-    ui.painter().layout_no_wrap(text, font, color).size().x
+    theme::text_width(ui, tr(name), font)
 }

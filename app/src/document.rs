@@ -1,12 +1,13 @@
 //! Everything that is set in the app, as one plain value: links, undo and the autosave hold nothing else.
 
 use hysteron_core::explore::ExploreInput;
-use serde::de::DeserializeOwned;
+use hysteron_work::enclosed::is_enclosed;
 use serde_json::{Value, json};
 
+use crate::desk::Desk;
 use crate::lessons::find;
-use crate::link;
-use crate::pages::{Desk, View};
+use crate::link::{self, parsed};
+use crate::page::Page;
 use crate::zoom::Zooms;
 
 /// Key of the loop that several pages share.
@@ -27,17 +28,17 @@ pub struct Document {
 
 impl Document {
     /// What is set now.
-    pub fn of(pages: &[Box<dyn View>], front: usize, desk: &Desk) -> Self {
-        let ids = pages.iter().map(|p| p.id());
+    pub fn of(pages: &[Page], front: usize, desk: &Desk) -> Self {
+        let ids = pages.iter().map(|p| p.id);
         let zooms = ids.map(|id| (id.to_owned(), json!(desk.zooms.of(id).text())));
         let shared = [
             (LOOP.to_owned(), json!(desk.relay_loop)),
             (LESSON.to_owned(), json!(desk.study.lesson)),
             (ZOOM.to_owned(), link::object(zooms)),
         ];
-        let own = pages.iter().map(|p| (p.id().to_owned(), p.settings()));
+        let own = pages.iter().map(|p| (p.id.to_owned(), p.view.settings()));
         Self {
-            page: pages.get(front).map_or("", |p| p.id()).to_owned(),
+            page: pages.get(front).map_or("", |p| p.id).to_owned(),
             settings: link::object(shared.into_iter().chain(own)),
         }
     }
@@ -56,9 +57,7 @@ impl Document {
     pub fn files(&self) -> Vec<&str> {
         let named = ["file", "model"].map(|key| self.settings[&self.page][key].as_str());
         let named = named.into_iter().flatten();
-        named
-            .filter(|name| !crate::pages::is_built_in(name))
-            .collect()
+        named.filter(|name| !is_enclosed(name)).collect()
     }
 
     /// As a text that keeps everything.
@@ -101,37 +100,39 @@ impl Document {
     pub fn apply(
         &self,
         ctx: &egui::Context,
-        pages: &mut [Box<dyn View>],
+        pages: &mut [Page],
         front: &mut usize,
         desk: &mut Desk,
     ) -> Result<(), String> {
-        let Some(index) = pages.iter().position(|p| p.id() == self.page) else {
-            let known: Vec<&str> = pages.iter().map(|p| p.id()).collect();
+        let Some(index) = pages.iter().position(|p| p.id == self.page) else {
+            let known: Vec<&str> = pages.iter().map(|p| p.id).collect();
             return Err(format!(
                 "This link is about a page that does not exist; there are {}.",
                 known.join(", ")
             ));
         };
         let relay_loop: ExploreInput = parsed(&self.settings[LOOP])?;
-        check(&relay_loop)?;
+        relay_loop
+            .validate()
+            .map_err(|e| format!("This loop cannot be: {e}."))?;
         let lesson: Option<String> = parsed(&self.settings[LESSON])?;
         if lesson.as_deref().is_some_and(|id| find(id).is_none()) {
             return Err("This link is about a lesson that does not exist.".to_owned());
         }
         let zooms = pages
             .iter()
-            .map(|p| Zooms::read(&self.settings[ZOOM][p.id()]));
+            .map(|p| Zooms::read(&self.settings[ZOOM][p.id]));
         let zooms: Vec<Zooms> = zooms.collect::<Result<_, _>>()?;
         desk.relay_loop = relay_loop;
         desk.study.lesson = lesson;
         for page in pages.iter_mut() {
-            let settings = &self.settings[page.id()];
-            if page.settings() != *settings {
-                page.set(ctx, settings, desk)?;
+            let settings = &self.settings[page.id];
+            if page.view.settings() != *settings {
+                page.view.set(ctx, settings, desk)?;
             }
         }
         for (page, zooms) in pages.iter().zip(zooms) {
-            desk.zooms.set(page.id(), zooms, &page.settings());
+            desk.zooms.set(page.id, zooms, &page.view.settings());
         }
         *front = index;
         Ok(())
@@ -141,12 +142,12 @@ impl Document {
     pub fn restore(
         &self,
         ctx: &egui::Context,
-        pages: &mut [Box<dyn View>],
+        pages: &mut [Page],
         front: &mut usize,
         desk: &mut Desk,
     ) {
-        if let Ok(relay_loop) = parsed(&self.settings[LOOP])
-            && check(&relay_loop).is_ok()
+        if let Ok(relay_loop) = parsed::<ExploreInput>(&self.settings[LOOP])
+            && relay_loop.validate().is_ok()
         {
             desk.relay_loop = relay_loop;
         }
@@ -154,46 +155,12 @@ impl Document {
         desk.study.lesson = lesson.filter(|id| find(id).is_some());
         for page in pages.iter_mut() {
             // A page whose settings are of another day begins anew.
-            let _ = page.set(ctx, &self.settings[page.id()], desk);
-            let zooms = Zooms::read(&self.settings[ZOOM][page.id()]).unwrap_or_default();
-            desk.zooms.set(page.id(), zooms, &page.settings());
+            let _ = page.view.set(ctx, &self.settings[page.id], desk);
+            let zooms = Zooms::read(&self.settings[ZOOM][page.id]).unwrap_or_default();
+            desk.zooms.set(page.id, zooms, &page.view.settings());
         }
-        if let Some(index) = pages.iter().position(|p| p.id() == self.page) {
+        if let Some(index) = pages.iter().position(|p| p.id == self.page) {
             *front = index;
         }
     }
-}
-
-/// Settings of a page from their plain value.
-///
-/// # Errors
-/// One sentence.
-pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
-    // What serde says is about Rust, and in English.
-    T::deserialize(value).map_err(|_| "These settings cannot be read.".to_owned())
-}
-
-/// Whether a loop can be computed.
-pub fn check(input: &ExploreInput) -> Result<(), String> {
-    let sentence = |e: &dyn std::fmt::Display| format!("This loop cannot be: {e}.");
-    input.validate().map_err(|e| sentence(&e))?;
-    match input.noise {
-        Some(noise) if !(noise.std_dev >= 0.0 && noise.std_dev.is_finite()) => {
-            Err(sentence(&"its noise must be 0 or more"))
-        }
-        Some(noise) if !(LEAST_INTERVAL..=MOST_INTERVAL).contains(&noise.interval) => {
-            Err(sentence(&"its noise must change every 0.001 to 1000 s"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Times between two values of the noise that are taken, s: shorter ones take minutes to simulate.
-const LEAST_INTERVAL: f64 = 1e-3;
-const MOST_INTERVAL: f64 = 1e3;
-
-/// Why a link cannot show what is about a file of the user's.
-pub fn not_enclosed(name: &str) -> String {
-    let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
-    format!("This link is about the file {name}, which is not part of it: open that file here.")
 }

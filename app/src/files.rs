@@ -8,10 +8,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use hysteron_core::measurement::Kind;
 use hysteron_core::user_model::UserModel;
 
-use crate::content::Content;
-use crate::enclosed::Enclosed;
-use crate::reading::Reading;
 use crate::recent::Recent;
+use hysteron_work::content::Content;
+use hysteron_work::enclosed::Enclosed;
+use hysteron_work::reading::Reading;
 
 /// A file that has been read.
 pub struct Arrival {
@@ -49,7 +49,8 @@ const NO_DIALOG: &str = "No dialog can be shown here: drop the file on this wind
 /// A file that is being read elsewhere, and how to find it again.
 struct Read {
     name: String,
-    path: String,
+    /// Where it is, empty in a browser; nothing where it came from no place to which one can go back.
+    path: Option<String>,
     bytes: Result<Vec<u8>, String>,
     reading: Reading,
 }
@@ -59,7 +60,7 @@ impl Read {
     fn new(name: String, path: String, bytes: Result<Vec<u8>, String>) -> Self {
         Self {
             name,
-            path,
+            path: Some(path),
             bytes,
             reading: Reading::default(),
         }
@@ -117,15 +118,40 @@ impl From<&Enclosed> for Held {
     }
 }
 
+/// Where files come in: those that are dropped, asked for, or given.
+#[derive(Clone)]
+pub struct Entrance {
+    sender: Sender<Read>,
+    /// Why none can be asked for.
+    refused: Sender<String>,
+}
+
+/// The way into a page for files, and what it has taken of them.
+pub struct Door {
+    /// Where they come in.
+    pub entrance: Entrance,
+    /// What the page does with a file that is held over the window.
+    pub drop_hint: &'static str,
+    opened: Receiver<Recent>,
+}
+
+impl Door {
+    /// Files that the page has taken since the last call.
+    pub fn opened(&self) -> Vec<Recent> {
+        self.opened.try_iter().collect()
+    }
+}
+
 /// Files on their way.
 pub struct Files {
-    sender: Sender<Read>,
+    /// Where they come in.
+    pub entrance: Entrance,
     receiver: Receiver<Read>,
-    /// Why none can be asked for.
-    refused: (Sender<String>, Receiver<String>),
+    refused: Receiver<String>,
     /// The last one that has arrived: nobody knows yet whether it is what its page takes.
     arrived: Option<Recent>,
-    opened: Vec<Recent>,
+    /// Where it is said which ones were taken.
+    opened: Option<Sender<Recent>>,
     /// What was open, the last one first.
     held: Vec<Held>,
     /// Models that were open, by their names, the last one first.
@@ -134,13 +160,13 @@ pub struct Files {
 
 impl Default for Files {
     fn default() -> Self {
-        let (sender, receiver) = channel();
+        let ((sender, receiver), (refused, why)) = (channel(), channel());
         Self {
-            sender,
+            entrance: Entrance { sender, refused },
             receiver,
-            refused: channel(),
+            refused: why,
             arrived: None,
-            opened: Vec::new(),
+            opened: None,
             held: Vec::new(),
             models: Vec::new(),
         }
@@ -148,11 +174,22 @@ impl Default for Files {
 }
 
 impl Files {
+    /// The way in; a file that is held over the window is met with this hint.
+    pub fn door(&mut self, drop_hint: &'static str) -> Door {
+        let (sender, opened) = channel();
+        self.opened = Some(sender);
+        Door {
+            entrance: self.entrance.clone(),
+            drop_hint,
+            opened,
+        }
+    }
+
     /// The next file that has been read.
     pub fn arrived(&mut self) -> Option<Arrival> {
         let read = self.receiver.try_recv().ok()?;
-        let bytes = read.bytes.as_ref().ok();
-        self.arrived = bytes.map(|b| Recent::new(&read.name, &read.path, b));
+        let bytes = read.bytes.as_ref().ok().zip(read.path.as_ref());
+        self.arrived = bytes.map(|(b, path)| Recent::new(&read.name, path, b));
         Some(Arrival {
             name: read.name,
             bytes: read.bytes,
@@ -173,12 +210,10 @@ impl Files {
     /// The file of this name was what its page takes: it may be opened again, and read in the same way.
     pub fn taken(&mut self, name: &str, reading: &Reading) {
         let taken = self.arrived.take_if(|r| r.name == name);
-        self.opened.extend(taken.map(|r| r.read_as(reading)));
-    }
-
-    /// What has been opened since it was last asked for.
-    pub fn opened(&mut self) -> Vec<Recent> {
-        std::mem::take(&mut self.opened)
+        if let (Some(taken), Some(opened)) = (taken, &self.opened) {
+            // Where the app is gone there is nobody to tell.
+            let _ = opened.send(taken.read_as(reading));
+        }
     }
 
     /// Holds a file that is open, so that it can be gone back to.
@@ -205,6 +240,24 @@ impl Files {
         self.models.iter().find(|(n, _)| n == name).map(|(_, m)| m)
     }
 
+    /// Why no file could be asked for, once.
+    pub fn refused(&mut self) -> Option<String> {
+        self.refused.try_recv().ok()
+    }
+}
+
+impl Entrance {
+    /// Takes the bytes of a file that lies nowhere.
+    pub fn open(&self, name: &str, bytes: &[u8]) {
+        // A page that is gone needs no file.
+        let _ = self.sender.send(Read {
+            name: name.to_owned(),
+            path: None,
+            bytes: Ok(bytes.to_vec()),
+            reading: Reading::default(),
+        });
+    }
+
     /// Reads a file that was opened before.
     pub fn reopen(&self, ctx: &egui::Context, recent: &Recent) {
         let (sender, ctx, recent) = (self.sender.clone(), ctx.clone(), recent.clone());
@@ -219,7 +272,7 @@ impl Files {
             // A page that is gone needs no file.
             let _ = sender.send(Read {
                 name,
-                path,
+                path: Some(path),
                 bytes,
                 reading,
             });
@@ -253,16 +306,11 @@ impl Files {
         });
     }
 
-    /// Why no file could be asked for, once.
-    pub fn refused(&mut self) -> Option<String> {
-        self.refused.1.try_recv().ok()
-    }
-
     /// Asks for a file.
     pub fn open_dialog(&self, ctx: &egui::Context, filter: Filter) {
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
         #[cfg(not(target_arch = "wasm32"))]
-        let refused = self.refused.0.clone();
+        let refused = self.refused.clone();
         let dialog = rfd::AsyncFileDialog::new().add_filter(filter.words, filter.endings);
         let pick = async move {
             #[cfg(not(target_arch = "wasm32"))]

@@ -6,8 +6,8 @@ use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Measurement;
 use hysteron_core::user_model::UserModel;
 
-pub use crate::tasks::News;
-use crate::tasks::{StepTask, Task};
+pub use hysteron_work::tasks::News;
+use hysteron_work::tasks::{StepTask, Task};
 
 /// A running task; dropping it cancels it.
 pub struct Job<T: Task = StepTask>(platform::Job<T::Report>);
@@ -49,8 +49,8 @@ mod platform {
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::mpsc::{Receiver, channel};
 
-    use crate::tasks::News;
-    pub use crate::work::Work as Runs;
+    use hysteron_work::tasks::News;
+    pub use hysteron_work::work::Work as Runs;
 
     pub struct Job<R> {
         news: Receiver<News<R>>,
@@ -93,9 +93,9 @@ mod platform {
     use wasm_bindgen::prelude::*;
     use web_sys::{ErrorEvent, MessageEvent, Worker, WorkerOptions, WorkerType};
 
-    pub use crate::tasks::Task as Runs;
-    use crate::tasks::{News, READY};
-    use crate::wire::{pack, unpack};
+    pub use hysteron_work::tasks::Task as Runs;
+    use hysteron_work::tasks::{News, READY};
+    use hysteron_work::wire::{pack, unpack};
 
     thread_local! {
         /// A worker that has finished its task: the next one need not wait for another to start.

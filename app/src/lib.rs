@@ -3,16 +3,12 @@
 mod address;
 mod app;
 mod bar;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod cli;
 mod colors;
-mod content;
-#[cfg(not(target_arch = "wasm32"))]
-mod cores;
+mod command;
+mod desk;
 mod document;
 #[cfg(any(test, target_arch = "wasm32"))]
 mod edges;
-mod enclosed;
 pub mod export;
 mod files;
 mod hook;
@@ -23,24 +19,23 @@ pub mod lessons;
 pub mod link;
 mod motion;
 mod notice;
-mod packed;
+mod page;
 mod pages;
+#[cfg(not(target_arch = "wasm32"))]
+mod program;
 mod purpose;
-mod reading;
+mod purpose_line;
 mod recent;
 mod save;
 mod shortcuts;
 mod start;
-mod tasks;
 mod theme;
-#[cfg(any(test, target_arch = "wasm32"))]
-mod wire;
-#[cfg(not(target_arch = "wasm32"))]
-mod work;
+mod widgets;
 mod zoom;
 
-pub use app::{GivenFile, HysteronApp};
+pub use app::HysteronApp;
 #[cfg(not(target_arch = "wasm32"))]
-pub use start::run_native;
+pub use program::run;
+pub use save::GivenFile;
 #[cfg(target_arch = "wasm32")]
 pub use start::run_web;

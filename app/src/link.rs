@@ -8,6 +8,7 @@
 //! `true`, `false`, `null`, a list of numbers `1,3,3,1`, a word, or else JSON; characters that an address
 //! does not take stand as `%XX`. What a reader does not know is refused, never guessed.
 
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 /// The version that is written, and the only one that is read.
@@ -262,4 +263,19 @@ pub fn shortened(text: &str) -> String {
 /// An object of settings from its parts.
 pub fn object(parts: impl IntoIterator<Item = (String, Value)>) -> Value {
     Value::Object(parts.into_iter().collect::<Map<_, _>>())
+}
+
+/// Settings of a page from their plain value.
+///
+/// # Errors
+/// One sentence.
+pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
+    // What serde says is about Rust, and in English.
+    T::deserialize(value).map_err(|_| "These settings cannot be read.".to_owned())
+}
+
+/// Why a link cannot show what is about a file of the user's.
+pub fn not_enclosed(name: &str) -> String {
+    let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
+    format!("This link is about the file {name}, which is not part of it: open that file here.")
 }

@@ -2,14 +2,7 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> std::process::ExitCode {
-    let file = match hysteron::cli::run(std::env::args_os()) {
-        hysteron::cli::Outcome::Ended(code) => return code,
-        hysteron::cli::Outcome::Window(file) => file,
-    };
-    match hysteron::run_native(file.clone()) {
-        Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(line) => hysteron::cli::without_display(&line, file.as_deref()),
-    }
+    hysteron::run(std::env::args_os())
 }
 
 #[cfg(target_arch = "wasm32")]

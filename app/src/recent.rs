@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::hook::Targets;
 use crate::language::tr;
-use crate::reading::Reading;
+use hysteron_work::reading::Reading;
 
 /// Files that are remembered.
 const MOST: usize = 8;

@@ -30,6 +30,9 @@ pub struct Document {
     pub text: String,
 }
 
+/// A file that was given away: its name and its bytes.
+pub type GivenFile = (String, Vec<u8>);
+
 /// A file of any content.
 struct File {
     name: String,

@@ -2,8 +2,9 @@
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
+use crate::command::Command;
 use crate::language::tr;
-use crate::pages::{Command, chart_cursor};
+use crate::widgets::chart_cursor;
 
 /// A key and what it asks for.
 struct Shortcut {

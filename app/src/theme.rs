@@ -222,3 +222,21 @@ pub fn readable(ui: &egui::Ui, color: Color32) -> Color32 {
         color.lerp_to_gamma(Color32::BLACK, 0.4)
     }
 }
+
+/// Width of a button with its gap, points.
+pub fn button_width(ui: &egui::Ui, name: &str) -> f32 {
+    button_width_of(ui, &tr(name))
+}
+
+/// The same of a name in the language that is spoken.
+pub fn button_width_of(ui: &egui::Ui, text: &str) -> f32 {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let around = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
+    text_width(ui, text.to_owned(), font) + around
+}
+
+/// Width of a text in one line, points.
+pub fn text_width(ui: &egui::Ui, text: String, font: egui::FontId) -> f32 {
+    let color = Color32::PLACEHOLDER;
+    ui.painter().layout_no_wrap(text, font, color).size().x
+}

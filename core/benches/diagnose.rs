@@ -6,8 +6,9 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use hysteron_core::criticism::{DiagnosisJob, Progress};
+use hysteron_core::criticism::DiagnosisJob;
 use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::progress::Progress;
 
 /// Sampling time, s; samples by which the input comes late.
 const STEP: f64 = 2e-4;

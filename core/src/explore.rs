@@ -57,6 +57,12 @@ pub enum ExploreError {
         /// The longest that is taken, s.
         most: f64,
     },
+    /// The noise is no size.
+    #[error("its noise must be 0 or more")]
+    NoiseSize,
+    /// The noise changes too fast to be simulated, or hardly ever.
+    #[error("its noise must change every 0.001 to 1000 s")]
+    NoiseInterval,
 }
 
 /// What there is to see.
@@ -106,11 +112,14 @@ pub struct ExploreData {
 /// Dead time and delay per time constant of the fastest pole that are taken: the cost grows with them.
 const MOST_LAG: f64 = 1e6;
 
+/// Times between two values of the noise that are taken, s: shorter ones take minutes to simulate.
+const NOISE_INTERVALS: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
 /// Values of the noise in a run: each takes some microseconds.
 const MOST_NOISE: f64 = 500_000.0;
 
 impl ExploreInput {
-    /// Checks plant and relay, and that the loop can be computed in a moment.
+    /// Checks plant, relay and noise, and that the loop can be computed in a moment.
     pub fn validate(&self) -> Result<(), ExploreError> {
         self.plant.validate()?;
         self.relay.validate()?;
@@ -120,7 +129,15 @@ impl ExploreInput {
         if lag > most {
             return Err(ExploreError::Lag { lag, most });
         }
-        Ok(())
+        match self.noise {
+            Some(noise) if !(noise.std_dev >= 0.0 && noise.std_dev.is_finite()) => {
+                Err(ExploreError::NoiseSize)
+            }
+            Some(noise) if !NOISE_INTERVALS.contains(&noise.interval) => {
+                Err(ExploreError::NoiseInterval)
+            }
+            _ => Ok(()),
+        }
     }
 }
 

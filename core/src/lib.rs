@@ -17,10 +17,12 @@
 //! | [`measurement`] | what was measured? |
 //! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
+//! | [`progress`] | how far has a computation come? |
 //! | [`crew`] | who does the parts of a computation? |
 //! | [`drive`] | what does a drive with a hidden gap do? |
 //! | [`scenario`] | a loop or a drive in a file |
 //! | [`effect`] | which physics can be added? |
+//! | [`diagnosis`] | what does a finished diagnosis say? |
 //! | [`user_model`] | what does the user know of the model? |
 //! | [`rig`] | what would a bench measure, by other physics? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
@@ -31,6 +33,7 @@
 pub mod backlash;
 pub mod crew;
 pub mod criticism;
+pub mod diagnosis;
 pub mod drive;
 pub mod effect;
 pub mod explore;
@@ -44,6 +47,7 @@ pub mod mystery;
 mod order;
 mod packed;
 pub mod plant;
+pub mod progress;
 pub mod relay;
 pub mod report;
 pub mod rig;

@@ -1,7 +1,5 @@
 //! Values with their uncertainty, as they are read in a verdict, a report, the app and on the terminal.
 
-use crate::effect::shown_unit;
-
 /// Values from the first to the second of these are written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-3..1e5;
 
@@ -138,6 +136,11 @@ fn in_unit(text: String, unit: &str) -> String {
     } else {
         format!("{text} {}", shown_unit(unit))
     }
+}
+
+/// A unit as it is shown: files and JSON have `kg m^2`, which is easier to type than `kg m²`.
+pub fn shown_unit(unit: &str) -> String {
+    unit.replace("^2", "²")
 }
 
 #[cfg(test)]

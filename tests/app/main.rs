@@ -20,5 +20,6 @@ mod mapping;
 mod mystery;
 mod pages;
 mod plots;
+mod program;
 mod shell;
 mod tune;

@@ -34,7 +34,7 @@ fn process(folder: &Path, name: &str, time_constant: f64) -> PathBuf {
 }
 
 fn diagnose(files: &[&Path], more: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hysteron"))
+    Command::new(env!("CARGO_BIN_EXE_hysteron-cli"))
         .arg("diagnose")
         .args(files)
         .args(more)

@@ -7,12 +7,12 @@ use serde_json::Value;
 
 fn scenario(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../assets/scenarios")
+        .join("../../assets/scenarios")
         .join(name)
 }
 
 fn hysteron(command: &str, file: &Path, more: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hysteron"))
+    Command::new(env!("CARGO_BIN_EXE_hysteron-cli"))
         .arg(command)
         .arg(file)
         .args(more)

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use crate::support::diagnosis::{classes, finish};
 use crate::support::servo::servo;
 use crate::support::value::check_value;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Recorded};
 
 /// A fine encoder, and nothing else.

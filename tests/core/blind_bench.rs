@@ -1,16 +1,18 @@
 //! The blind bench: an independent rig hides effects, the diagnosis must find them, nothing else, and
 //! say so where it cannot know.
 //!
-//! `cargo test` runs a part of one seed. The whole bench - three seeds, and 200 clean records for the
-//! rate of false alarms - runs by
+//! `cargo test` runs a part of the first development seeds. All their cases, and 200 clean records for the rate of
+//! false alarms, run by
 //!
 //! ```text
 //! HYSTERON_BENCH=full cargo test --release -p hysteron-core --test core blind_bench -- --nocapture
 //! ```
 //!
-//! and writes `blind_bench.json` into Cargo's folder for test files (or to `HYSTERON_BENCH_OUT`).
-//! `HYSTERON_BENCH_SEEDS=7,8` runs other seeds: develop on those, the bench's own are not to be tuned
-//! to. `HYSTERON_BENCH_ONLY=backlash` runs the cases with this word in their names.
+//! and write `blind_bench.json` into Cargo's folder for test files (or to `HYSTERON_BENCH_OUT`).
+//! `HYSTERON_BENCH_SEEDS=7,8` runs other seeds, `HYSTERON_BENCH_ONLY=backlash` the cases with this word in their names.
+//!
+//! A method is developed on seeds 1 to 50. What is claimed of it comes from seeds above 5000 that it has not seen, run
+//! once: a seed whose cases were looked at is a development seed from then on. No seed of a claim stands in a test.
 
 #![allow(
     clippy::disallowed_methods,
@@ -30,13 +32,13 @@ use hysteron_core::rig::Random;
 use hysteron_core::rig::process::{self, ProcessRig};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, relay};
 
-/// Seeds of the bench.
-const SEEDS: [u64; 3] = [101, 202, 303];
+/// The first of the seeds to develop on.
+const DEVELOPMENT_SEEDS: [u64; 3] = [1, 2, 3];
 /// Clean records in the full bench and in `cargo test`.
 const CLEAN: usize = 200;
 const CLEAN_QUICK: usize = 6;
-/// In `cargo test`, one case in so many.
-const QUICK_STRIDE: usize = 3;
+/// In `cargo test`, one case in so many of each seed, each seed beginning at another one.
+const QUICK_STRIDE: usize = 9;
 
 fn is_full() -> bool {
     std::env::var("HYSTERON_BENCH").is_ok_and(|v| v == "full")
@@ -45,7 +47,7 @@ fn is_full() -> bool {
 fn seeds() -> Vec<u64> {
     let chosen = std::env::var("HYSTERON_BENCH_SEEDS").ok();
     chosen.map_or_else(
-        || SEEDS.to_vec(),
+        || DEVELOPMENT_SEEDS.to_vec(),
         |text| {
             text.split(',')
                 .filter_map(|s| s.trim().parse().ok())
@@ -102,10 +104,10 @@ fn check(title: &str, outcomes: &[Outcome]) {
 #[test]
 fn hidden_effects_are_found_and_nothing_else() {
     if !is_full() {
-        let all = cases(SEEDS[0]);
-        let part: Vec<(u64, Case)> = all
-            .into_iter()
-            .step_by(QUICK_STRIDE)
+        let part: Vec<(u64, Case)> = DEVELOPMENT_SEEDS
+            .iter()
+            .zip((0..).step_by(QUICK_STRIDE / DEVELOPMENT_SEEDS.len()))
+            .flat_map(|(seed, first)| cases(*seed).into_iter().skip(first).step_by(QUICK_STRIDE))
             .filter(|(_, c)| in_library(c))
             .collect();
         let outcomes = run(&part);
@@ -128,39 +130,10 @@ fn hidden_effects_are_found_and_nothing_else() {
     }
 }
 
-/// Cases, most of them of other seeds, each of which a change of the method was made for.
-#[test]
-fn what_was_once_wrong_stays_right() {
-    let once_wrong = [
-        (7, "stribeck"),
-        (202, "compliance, multisine"),
-        (404, "curvature and dead time"),
-        (505, "clean process"),
-        (808, "cogging and Coulomb"),
-        (909, "cogging and load"),
-    ];
-    let chosen: Vec<(u64, Case)> = once_wrong
-        .iter()
-        .flat_map(|(seed, name)| {
-            let named = cases(*seed)
-                .into_iter()
-                .filter(|(_, c)| c.name.contains(name));
-            named.collect::<Vec<_>>()
-        })
-        .collect();
-    assert!(chosen.len() >= once_wrong.len() || std::env::var("HYSTERON_BENCH_ONLY").is_ok());
-    let outcomes = run(&chosen);
-    assert!(
-        outcomes.iter().all(|o| o.right),
-        "{}",
-        report("once wrong", &outcomes)
-    );
-}
-
 #[test]
 fn clean_records_raise_no_alarm() {
     let count = if is_full() { CLEAN } else { CLEAN_QUICK };
-    let mut random = Random::new(9000);
+    let mut random = Random::new(seeds()[0]);
     let cases: Vec<(u64, Case)> = (0..count)
         .map(|i| {
             // Every third one is a process; the excitations take turns.
@@ -246,7 +219,7 @@ fn the_same_seed_gives_the_same_record() {
 
 #[test]
 fn the_bench_covers_the_library() {
-    let all = cases(SEEDS[0]);
+    let all = cases(DEVELOPMENT_SEEDS[0]);
     assert!(all.len() >= 60, "{} cases", all.len());
     let unknown = all
         .iter()

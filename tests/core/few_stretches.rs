@@ -3,7 +3,8 @@
 
 use crate::support::diagnosis::{classes, finish};
 use crate::support::parameter::parameter;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::rig::process::{Excitation, ProcessRig, Stranger};
 
 /// A process of two minutes that is watched for three, with a load that swings as slowly besides.

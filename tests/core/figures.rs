@@ -3,6 +3,7 @@
 use hysteron_core::explore::{ExploreInput, compute};
 use hysteron_core::figures::{checks, figures};
 use hysteron_core::plant::TransferFunction;
+use hysteron_core::tuning::ultimate_gain;
 
 #[test]
 fn the_claims_of_figs_3_4_and_5_hold() {

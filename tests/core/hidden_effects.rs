@@ -2,7 +2,8 @@
 
 use crate::support::diagnosis::{classes, finish};
 use crate::support::rig::Rig;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::{Measurement, import_csv};
 
 fn diagnose(measurement: &Measurement) -> Diagnosis {

@@ -1,8 +1,8 @@
 //! Measurements as people have them go in; SI units, or one line that says what to correct, come out.
 
-use hysteron_core::effect::Motion;
 use hysteron_core::measurement::{
-    ImportOptions, Kind, MIN_SAMPLES, Measurement, Quantity, import as import_with, import_csv,
+    ImportOptions, Kind, MIN_SAMPLES, Measurement, Motion, Quantity, import as import_with,
+    import_csv,
 };
 use proptest::prelude::*;
 use std::fmt::Write as _;

@@ -6,10 +6,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use crate::support::mat::{element, file};
-use hysteron_core::effect::Motion;
 use hysteron_core::measurement::{
-    ImportOptions, Kind, Mapping, Measurement, Quantity, Role, TorqueConstant, columns, guess,
-    import,
+    ImportOptions, Kind, Mapping, Measurement, Motion, Quantity, Role, TorqueConstant, columns,
+    guess, import,
 };
 use proptest::prelude::*;
 

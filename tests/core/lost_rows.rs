@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use crate::support::diagnosis::{classes, finish};
 use crate::support::value::check_value;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::Measurement;
 use hysteron_core::rig::{DriveRig, Excitation, Friction};
 

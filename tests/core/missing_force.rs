@@ -1,6 +1,8 @@
 //! Where no effect of the library explains the rest, what is missing is estimated without a model.
 
-use hysteron_core::criticism::{DiagnosisJob, MissingPart, Progress, StepReport};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::{MissingPart, StepReport};
+use hysteron_core::progress::Progress;
 use hysteron_core::rig::{DriveRig, Excitation, Stranger};
 
 /// The last model of a diagnosis that must end with `unknown`.

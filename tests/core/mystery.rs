@@ -2,7 +2,8 @@
 
 use crate::support::diagnosis::finish;
 use hysteron_core::backlash::estimate_gap;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Parameter};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::{Diagnosis, Parameter};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::{Kind, Measurement, import_csv};
 use hysteron_core::mystery::{

@@ -8,11 +8,10 @@
 
 use crate::support::diagnosis::{classes, finish};
 use crate::support::proposed;
-use hysteron_core::criticism::{
-    CriticismError, Diagnosis, DiagnosisJob, ExperimentJob, Limits, NextExperiment, Program,
-    Progress,
-};
+use hysteron_core::criticism::{DiagnosisJob, ExperimentJob};
+use hysteron_core::diagnosis::{CriticismError, Diagnosis, Limits, NextExperiment, Program};
 use hysteron_core::measurement::Measurement;
+use hysteron_core::progress::Progress;
 use hysteron_core::rig::process::{self, ProcessRig};
 use hysteron_core::rig::{self, DriveRig, SAMPLING, relay};
 use hysteron_core::user_model::UserModel;
@@ -84,7 +83,7 @@ fn check_truth(measurement: &Measurement, truth: &str, value: f64) {
     assert!(second.verdict.experiments.is_empty() && second.verdict.next_experiment.is_none());
     let last = second.steps.last().unwrap();
     let own =
-        |p: &&hysteron_core::criticism::Parameter| p.effect.is_some_and(|e| e.as_str() == truth);
+        |p: &&hysteron_core::diagnosis::Parameter| p.effect.is_some_and(|e| e.as_str() == truth);
     let found = last.parameters.iter().find(own).unwrap().value;
     assert!((found / value - 1.0).abs() < 0.05, "{found} for {value}");
 }

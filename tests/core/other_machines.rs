@@ -9,8 +9,10 @@ use crate::support::parameter::parameter;
 use crate::support::servo::servo;
 use crate::support::sparse::thinned;
 use crate::support::value::check_value;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepJob};
+use hysteron_core::criticism::{DiagnosisJob, StepJob};
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::progress::Progress;
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Random, Recorded, Stranger};
 
 /// Friction and load of these machines, N m.

@@ -4,9 +4,11 @@ use std::f64::consts::TAU;
 
 use crate::support::diagnosis::{classes, finish};
 use crate::support::servo::servo;
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepJob};
+use hysteron_core::criticism::{DiagnosisJob, StepJob};
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::effect::{EffectId, Formula, registry};
 use hysteron_core::measurement::{Kind, Measurement, import_csv};
+use hysteron_core::progress::Progress;
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Stranger};
 use hysteron_core::user_model::UserModel;
 use proptest::prelude::*;

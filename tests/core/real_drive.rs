@@ -1,14 +1,15 @@
 //! A real machine: what its owners found out about it is found again, and what is left is said.
 //!
-//! The record is not part of the project. Where it does not stand in `../shared/real`, the test says so.
+//! The record is not part of the project, see [`shared`].
 
 #![allow(
     clippy::disallowed_macros,
-    reason = "the core does not print; a skipped test says so"
+    reason = "the core does not print; this test shows what it found"
 )]
 
 use crate::support::diagnosis::{classes, finish};
 use crate::support::parameter::parameter;
+use crate::support::shared::shared;
 use hysteron_core::criticism::DiagnosisJob;
 use hysteron_core::measurement::import_csv;
 
@@ -19,9 +20,7 @@ use hysteron_core::measurement::import_csv;
 /// motor, has the opposite sign.
 #[test]
 fn the_positioning_system_has_dry_friction_and_an_offset() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/real/emps.csv");
-    let Ok(bytes) = std::fs::read(folder) else {
-        println!("skipped: {folder} is not there");
+    let Some(bytes) = shared("real/emps.csv") else {
         return;
     };
     let measurement = import_csv("emps", &bytes, None).unwrap();

@@ -1,7 +1,9 @@
 //! The report stands alone: well-formed, without scripts or requests, and it says what the diagnosis says.
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress, StepReport};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::{Diagnosis, StepReport};
 use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::progress::Progress;
 use hysteron_core::report::{Provenance, ReportInput, html, sha256};
 
 fn bytes(name: &str) -> Vec<u8> {

@@ -2,7 +2,8 @@
 //! missing from the machine, and nothing that is missing hides behind it.
 
 use crate::support::diagnosis::{classes, finish};
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::Measurement;
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Random, Recorded, Stranger};
 

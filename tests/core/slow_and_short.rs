@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::support::diagnosis::classes;
 use crate::support::file::diagnose;
-use hysteron_core::criticism::Diagnosis;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::rig::Random;
 
 const NOISE: f64 = 0.05;

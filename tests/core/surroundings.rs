@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 use crate::support::diagnosis::classes;
 use crate::support::file::diagnose;
 use crate::support::value::check_value;
-use hysteron_core::criticism::{Diagnosis, Progress, StepJob};
+use hysteron_core::criticism::StepJob;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::import_csv;
+use hysteron_core::progress::Progress;
 use hysteron_core::rig::Random;
 
 const DELAY: EffectId = EffectId::new("input_delay");

@@ -2,7 +2,8 @@
 //! sentence.
 
 use crate::support::diagnosis::{classes, finish};
-use hysteron_core::criticism::{CriticismError, Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::{CriticismError, Diagnosis};
 use hysteron_core::measurement::{Kind, Measurement, import_csv};
 use hysteron_core::rig::{DriveRig, Excitation, Friction};
 use hysteron_core::user_model::{MAX_BYTES, Status, UserModel};

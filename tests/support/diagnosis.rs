@@ -1,6 +1,8 @@
 //! A diagnosis from its begin to its end, and what it found.
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Progress};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
+use hysteron_core::progress::Progress;
 
 /// Runs a diagnosis to its end.
 pub fn finish(mut job: DiagnosisJob) -> Diagnosis {

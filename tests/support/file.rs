@@ -1,6 +1,7 @@
 //! A diagnosis of what a rig writes as a file.
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::import_csv;
 
 use super::diagnosis::finish;

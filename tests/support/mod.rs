@@ -22,5 +22,6 @@ pub mod proposed;
 pub mod rig;
 pub mod score;
 pub mod servo;
+pub mod shared;
 pub mod sparse;
 pub mod value;

@@ -1,6 +1,6 @@
 //! What was found of a parameter.
 
-use hysteron_core::criticism::{Diagnosis, Parameter};
+use hysteron_core::diagnosis::{Diagnosis, Parameter};
 
 /// A parameter of the last model.
 pub fn parameter<'d>(diagnosis: &'d Diagnosis, symbol: &str) -> &'d Parameter {

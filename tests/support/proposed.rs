@@ -1,6 +1,6 @@
 //! What a person at a rig sets to carry out a proposed experiment.
 
-use hysteron_core::criticism::{NextExperiment, Program};
+use hysteron_core::diagnosis::{NextExperiment, Program};
 use hysteron_core::rig::Proposed;
 
 /// What the proposal says, as far as the rigs can do it.

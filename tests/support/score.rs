@@ -5,7 +5,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use hysteron_core::criticism::{Diagnosis, DiagnosisJob, Step};
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::{Diagnosis, Step};
 use hysteron_core::effect::{EffectId, is_of_record};
 use hysteron_core::measurement::Measurement;
 use serde::Serialize;

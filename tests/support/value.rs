@@ -1,6 +1,6 @@
 //! How well a parameter is known.
 
-use hysteron_core::criticism::Diagnosis;
+use hysteron_core::diagnosis::Diagnosis;
 
 use super::parameter::parameter;
 

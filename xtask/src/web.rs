@@ -62,6 +62,8 @@ fn compile() -> Result<PathBuf, String> {
         "build",
         "--package",
         "hysteron",
+        "--package",
+        "hysteron-work",
         "--bins",
         "--profile",
         "web",

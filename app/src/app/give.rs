@@ -6,11 +6,8 @@ use egui::{Context, Rect};
 
 use super::HysteronApp;
 use crate::export::{self, Table};
-use crate::pages::chart_menu::{self, Form, Given};
-use crate::save;
-
-/// A file that was given away: its name and its bytes.
-pub type GivenFile = (String, Vec<u8>);
+use crate::save::{self, GivenFile};
+use crate::widgets::chart_menu::{self, Form, Given};
 
 /// Where files go.
 #[derive(Clone)]
@@ -57,7 +54,7 @@ impl HysteronApp {
     /// The numbers behind the page in front.
     pub fn tables(&self) -> Vec<Table> {
         let front = self.pages.get(self.front);
-        front.map_or_else(Vec::new, |p| p.tables())
+        front.map_or_else(Vec::new, |p| p.view.offer().tables.all())
     }
 
     pub(super) fn save_text(&self, ctx: &Context, document: save::Document) {
@@ -118,7 +115,7 @@ impl HysteronApp {
 
     /// Such as `explore-output-y-over-time`.
     fn name_of(&self, given: &Given) -> String {
-        let page = self.pages.get(self.front).map_or("", |p| p.id());
+        let page = self.pages.get(self.front).map_or("", |p| p.id);
         let [x, y] = &given.axes;
         let plain = |axis: &str| {
             let name = axis.split(" [").next().unwrap_or_default();

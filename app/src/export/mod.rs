@@ -61,6 +61,31 @@ impl Table {
     }
 }
 
+/// Tables that can be given now: their names at once, their numbers when they are asked for.
+#[derive(Default)]
+pub struct Tables<'a> {
+    /// Their names.
+    pub names: Vec<&'static str>,
+    numbers: Option<Box<dyn Fn() -> Vec<Table> + 'a>>,
+}
+
+impl<'a> Tables<'a> {
+    /// Tables of these names, in the order in which `numbers` gives them.
+    pub fn new(names: impl Into<Vec<&'static str>>, numbers: impl Fn() -> Vec<Table> + 'a) -> Self {
+        Self {
+            names: names.into(),
+            numbers: Some(Box::new(numbers)),
+        }
+    }
+
+    /// All of them with their numbers.
+    pub fn all(&self) -> Vec<Table> {
+        self.numbers
+            .as_ref()
+            .map_or_else(Vec::new, |numbers| numbers())
+    }
+}
+
 /// A number to the last bit, with an exponent where it would be a row of zeros.
 fn written(value: f64) -> String {
     if value == 0.0 || (1e-5..1e15).contains(&value.abs()) {

@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::{Lesson, after, find, markdown};
+use crate::command::Command;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::layout;
-use crate::pages::Command;
 use crate::theme;
 
 /// Width of the panel, points.

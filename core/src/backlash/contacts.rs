@@ -2,8 +2,9 @@
 
 use super::cycles::Cycles;
 use super::drift::Drift;
-use super::estimate::{FEWEST_CONTACTS, Side};
+use super::estimate::FEWEST_CONTACTS;
 use super::free_motor::FreeMotor;
+use super::gap::Side;
 use super::record::{DIFFERENCE, Record};
 use crate::order::{drop_marked, median};
 

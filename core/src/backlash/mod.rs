@@ -26,6 +26,7 @@ mod cycles;
 mod drift;
 mod estimate;
 mod free_motor;
+mod gap;
 mod likelihood;
 mod map;
 mod record;
@@ -33,8 +34,7 @@ mod switches;
 mod verdict;
 
 pub use change_points::{Segment, pelt};
+pub use estimate::estimate_gap;
 pub(crate) use estimate::sighted;
-pub use estimate::{
-    Contact, CycleDrift, GapError, GapEstimate, LoadMotion, Quality, Side, Traverse, estimate_gap,
-};
+pub use gap::{Contact, CycleDrift, GapError, GapEstimate, LoadMotion, Quality, Side, Traverse};
 pub use map::{BacklashMap, Branch, MapError, backlash_map};

@@ -3,7 +3,7 @@
 use crate::measurement::{Kind, Measurement, Quantity};
 use crate::order::median;
 
-use super::GapError;
+use super::gap::GapError;
 
 /// Share of the median step by which a step may differ and still count as even (printed times are rounded).
 const EVEN: f64 = 0.1;

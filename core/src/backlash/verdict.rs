@@ -1,6 +1,6 @@
 //! The verdict in plain words.
 
-use super::estimate::{GapEstimate, Quality};
+use super::gap::{GapEstimate, Quality};
 
 /// Traverses up to which all of them are spoken for; of more, nine in ten.
 const FEW: usize = 10;

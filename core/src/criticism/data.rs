@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::CriticismError;
-use super::baseline::GUESS_FACTOR;
 use super::before::begins_at_rest;
 use super::cut::{self, Block, MIN_WINDOW};
 use super::fit::Motion;
@@ -13,7 +11,9 @@ use super::noise::{Noise, noise_beside};
 use super::output::Output;
 use super::window::drive_window;
 use crate::crew::Crew;
+use crate::diagnosis::CriticismError;
 use crate::effect::Scales;
+use crate::effect::baseline::GUESS_FACTOR;
 use crate::measurement::{Channel, Kind, Measurement};
 use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start, smoothed};
 

@@ -1,11 +1,9 @@
 //! What residual an effect would leave if it were what is missing, beside the one that is left.
 
-use serde::{Deserialize, Serialize};
-
 use super::atlas::Places;
 use super::fit::residuals;
 use super::session::{Scored, Session};
-use super::{Finding, Profile};
+use crate::diagnosis::{Finding, Fingerprint};
 use crate::effect::EffectId;
 
 /// Effects whose fingerprints are taken, the best first.
@@ -13,23 +11,6 @@ const MOST: usize = 8;
 
 /// Samples of the stretch that is shown.
 const SHOWN: usize = 600;
-
-/// The change that an effect makes to the model's outputs, everything fitted anew: to first order what the model
-/// without it leaves where the effect is there.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fingerprint {
-    /// The effect.
-    pub effect: EffectId,
-    /// How alike it is to what is left: the cosine of the angle between the two, -1 to 1.
-    pub likeness: f64,
-    /// First sample of the stretch in `would_leave`.
-    pub from: usize,
-    /// One series per output from there on, in the unit of the output.
-    #[serde(with = "crate::packed::many")]
-    pub would_leave: Vec<Vec<f64>>,
-    /// The same over every axis but frequency, in noise units.
-    pub profiles: Vec<Profile>,
-}
 
 /// Fingerprints of the effects that were tried on top of `model`, the best first; the stretch is that of the
 /// strongest finding.

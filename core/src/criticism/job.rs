@@ -3,10 +3,11 @@
 use super::select::{SMALL_SHARE, is_trifle, outweighs};
 use super::session::{Scored, Session};
 use super::step::{NOISE_FLOOR, StepJob};
-use super::{Diagnosis, Limits, Step, StepReport};
 use crate::crew::Crew;
-use crate::effect::{EffectId, FormulaError};
+use crate::diagnosis::{CriticismError, Diagnosis, Limits, Step, StepReport};
+use crate::effect::EffectId;
 use crate::measurement::Measurement;
+use crate::progress::Progress;
 use crate::user_model::UserModel;
 
 /// Most effects that a diagnosis adds; a model that needs more is not this one.
@@ -40,79 +41,6 @@ const AS_BEFORE: f64 = 0.97;
 
 /// Share of its error that a model may leave to be gone on with when enough was tried.
 const LATE_GAIN: f64 = 0.5;
-
-/// How far a job has come.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Progress<T> {
-    /// Not finished: share done, 0 to 1, and what it is doing, in plain words.
-    Running {
-        /// Share done, 0 to 1.
-        fraction: f64,
-        /// What it is doing, in plain words.
-        text: String,
-    },
-    /// Finished.
-    Done(T),
-}
-
-/// Why a measurement cannot be criticised.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CriticismError {
-    /// The input never changes, so nothing can be learnt from it.
-    #[error("the input is constant over the whole file: an experiment must move it")]
-    ConstantInput,
-    /// An output never changes.
-    #[error(
-        "the column {name} is constant over the whole file: there is nothing to compare the model with"
-    )]
-    ConstantOutput {
-        /// Its name in the file.
-        name: String,
-    },
-    /// A model of another kind of system.
-    #[error("the model is of a {model}, the measurement of a {measured}")]
-    WrongKind {
-        /// What the model is of.
-        model: &'static str,
-        /// What was measured.
-        measured: &'static str,
-    },
-    /// A known parameter in another unit than this measurement gives it.
-    #[error("the model gives {symbol} in {said}, but with this measurement it is in {unit}")]
-    WrongUnit {
-        /// Symbol of the parameter.
-        symbol: String,
-        /// Unit in the model.
-        said: String,
-        /// Unit with this measurement.
-        unit: String,
-    },
-    /// An effect of the user's own that cannot be made.
-    #[error("{name}, {error}")]
-    OwnEffect {
-        /// Its name.
-        name: String,
-        /// What is wrong with its formula.
-        error: FormulaError,
-    },
-    /// A fitted model without the value of a parameter.
-    #[error("the fitted model has no value for {symbol}")]
-    NoValue {
-        /// Symbol of the parameter.
-        symbol: String,
-    },
-    /// A model whose error is no number.
-    #[error(
-        "the error of the model is not finite: values of the measurement or of the model are too large or too small to calculate with"
-    )]
-    NotFinite,
-    /// An effect that makes no sense for this kind of system.
-    #[error("{effect} cannot be added to this kind of system")]
-    WrongEffect {
-        /// The effect.
-        effect: EffectId,
-    },
-}
 
 /// A way not taken yet: the steps before, and the model to go on from.
 struct Detour {
@@ -175,7 +103,7 @@ impl DiagnosisJob {
                 samples: measurement.len(),
                 noise_floor: NOISE_FLOOR,
                 steps: Vec::new(),
-                verdict: super::Verdict {
+                verdict: crate::diagnosis::Verdict {
                     missing: Vec::new(),
                     complete: false,
                     unknown: false,
@@ -414,7 +342,7 @@ fn trifling(diagnosis: &Diagnosis, session: &Session) -> bool {
 fn without_curves(report: &StepReport) -> StepReport {
     StepReport {
         step: report.step.clone(),
-        replay: super::Replay {
+        replay: crate::diagnosis::Replay {
             channels: Vec::new(),
             window_starts: Vec::new(),
         },

@@ -7,9 +7,9 @@ use super::score::score;
 use super::select::{helps, is_plain_noise};
 use super::session::{Scored, Session};
 use super::structure::Structure;
-use super::{Contradiction, CriticismError};
+use crate::diagnosis::{Contradiction, CriticismError};
 use crate::effect::EffectId;
-use crate::measurement::{Kind, Measurement};
+use crate::measurement::Measurement;
 use crate::user_model::{Known, Status, UserModel};
 
 /// Standard errors by which the data must miss a known value to contradict it.
@@ -82,14 +82,6 @@ impl Knowledge {
             .iter()
             .find(|(owner, k)| *owner == effect && k.symbol == symbol)
             .map(|(_, k)| k)
-    }
-}
-
-/// Symbols of the baseline of this kind: what a model file may say of it.
-pub fn baseline_symbols(kind: Kind) -> &'static [&'static str] {
-    match kind {
-        Kind::Drive => &["J1", "d1"],
-        Kind::Process => &["K", "T"],
     }
 }
 

@@ -1,11 +1,11 @@
 //! Where does the model fail? The part of an axis in which the squared error concentrates.
 
-use super::Finding;
 use super::axes::{Axis, Parts, axes};
 use super::data::Data;
 use super::fit::{Motion, residuals};
 use super::output::Output;
 use super::spectrum::Spectrum;
+use crate::diagnosis::Finding;
 use crate::measurement::Kind;
 
 /// Parts of equal sample count into which an axis is divided.

@@ -3,9 +3,8 @@
 
 use std::fmt::Write as _;
 
-use serde::{Deserialize, Serialize};
-
 use super::session::{Scored, Session};
+use crate::diagnosis::MissingPart;
 use crate::effect::{Dimension, Place, StepPart};
 use crate::measurement::Kind;
 use crate::uncertain::with_error;
@@ -15,25 +14,6 @@ const LEAST_EXPLAINED: f64 = 0.02;
 
 /// Standard errors by which a part must stand out to be named.
 const CLEAR: f64 = 3.0;
-
-/// An estimate without a model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MissingPart {
-    /// `force`, `input` or `output`.
-    pub what: String,
-    /// Its unit.
-    pub unit: String,
-    /// What it may depend on: `velocity`, `position`, `time`, `input` or `output`.
-    pub axis: String,
-    /// Unit of the axis.
-    pub axis_unit: String,
-    /// Along the axis, from low to high.
-    pub parts: Vec<StepPart>,
-    /// Share of the squared error left that it would explain, 0 to 1.
-    pub explained: f64,
-    /// In a sentence with numbers.
-    pub text: String,
-}
 
 /// Estimates for what `fit` leaves, the one that explains most first.
 pub(super) fn missing_parts(session: &Session, scored: &Scored) -> Vec<MissingPart> {

@@ -2,7 +2,6 @@
 
 mod atlas;
 mod axes;
-mod baseline;
 mod before;
 mod correlation;
 mod cost;
@@ -11,6 +10,7 @@ mod data;
 mod fingerprint;
 mod fit;
 mod glitches;
+mod guess;
 mod held;
 mod job;
 mod judge;
@@ -27,7 +27,6 @@ mod output;
 mod probes;
 mod pushes;
 mod race;
-mod report;
 mod residual_test;
 mod score;
 mod search;
@@ -43,19 +42,7 @@ mod verdict;
 mod window;
 mod window_sums;
 
-pub use atlas::{Profile, ProfileBin};
-pub use fingerprint::Fingerprint;
-pub use job::{CriticismError, DiagnosisJob, Progress};
-pub use knowledge::baseline_symbols;
-pub use missing::MissingPart;
-pub use next_experiment::{
-    Controller, ExperimentJob, FittedModel, LimitError, Limits, NextExperiment, Opening, Program,
-    Sine, Trial,
-};
+pub use job::DiagnosisJob;
+pub use next_experiment::{Controller, ExperimentJob};
 pub use noise::noise_level;
-pub use report::{
-    Candidate, Contradiction, Diagnosis, Finding, Parameter, Replay, ReplayChannel, Step,
-    StepReport, Verdict,
-};
-pub use residual_test::{ResidualTest, ResidualTestKind};
 pub use step::StepJob;

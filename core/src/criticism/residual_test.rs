@@ -4,13 +4,12 @@
 //! autocorrelation of `N` residuals has a standard deviation of `1 / sqrt(N)`, their correlation with the input
 //! one of `sqrt(sum_k rho_e(k) rho_u(k) / N)`.
 
-use serde::{Deserialize, Serialize};
-
 use super::axes::seconds;
 use super::correlation::product;
 use super::data::Data;
 use super::fit::{Motion, residuals};
 use super::locate::signal_name;
+use crate::diagnosis::{ResidualTest, ResidualTestKind};
 
 /// Lags up to which a residual is compared with itself, and with the input, in samples.
 const LAGS: usize = 20;
@@ -20,35 +19,6 @@ const MEMORY: usize = 200;
 
 /// Normal quantile that none of [`LAGS`] independent values exceeds in 99 of 100 cases (Bonferroni).
 const QUANTILE: f64 = 3.48;
-
-/// What a residual is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ResidualTestKind {
-    /// With itself some samples earlier.
-    Whiteness,
-    /// With the input some samples earlier.
-    InputCorrelation,
-}
-
-/// A test of the residual of one output.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ResidualTest {
-    /// What it was compared with.
-    pub kind: ResidualTestKind,
-    /// Index of the output in the measurement.
-    pub output: usize,
-    /// The correlation, -1 to 1, that is largest against its bound.
-    pub correlation: f64,
-    /// Lag at which it is, s.
-    pub lag: f64,
-    /// What chance alone leaves in 99 of 100 cases.
-    pub bound: f64,
-    /// The correlation is within its bound.
-    pub passed: bool,
-    /// The same as a sentence with numbers.
-    pub text: String,
-}
 
 /// Both tests of every output.
 pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> {

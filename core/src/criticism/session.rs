@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::atlas::atlas;
-use super::baseline;
 use super::cost::fitted_costs;
 use super::data::Data;
 use super::fit::Fit;
+use super::guess::guess;
 use super::knowledge::{self, Knowledge};
 use super::locate::locate;
 use super::memory::is_noise_with_memory;
@@ -16,13 +16,13 @@ use super::score::{Score, score};
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
-use super::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::crew::Crew;
+use crate::diagnosis::{CriticismError, Parameter, Replay, ReplayChannel};
 use crate::effect::{
-    self, Dimension, Effect, EffectId, Motion, ParameterSpec, Probe, ProbeInput, ProbeOutput,
-    Range, Rubbing, Scales, SeenGap,
+    self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
+    Rubbing, Scales, SeenGap, baseline,
 };
-use crate::measurement::{Kind, Measurement, Quantity};
+use crate::measurement::{Kind, Measurement, Motion, Quantity};
 use crate::user_model::{Status, UserModel};
 
 /// A fit with its score.
@@ -127,7 +127,7 @@ impl Session {
             data = data.with_seen_load(seen);
         }
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
-        let guess = baseline::guess(&data, &data.excitation.effective_input(&plain))
+        let guess = guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| vec![1.0, 1.0]);
         let (inertia, viscous) = baseline::body(data.kind, &guess);
         let scales = data.scales(inertia, viscous);
@@ -442,12 +442,12 @@ impl Session {
     }
 
     /// Where a fit of the whole record fails.
-    pub fn findings(&self, scored: &Scored) -> Vec<super::Finding> {
+    pub fn findings(&self, scored: &Scored) -> Vec<crate::diagnosis::Finding> {
         locate(self.whole(), &scored.fit.motion, self.output_unit())
     }
 
     /// The residual over every axis.
-    pub fn atlas(&self, fit: &Fit) -> Vec<super::Profile> {
+    pub fn atlas(&self, fit: &Fit) -> Vec<crate::diagnosis::Profile> {
         atlas(self.whole(), &fit.motion, self.output_unit())
     }
 

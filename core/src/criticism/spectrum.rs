@@ -6,8 +6,8 @@
 //! window, slow errors are taken up by the starting states, and what is left of them has the frequency of the windows: only
 //! what swings several times in a window is looked at.
 
-use super::atlas::ProfileBin;
 use super::data::Data;
+use crate::diagnosis::ProfileBin;
 
 /// Bands from one period of the record to half the sampling rate, in equal ratios: some five in an octave.
 const BANDS: usize = 60;

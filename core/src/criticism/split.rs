@@ -152,8 +152,9 @@ mod tests {
     use std::fmt::Write as _;
 
     use super::*;
-    use crate::criticism::baseline;
+    use crate::criticism::guess::guess;
     use crate::criticism::session::Session;
+    use crate::effect::baseline;
     use crate::measurement::import_csv;
     use crate::rig::{DriveRig, Excitation, Stranger};
     use crate::user_model::UserModel;
@@ -173,7 +174,7 @@ mod tests {
         .measure();
         let mut data = Data::new(&measurement).unwrap();
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
-        let guess = baseline::guess(&data, &data.excitation.effective_input(&plain)).unwrap();
+        let guess = guess(&data, &data.excitation.effective_input(&plain)).unwrap();
         let scales = data.scales(guess[0], guess[1]);
         let knowledge = Knowledge::of(&UserModel::blank(data.kind));
         hold_back(&mut data, &knowledge, guess, &scales);

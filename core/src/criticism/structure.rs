@@ -1,8 +1,7 @@
 //! A model structure: which baseline, which effects, and how a vector of values becomes a model.
 
-use super::baseline;
 use super::knowledge::Knowledge;
-use crate::effect::{Effect, EffectId, Scales};
+use crate::effect::{Effect, EffectId, Scales, baseline};
 use crate::measurement::Kind;
 use crate::model::{LoadBegin, Model};
 use crate::user_model::Status;

@@ -1,9 +1,9 @@
 //! Units and names of what a session speaks of.
 
 use super::session::Session;
-use super::{CriticismError, baseline};
-use crate::effect::{Dimension, Effect, Motion};
-use crate::measurement::Quantity;
+use crate::diagnosis::CriticismError;
+use crate::effect::{Dimension, Effect, baseline};
+use crate::measurement::{Motion, Quantity};
 
 impl Session {
     /// Checks the units that the user's model says, its effects being among `effects`.

@@ -7,9 +7,9 @@ use super::locate::signal_name;
 use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
-use super::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
-use crate::effect::{self, Effect, EffectId, is_of_record, name_of, shown_unit};
-use crate::uncertain::{with_error, written_like};
+use crate::diagnosis::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
+use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
+use crate::uncertain::{shown_unit, with_error, written_like};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -297,21 +297,6 @@ pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperime
     if !experiments.is_empty() && verdict.next_experiment.is_some() {
         verdict.experiments = experiments.to_vec();
         verdict.say_experiments();
-    }
-}
-
-impl Verdict {
-    fn say_experiments(&mut self) {
-        let texts: Vec<&str> = self.experiments.iter().map(|e| e.text.as_str()).collect();
-        self.next_experiment = Some(texts.join(" "));
-    }
-
-    /// Puts a proposal in the place of another, in words too; one that is not there changes nothing.
-    pub fn replace_experiment(&mut self, index: usize, proposal: NextExperiment) {
-        if let Some(place) = self.experiments.get_mut(index) {
-            *place = proposal;
-            self.say_experiments();
-        }
     }
 }
 

@@ -4,9 +4,8 @@
 //! exponential falls to round-off within [`TERMS`] terms; the coefficients come from the recurrence
 //! `y_{k+1} = h/(k+1) (M y_k + [k = 0] b)`. Every guard is then a polynomial.
 
-use super::modes::{Friction, State};
 use super::polynomial::{Polynomial, TERMS, integral, value};
-use super::trajectory::Side;
+use super::state::{Friction, State};
 use super::{Contact, Drive};
 
 /// Largest rate times length of a step: `0.8^18 / 18!` is below round-off.
@@ -178,32 +177,5 @@ fn at_break_away(rate: f64, at_rest: bool, forces: f64) -> f64 {
         0.0
     } else {
         rate
-    }
-}
-
-/// The spring of a pressed contact, `F = K (x1 - x2) + D (v1 - v2) - offset`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spring {
-    pub stiffness: f64,
-    pub damping: f64,
-    pub offset: f64,
-}
-
-impl Spring {
-    /// The spring at an end of the gap; `None` where the contact is rigid.
-    pub fn at(drive: &Drive, side: Side) -> Option<Self> {
-        match drive.contact {
-            Contact::Rigid { .. } => None,
-            Contact::Compliant { stiffness, damping } => Some(Self {
-                stiffness,
-                damping,
-                offset: stiffness * (side.sign() * drive.half_gap),
-            }),
-        }
-    }
-
-    /// Torque or force on the load.
-    pub fn force(&self, s: &State) -> f64 {
-        self.stiffness * s.gap + self.damping * (s.v1 - s.v2) - self.offset
     }
 }

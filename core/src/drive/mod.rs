@@ -12,6 +12,7 @@
 mod cycle;
 mod design;
 mod engine;
+mod error;
 mod figures;
 mod flow;
 mod modes;
@@ -20,6 +21,8 @@ mod polynomial;
 mod record;
 mod relay;
 mod scenario;
+mod spring;
+mod state;
 mod summary;
 mod trajectory;
 
@@ -28,6 +31,8 @@ use serde::{Deserialize, Serialize};
 pub use cycle::{CyclePoint, DriftingCycle, Turn, drift_formula, drifting_cycle};
 pub use design::{DriftingTest, RoughDrive, TRAVERSES, design_drifting_test};
 pub use engine::{DriveJob, run};
+pub use error::DriveError;
+pub(crate) use error::check;
 pub use figures::{DriveFigure, checks, drifting_test, figures, reference_drive};
 pub use play::{PlayCycle, cycles_with_play, play_describing_function, relay_seen_through_play};
 pub use record::{Recorder, record};
@@ -35,8 +40,6 @@ pub use relay::{Command, VelocityRelay};
 pub(crate) use scenario::DriveFile;
 pub use summary::{Direction, Engagement, FreeDrift, Summary, Traverse, engaged_drift, summarize};
 pub use trajectory::{DriveRun, Energy, Event, EventKind, Mass, Side};
-
-use crate::relay::RelayError;
 
 /// A mass with its friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -146,37 +149,6 @@ pub const MAX_EVENTS: usize = 500_000;
 
 /// Samples that a run may have.
 pub const MAX_SAMPLES: f64 = 10_000_000.0;
-
-/// A drive that cannot be, or a run that cannot be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DriveError {
-    /// A value out of range.
-    #[error("{name} is {value}: it must be {range}")]
-    Value {
-        /// Which.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// What would be right.
-        range: &'static str,
-    },
-    /// The relay.
-    #[error(transparent)]
-    Relay(#[from] RelayError),
-}
-
-pub(crate) fn check(
-    name: &'static str,
-    value: f64,
-    fits: bool,
-    range: &'static str,
-) -> Result<(), DriveError> {
-    if value.is_finite() && fits {
-        Ok(())
-    } else {
-        Err(DriveError::Value { name, value, range })
-    }
-}
 
 impl Drive {
     /// Checks every value.

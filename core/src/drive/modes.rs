@@ -1,63 +1,9 @@
 //! Sticking, slipping and touching: which mode follows from a state and the torque that acts.
 
-use super::flow::Spring;
+use super::spring::Spring;
+use super::state::{Friction, State};
 use super::trajectory::Side;
 use super::{Body, Contact, Drive};
-
-/// How a mass rubs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Friction {
-    /// Held at rest.
-    Stuck,
-    /// Moves (or begins to move) up.
-    Up,
-    /// Moves down.
-    Down,
-}
-
-impl Friction {
-    /// Sign of the motion.
-    pub fn sign(self) -> f64 {
-        match self {
-            Self::Stuck => 0.0,
-            Self::Up => 1.0,
-            Self::Down => -1.0,
-        }
-    }
-
-    fn towards(direction: f64) -> Self {
-        if direction < 0.0 {
-            Self::Down
-        } else {
-            Self::Up
-        }
-    }
-
-    /// Of a mass with velocity `v` under a `force` besides its friction of this level.
-    pub fn of(v: f64, force: f64, level: f64) -> Self {
-        if v != 0.0 {
-            Self::towards(v)
-        } else if level > 0.0 && force.abs() <= level {
-            Self::Stuck
-        } else {
-            Self::towards(force)
-        }
-    }
-}
-
-/// State of a drive: what moves continuously, and the modes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct State {
-    pub x1: f64,
-    pub v1: f64,
-    pub v2: f64,
-    /// `x1 - x2`, kept by itself so that the ends of the gap are met exactly.
-    pub gap: f64,
-    pub motor: Friction,
-    pub load: Friction,
-    /// Where the masses touch.
-    pub joint: Option<Side>,
-}
 
 /// Share of the forces by which a contact must pull before it counts as parting: above round-off, so
 /// that a contact without force is no endless coming and going.

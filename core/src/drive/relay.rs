@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{DriveError, check};
+use super::error::{DriveError, check};
 use crate::relay::Relay;
 
 /// A relay with hysteresis `eps` on the motor's velocity, `u = -k h(v1)`: the motor swings to and fro

@@ -8,6 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::probe::Bounces;
 use super::{
     BodyStart, Dimension, Effect, EffectId, GapLoad, ParameterSpec, Probe, Range, SeenGap,
+    joint_compliance,
 };
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
@@ -380,7 +381,7 @@ impl Effect for Backlash {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const { &[EffectId::new("joint_compliance")] }
+        &[joint_compliance::ID]
     }
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {

@@ -4,11 +4,13 @@ use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("constant_load");
+
 pub(super) struct ConstantLoad;
 
 impl Effect for ConstantLoad {
     fn id(&self) -> EffectId {
-        EffectId::new("constant_load")
+        ID
     }
 
     fn name(&self) -> &'static str {

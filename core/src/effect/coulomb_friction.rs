@@ -10,6 +10,8 @@ use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range}
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("coulomb_friction");
+
 pub(super) struct CoulombFriction;
 
 /// Values with this level. The deflection is seen if it takes about a sample to cross after a reversal.
@@ -21,7 +23,7 @@ fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
 
 impl Effect for CoulombFriction {
     fn id(&self) -> EffectId {
-        EffectId::new("coulomb_friction")
+        ID
     }
 
     fn name(&self) -> &'static str {

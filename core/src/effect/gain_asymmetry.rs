@@ -4,11 +4,13 @@ use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("gain_asymmetry");
+
 pub(super) struct GainAsymmetry;
 
 impl Effect for GainAsymmetry {
     fn id(&self) -> EffectId {
-        EffectId::new("gain_asymmetry")
+        ID
     }
 
     fn name(&self) -> &'static str {

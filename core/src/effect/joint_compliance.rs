@@ -1,8 +1,12 @@
 //! Joint compliance: a load behind an elastic joint.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{
+    Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction, presliding_friction,
+};
 use crate::measurement::Kind;
 use crate::model::{Coupling, Load, Model};
+
+pub(super) const ID: EffectId = EffectId::new("joint_compliance");
 
 pub(super) struct JointCompliance;
 
@@ -126,7 +130,7 @@ fn loads(stretch: &Probe, share: f64) -> Vec<(f64, Guess, Vec<f64>)> {
 
 impl Effect for JointCompliance {
     fn id(&self) -> EffectId {
-        EffectId::new("joint_compliance")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -186,12 +190,7 @@ impl Effect for JointCompliance {
 
     /// A light load that rubs, on a stiff joint, is dry friction of the body.
     fn limits(&self) -> &'static [EffectId] {
-        const {
-            &[
-                EffectId::new("coulomb_friction"),
-                EffectId::new("presliding_friction"),
-            ]
-        }
+        &[coulomb_friction::ID, presliding_friction::ID]
     }
 
     /// On a joint too stiff to be seen, the load is a part of the body; a load that its friction holds makes of the joint a

@@ -3,9 +3,13 @@
 //! The same contact as in Coulomb friction, with a deflection so long that its build-up is seen
 //! sample by sample (Maxwell-slip elements along Dahl's curve).
 
-use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{
+    BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("presliding_friction");
 
 pub(super) struct PreslidingFriction;
 
@@ -48,7 +52,7 @@ fn long_starts(probe: &Probe, share: f64) -> Vec<BodyStart> {
 
 impl Effect for PreslidingFriction {
     fn id(&self) -> EffectId {
-        EffectId::new("presliding_friction")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -95,7 +99,7 @@ impl Effect for PreslidingFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const { &[EffectId::new("coulomb_friction")] }
+        &[coulomb_friction::ID]
     }
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {

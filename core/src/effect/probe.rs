@@ -9,6 +9,7 @@
 
 mod bounces;
 mod bristle;
+mod equations;
 mod momentum;
 mod moving;
 mod regression;
@@ -24,9 +25,9 @@ use crate::model::{Load, free_body, load_torque};
 use crate::order::range;
 use crate::sums::dot;
 pub(super) use bounces::Bounces;
+use equations::spans_stride;
 pub use momentum::Rubbing;
 pub use regression::Regression;
-use regression::{solved, spans_stride};
 pub use steps::{Place, StepPart, Steps};
 
 /// Samples at most that are looked at.

@@ -1,6 +1,7 @@
 //! A second first-order lag in series with the process.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, slower_is_the_process};
+use super::effect::slower_is_the_process;
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 

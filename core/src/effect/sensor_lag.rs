@@ -3,7 +3,8 @@
 //! On a drive it is the velocity that lags: an encoder counts without delay, the velocity made from
 //! it is filtered. Where the position is all that is measured, that lags.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, slower_is_the_process};
+use super::effect::slower_is_the_process;
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 

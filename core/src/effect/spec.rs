@@ -2,20 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use serde::{Deserialize, Serialize};
-
-/// Whether a drive turns or slides; a process does neither.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Motion {
-    /// kg m^2, N m, rad.
-    Rotational,
-    /// kg, N, m.
-    Translational,
-    /// A process: input and output in their own units.
-    None,
-}
-
+use crate::measurement::Motion;
 /// Physical dimension of a parameter; its SI unit follows from the [`Motion`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
@@ -63,7 +50,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// SI unit as files have it; [`shown_unit`] for a reader.
+    /// SI unit as files have it; [`shown_unit`](crate::uncertain::shown_unit) for a reader.
     pub const fn unit(self, motion: Motion) -> &'static str {
         match (self, motion) {
             (Self::Time, _) => "s",
@@ -90,11 +77,6 @@ impl Dimension {
             (Self::Ratio | Self::PerOutput | Self::PerInput, _) | (_, Motion::None) => "1",
         }
     }
-}
-
-/// A unit as it is shown: files and JSON have `kg m^2`, which is easier to type than `kg m²`.
-pub fn shown_unit(unit: &str) -> String {
-    unit.replace("^2", "²")
 }
 
 /// Values that a parameter may take.

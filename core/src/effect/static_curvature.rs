@@ -3,7 +3,9 @@
 //! Three places can bend: the balance of the process (its time constant then changes with the output), the sensor and the
 //! valve. All are fitted.
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{
+    Dimension, Effect, EffectId, ParameterSpec, Probe, Range, constant_load, gain_asymmetry,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -67,12 +69,7 @@ impl Effect for StaticCurvature {
 
     /// What bends two levels of an input makes one act more than the other.
     fn limits(&self) -> &'static [EffectId] {
-        const {
-            &[
-                EffectId::new("gain_asymmetry"),
-                EffectId::new("constant_load"),
-            ]
-        }
+        &[gain_asymmetry::ID, constant_load::ID]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

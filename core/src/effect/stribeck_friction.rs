@@ -3,7 +3,9 @@
 //! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
 
 use super::spec::HARD_CROSSINGS;
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{
+    Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction, presliding_friction,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -81,12 +83,7 @@ impl Effect for StribeckFriction {
     }
 
     fn contains(&self) -> &'static [EffectId] {
-        const {
-            &[
-                EffectId::new("coulomb_friction"),
-                EffectId::new("presliding_friction"),
-            ]
-        }
+        &[coulomb_friction::ID, presliding_friction::ID]
     }
 
     fn needs_its_parts(&self) -> bool {

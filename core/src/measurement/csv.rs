@@ -7,6 +7,7 @@ use super::header::{Field, Header, Role, map, name_and_unit, shorten, understand
 use super::mapping::ImportOptions;
 use super::rates;
 use super::size::wrong_size;
+use super::split::{BLANKS, split_header};
 use super::unit::parse_input;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
@@ -232,9 +233,6 @@ pub(super) fn survey<S: Clone>(
     Ok(fields.into_iter().zip(seen).collect())
 }
 
-/// Stands for any number of blanks and tabs.
-const BLANKS: char = ' ';
-
 /// The separator: tab or semicolon where the header has one outside brackets, else a comma, or blanks where
 /// neither the header nor the row after it has any of these and the row is divided by them.
 fn separator_of(header: &str, row: Option<&str>) -> char {
@@ -273,54 +271,6 @@ fn outside_brackets(header: &str) -> String {
         depth == 0
     });
     outside.collect()
-}
-
-/// Splits a header; a separator inside brackets belongs to the unit (`[counts, 4096/rev]`).
-pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
-    let mut fields = vec![String::new()];
-    let mut depth = 0;
-    let mut quoted = false;
-    let blanks = separator == BLANKS;
-    for c in header
-        .trim_matches(|c: char| blanks && c.is_whitespace())
-        .chars()
-    {
-        match c {
-            '[' | '(' => depth += 1,
-            ']' | ')' => depth -= 1,
-            '"' => quoted ^= blanks,
-            _ => {}
-        }
-        let parts = c == separator || (blanks && c.is_whitespace());
-        if depth <= 0 && !quoted && parts {
-            fields.push(String::new());
-        } else if c != '"'
-            && !c.is_control()
-            && let Some(last) = fields.last_mut()
-        {
-            last.push(c);
-        }
-    }
-    if blanks {
-        return join_units(fields);
-    }
-    // A separator at the end of the line is a habit of some loggers.
-    if fields.len() > 1 && fields.last().is_some_and(|f| f.trim().is_empty()) {
-        fields.pop();
-    }
-    fields.iter().map(|f| f.trim().to_owned()).collect()
-}
-
-/// Puts units that stand apart by blanks (`t [s]`) to their names, and leaves out what stands between blanks alone.
-fn join_units(parts: Vec<String>) -> Vec<String> {
-    let mut fields: Vec<String> = Vec::new();
-    for part in parts.into_iter().filter(|p| !p.is_empty()) {
-        match fields.last_mut() {
-            Some(name) if part.starts_with(['[', '(']) => *name = format!("{name} {part}"),
-            _ => fields.push(part),
-        }
-    }
-    fields
 }
 
 /// Splits a row of numbers; a separator inside quotes belongs to the field.

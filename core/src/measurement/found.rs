@@ -2,11 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::MIN_SAMPLES;
-use super::csv::survey;
-use super::error::{ImportError, Problem};
 use super::header::{Field, Role, addresses};
-use super::mat::{self, Format};
 
 /// First values that are kept of a column.
 const FIRST: usize = 3;
@@ -60,28 +56,6 @@ impl Numbers {
     }
 }
 
-/// The columns of a CSV or MATLAB file that are long enough to be a channel of a measurement.
-///
-/// # Errors
-/// One line that says why the file has none, where it is damaged or of another format.
-pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError> {
-    let fail = |(line, problem)| ImportError {
-        file: name.to_owned(),
-        line,
-        column: None,
-        problem,
-    };
-    let seen = match mat::format_of(bytes) {
-        Format::Other => survey(bytes, Numbers::default(), Numbers::take).map_err(fail)?,
-        Format::Hdf5 => return Err(fail((None, Problem::Hdf5))),
-        Format::Mat4 => return Err(fail((None, Problem::Mat4))),
-        Format::Mat5 => survey_mat(bytes).map_err(|problem| fail((None, problem)))?,
-    };
-    let mut found = addressed(seen);
-    found.retain(|column| column.numbers.count >= MIN_SAMPLES);
-    Ok(found)
-}
-
 /// Columns with their addresses.
 pub(super) fn addressed(seen: Vec<(Field, Numbers)>) -> Vec<FoundColumn> {
     let (fields, numbers): (Vec<Field>, Vec<Numbers>) = seen.into_iter().unzip();
@@ -96,13 +70,4 @@ pub(super) fn addressed(seen: Vec<(Field, Numbers)>) -> Vec<FoundColumn> {
             numbers,
         })
         .collect()
-}
-
-fn survey_mat(bytes: &[u8]) -> Result<Vec<(Field, Numbers)>, Problem> {
-    let seen = |series: mat::Series| {
-        let mut numbers = Numbers::default();
-        series.values.iter().for_each(|v| numbers.take(*v));
-        (Field::unknown(&series.name), numbers)
-    };
-    Ok(mat::read(bytes)?.into_iter().map(seen).collect())
 }

@@ -2,8 +2,8 @@
 
 use std::str::FromStr;
 
-use super::csv::split_header;
-use super::header::{Role, shorten};
+use super::column::{Role, shorten};
+use super::split::split_header;
 use super::unit::{self, Measures};
 
 /// How to read a file; the default asks the file itself.

@@ -4,159 +4,30 @@
 //! Time is strictly increasing and every value is finite: [`import_csv`]
 //! refuses anything else, so that no later module has to check again.
 
+mod column;
 mod csv;
 mod error;
 mod found;
 mod guess;
 mod header;
+mod kind;
 mod mapping;
 mod mat;
+
 mod rates;
+mod record;
 mod size;
+mod split;
 mod table;
 mod unit;
 
-use serde::{Deserialize, Serialize};
-
+pub use column::Role;
 pub use csv::import_csv;
 pub use error::{ImportError, Problem};
-pub use found::{FoundColumn, columns};
+pub use found::FoundColumn;
 pub use guess::{Guess, guess};
-pub use header::Role;
+pub use kind::{Kind, Motion, Quantity};
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
-pub use table::import;
+pub use record::{Channel, MIN_SAMPLES, Measurement};
+pub use table::{columns, import};
 pub use unit::{COUNTS, needs_torque_constant, usual_units};
-
-/// What kind of system was measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// A motor that moves an inertia: torque or force in, position and/or velocity out.
-    Drive,
-    /// A self-regulating process: some input in, some output `y` out.
-    Process,
-}
-
-impl Kind {
-    /// Its name in files and sentences.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Drive => "drive",
-            Self::Process => "process",
-        }
-    }
-}
-
-/// What a column holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Manipulated input `u`: torque in N m, force in N, or a process input.
-    Input,
-    /// Motor position `x1`, rad or m.
-    Position,
-    /// Motor velocity `v1`, rad/s or m/s.
-    Velocity,
-    /// Load position `x2`, rad or m; for reference, never needed by a diagnosis.
-    LoadPosition,
-    /// Load velocity `v2`, rad/s or m/s; for reference, never needed by a diagnosis.
-    LoadVelocity,
-    /// Process output `y`.
-    Output,
-}
-
-/// One recorded column in SI units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Channel {
-    /// What it is.
-    pub quantity: Quantity,
-    /// Its name in the file, such as `v1`.
-    pub name: String,
-    /// Its SI unit as written on screen, such as `rad/s`; `1` for a plain number.
-    pub unit: String,
-    /// One value per sample, in `unit`.
-    pub values: Vec<f64>,
-}
-
-/// One experiment: an input and the outputs recorded with it.
-///
-/// The input is held between samples: `input.values[i]` acts from `time[i]` to `time[i + 1]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measurement {
-    /// Name shown to the user, usually the file name.
-    pub name: String,
-    /// Drive or process.
-    pub kind: Kind,
-    /// Sample times in s, strictly increasing, at least [`MIN_SAMPLES`].
-    pub time: Vec<f64>,
-    /// The manipulated input.
-    pub input: Channel,
-    /// What the model must explain: position and/or velocity of a drive, `y` of a process.
-    pub outputs: Vec<Channel>,
-    /// Columns kept for reference only (load position and velocity).
-    pub reference: Vec<Channel>,
-    /// Things worth telling the user that did not stop the import.
-    pub warnings: Vec<String>,
-}
-
-/// Fewest samples that a measurement can have; below this no noise can be told from signal.
-pub const MIN_SAMPLES: usize = 20;
-
-impl Measurement {
-    /// The output with this quantity, if it was recorded.
-    pub fn output(&self, quantity: Quantity) -> Option<&Channel> {
-        self.outputs.iter().find(|c| c.quantity == quantity)
-    }
-
-    /// Whether the drive turns or slides, by the unit of its input.
-    pub fn motion(&self) -> crate::effect::Motion {
-        match (self.kind, self.input.unit.as_str()) {
-            (Kind::Process, _) => crate::effect::Motion::None,
-            (Kind::Drive, "N") => crate::effect::Motion::Translational,
-            (Kind::Drive, _) => crate::effect::Motion::Rotational,
-        }
-    }
-
-    /// The measurement as CSV in SI units, which [`import_csv`] reads back to the same values.
-    pub fn to_csv(&self) -> String {
-        use std::fmt::Write as _;
-        let channels: Vec<&Channel> = std::iter::once(&self.input)
-            .chain(&self.outputs)
-            .chain(&self.reference)
-            .collect();
-        let mut text = String::from("t [s]");
-        // Writing into a string cannot fail.
-        for channel in &channels {
-            let _ = write!(text, ",{} [{}]", channel.importable_name(), channel.unit);
-        }
-        text.push('\n');
-        for (i, time) in self.time.iter().enumerate() {
-            let _ = write!(text, "{time:?}");
-            for value in channels.iter().filter_map(|c| c.values.get(i)) {
-                let _ = write!(text, ",{value:?}");
-            }
-            text.push('\n');
-        }
-        text
-    }
-
-    /// Number of samples.
-    pub fn len(&self) -> usize {
-        self.time.len()
-    }
-
-    /// Whether there are no samples (never true for a checked measurement).
-    pub fn is_empty(&self) -> bool {
-        self.time.is_empty()
-    }
-}
-
-impl Channel {
-    /// Its own name where the importer would understand it, else the usual one.
-    fn importable_name(&self) -> &str {
-        if header::role(&self.name) == Some(header::Role::Measured(self.quantity)) {
-            return &self.name;
-        }
-        header::Role::Measured(self.quantity).name()
-    }
-}

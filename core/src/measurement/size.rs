@@ -1,6 +1,6 @@
 //! Values that nothing can have measured: too large or too small to calculate with.
 
-use super::header::Role;
+use super::column::Role;
 
 /// Largest value that is read: of larger ones the fourth powers, of which some sums consist, or products with the like
 /// are beyond the largest number that an `f64` can hold (1e308).

@@ -1,12 +1,13 @@
 //! Files of any format that is known, and columns of numbers that come without text.
 
-use super::csv::{assemble, import_text};
+use super::csv::{assemble, import_text, survey};
 use super::error::{ImportError, Problem};
+use super::found::{FoundColumn, Numbers, addressed};
 use super::header::{Field, Header, Role, map, understand};
 use super::mapping::ImportOptions;
 use super::mat::{self, Format, Series};
 use super::size::wrong_size;
-use super::{Measurement, header::shorten};
+use super::{MIN_SAMPLES, Measurement, header::shorten};
 
 /// Reads a measurement: CSV (see [`import_csv`](super::import_csv)) or a MATLAB file of level 5
 /// (`save -v6` or `-v7`), by what the file is and not by its name.
@@ -59,12 +60,43 @@ fn import_mat(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Measu
         return Err((Some(name.clone()), Problem::NoUnitInMat { name }));
     }
     let header = understand(fields, options).map_err(|(column, p)| (column.map(|(_, n)| n), p))?;
-    let values = columns(&header, series)?;
+    let values = in_si(&header, series)?;
     assemble(name, &header, values).map_err(whole)
 }
 
+/// The columns of a CSV or MATLAB file that are long enough to be a channel of a measurement.
+///
+/// # Errors
+/// One line that says why the file has none, where it is damaged or of another format.
+pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError> {
+    let fail = |(line, problem)| ImportError {
+        file: name.to_owned(),
+        line,
+        column: None,
+        problem,
+    };
+    let seen = match mat::format_of(bytes) {
+        Format::Other => survey(bytes, Numbers::default(), Numbers::take).map_err(fail)?,
+        Format::Hdf5 => return Err(fail((None, Problem::Hdf5))),
+        Format::Mat4 => return Err(fail((None, Problem::Mat4))),
+        Format::Mat5 => survey_mat(bytes).map_err(|problem| fail((None, problem)))?,
+    };
+    let mut found = addressed(seen);
+    found.retain(|column| column.numbers.count >= MIN_SAMPLES);
+    Ok(found)
+}
+
+fn survey_mat(bytes: &[u8]) -> Result<Vec<(Field, Numbers)>, Problem> {
+    let seen = |series: mat::Series| {
+        let mut numbers = Numbers::default();
+        series.values.iter().for_each(|v| numbers.take(*v));
+        (Field::unknown(&series.name), numbers)
+    };
+    Ok(mat::read(bytes)?.into_iter().map(seen).collect())
+}
+
 /// The columns of a header in SI units, checked as the rows of a text are.
-fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Located> {
+fn in_si(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Located> {
     let mut all: Vec<Vec<f64>> = Vec::new();
     for column in &header.columns {
         let mut values = series

@@ -1,7 +1,7 @@
 //! Units of columns, as people spell them, and their factors to SI.
 
 use super::Quantity;
-use super::header::Role;
+use super::column::Role;
 
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! What can be wrong with a mystery.
 
-use super::SHORTEST_WORD;
+/// Fewest characters of a word.
+pub const SHORTEST_WORD: usize = 6;
 
 /// Why a mystery cannot be made, read or revealed; each is one sentence.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,135 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{INPUT_STEP, VELOCITY_STEP};
 use super::seal::{Keys, SALT};
-use super::{Hideable, Mystery, MysteryError, Truth, columns, hideable};
+use super::{Experiment, Hideable, Mystery, MysteryError, Truth, columns, hideable};
 use crate::effect::EffectId;
 use crate::measurement::{Kind, Measurement};
-use crate::rig::process::{self, ProcessRig};
-use crate::rig::{self, DriveRig, ENCODER, Excitation, Random, carried_over, drifting};
+use crate::rig::Random;
 
 /// Most effects that are hidden.
 const MOST_EFFECTS: usize = 3;
 
-/// Length of a record: of a drive, of a process.
-const SAMPLES: usize = 8000;
-const SAMPLES_PROCESS: usize = 2000;
-
-/// Time after which the drift turns round, s, and how far the motor shall come: beyond every gap of the menu, rad.
-const FLIP: f64 = 0.8;
-const TRAVEL: f64 = 0.012;
-
 /// Shares of mysteries without and with one effect, where the bench chooses; the others have two.
 const NONE: f64 = 0.2;
 const ONE: f64 = 0.5;
-
-/// What is measured, and what it is driven with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Experiment {
-    /// A relay on the velocity of a drive, a little asymmetric.
-    Relay,
-    /// A sum of sines on a drive.
-    #[default]
-    Sines,
-    /// Steps of growing size in both directions on a drive.
-    Stairs,
-    /// A relay on the velocity of a drive that lets it drift to and fro.
-    Drifting,
-    /// A relay on the output of a process.
-    ProcessRelay,
-    /// Levels of several sizes on a process.
-    ProcessStairs,
-    /// Two levels on a process, held for random times.
-    ProcessBinary,
-}
-
-impl Experiment {
-    /// All of them on such a system.
-    pub const fn of(kind: Kind) -> &'static [Self] {
-        match kind {
-            Kind::Drive => &[Self::Sines, Self::Relay, Self::Stairs, Self::Drifting],
-            Kind::Process => &[Self::ProcessBinary, Self::ProcessRelay, Self::ProcessStairs],
-        }
-    }
-
-    /// What is measured.
-    pub const fn kind(self) -> Kind {
-        match self {
-            Self::Relay | Self::Sines | Self::Stairs | Self::Drifting => Kind::Drive,
-            Self::ProcessRelay | Self::ProcessStairs | Self::ProcessBinary => Kind::Process,
-        }
-    }
-
-    /// A bench of its own kind, where nothing is hidden yet.
-    fn bench(self, random: &mut Random) -> Bench {
-        let drive = |excitation, random: &mut Random| {
-            Bench::Drive(DriveRig {
-                seed: random.seed(),
-                excitation,
-                samples: SAMPLES,
-                encoder: ENCODER,
-                input_step: INPUT_STEP,
-                velocity_step: VELOCITY_STEP,
-                inertia: 8.8e-4 * random.between(0.9, 1.1),
-                viscous: 2e-3 * random.between(0.8, 1.2),
-                ..DriveRig::default()
-            })
-        };
-        let process = |excitation, random: &mut Random| {
-            Bench::Process(ProcessRig {
-                seed: random.seed(),
-                excitation,
-                samples: SAMPLES_PROCESS,
-                gain: 2.0 * random.between(0.9, 1.1),
-                time_constant: 30.0 * random.between(0.85, 1.15),
-                ..ProcessRig::default()
-            })
-        };
-        match self {
-            Self::Relay => drive(rig::relay(0.1), random),
-            Self::Sines => drive(Excitation::Multisine { amplitude: 0.08 }, random),
-            Self::Stairs => drive(Excitation::Staircase { top: 0.3 }, random),
-            Self::Drifting => drive(drifting(FLIP), random),
-            Self::ProcessRelay => {
-                let (gain, hysteresis) = (1.0, 0.1);
-                process(process::Excitation::Relay { gain, hysteresis }, random)
-            }
-            Self::ProcessStairs => process(process::Excitation::Staircase { top: 1.0 }, random),
-            Self::ProcessBinary => process(process::Excitation::Binary { level: 1.0 }, random),
-        }
-    }
-}
-
-/// What the experiment runs on.
-pub(super) enum Bench {
-    Drive(DriveRig),
-    Process(ProcessRig),
-}
-
-impl Bench {
-    /// Symbols and values of the simplest model, SI.
-    fn baseline(&self) -> [(String, f64); 2] {
-        let named = match self {
-            Self::Drive(rig) => [("J1", rig.inertia), ("d1", rig.viscous)],
-            Self::Process(rig) => [("K", rig.gain), ("T", rig.time_constant)],
-        };
-        named.map(|(symbol, value)| (symbol.to_owned(), value))
-    }
-
-    /// Runs the experiment.
-    fn measure(self, experiment: Experiment) -> Measurement {
-        match self {
-            Self::Process(rig) => rig.measure(),
-            // Whether there is a gap or not: else the relay would tell.
-            Self::Drive(rig) if experiment == Experiment::Drifting => {
-                carried_over(&rig, TRAVEL, FLIP, |rig| rig).measure()
-            }
-            Self::Drive(rig) => rig.measure(),
-        }
-    }
-}
 
 /// An effect to hide, and its main parameter in SI.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,10 @@
 //! box that opens with a word ([`seal_of`], [`Reveal::open`]); without the word neither the file nor the link
 //! says what is hidden, how much of it, or how many effects there are.
 
+mod bench;
 mod error;
+mod experiment;
+mod hideable;
 mod make;
 mod menu;
 mod record;
@@ -12,10 +15,12 @@ mod reveal;
 mod seal;
 mod truth;
 
-pub use error::MysteryError;
-pub use make::{Choice, Experiment, Pick, Request, make};
-pub use menu::{Hideable, Strength, hideable};
+pub use error::{MysteryError, SHORTEST_WORD};
+pub use experiment::Experiment;
+pub use hideable::{Hideable, Strength};
+pub use make::{Choice, Pick, Request, make};
+pub use menu::hideable;
 pub use record::{Column, Mystery, columns, seal_of};
 pub use reveal::{Answer, Compared, Mark, Reveal, Row};
-pub use seal::{SALT, SHORTEST_WORD};
+pub use seal::SALT;
 pub use truth::{Hidden, Truth};

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Hidden, MysteryError, Truth, seal};
-use crate::criticism::Parameter;
-use crate::effect::{Effect, EffectId, Motion, VISCOUS_FRICTION, find};
-use crate::measurement::Kind;
+use crate::diagnosis::Parameter;
+use crate::effect::{Dimension, Effect, EffectId, VISCOUS_FRICTION, find};
+use crate::measurement::{Kind, Motion};
 
 /// Points for the effects and for the numbers; together 100.
 const EFFECT_POINTS: f64 = 70.0;
@@ -193,8 +193,13 @@ fn compare(
         .parameters
         .iter()
         .find(|p| p.effect.filter(|e| *e != VISCOUS_FRICTION) == effect && p.name == symbol);
-    // A half turn of its phase turns the sign of a ripple.
-    let ripple = effect == Some(EffectId::new("cogging"));
+    // Half a turn of its phase turns the sign of a ripple.
+    let has_phase = |e: &dyn Effect| {
+        e.parameters()
+            .iter()
+            .any(|p| p.dimension == Dimension::Phase)
+    };
+    let ripple = effect.and_then(find).is_some_and(has_phase);
     let value = |p: &Parameter| if ripple { p.value.abs() } else { p.value };
     let mark = found.map_or(0.0, |p| {
         let error = (value(p) - truth).abs() / truth.abs();

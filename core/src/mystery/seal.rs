@@ -8,13 +8,10 @@ use argon2::{Algorithm, Argon2, Params, Version};
 use chacha20poly1305::aead::Aead;
 use chacha20poly1305::{ChaCha20Poly1305, Key, KeyInit, Nonce};
 
-use super::MysteryError;
+use super::error::{MysteryError, SHORTEST_WORD};
 
 /// Length of the salt, bytes.
 pub const SALT: usize = 16;
-
-/// Fewest characters of a word.
-pub const SHORTEST_WORD: usize = 6;
 
 /// Length of every text before it is sealed, bytes.
 const PADDED: usize = 640;

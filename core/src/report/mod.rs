@@ -4,6 +4,7 @@
 //! same one. Everything that comes from a file is escaped.
 
 mod html;
+mod input;
 mod model;
 mod pictures;
 mod sha256;
@@ -11,43 +12,10 @@ mod svg;
 
 use std::fmt::Write as _;
 
-use crate::criticism::{Profile, Step, StepReport, Verdict};
-use crate::measurement::{Kind, Measurement};
-use crate::user_model::UserModel;
-use html::{escape, figure, legend, section};
+use crate::measurement::Kind;
+use html::{escape, figure, legend, section, short};
+pub use input::{Provenance, ReportInput};
 pub use sha256::sha256;
-
-/// Where a report comes from and how to make it again.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Provenance {
-    /// Command line that gives the same diagnosis.
-    pub command: String,
-    /// Version of the program.
-    pub version: String,
-    /// Size of the file, bytes.
-    pub bytes: usize,
-    /// Its [`sha256`].
-    pub sha256: String,
-}
-
-/// What a report is made from.
-#[derive(Clone, Copy, Debug)]
-pub struct ReportInput<'a> {
-    /// The measurement.
-    pub measurement: &'a Measurement,
-    /// From the baseline to the model that is reported.
-    pub steps: &'a [Step],
-    /// The residual of the baseline over every axis; may be empty.
-    pub first_atlas: &'a [Profile],
-    /// The model that is reported, with its curves.
-    pub last: &'a StepReport,
-    /// What the data say, if they have been heard to the end.
-    pub verdict: Option<&'a Verdict>,
-    /// The model that the user brought, if any.
-    pub model: Option<&'a UserModel>,
-    /// Where it comes from.
-    pub provenance: &'a Provenance,
-}
 
 /// The report as an HTML page.
 pub fn html(input: &ReportInput) -> String {
@@ -256,21 +224,5 @@ pub fn shell_word(text: &str) -> String {
         text.to_owned()
     } else {
         format!("'{}'", text.replace('\'', "'\\''"))
-    }
-}
-
-/// A number with three or four digits.
-fn short(value: f64) -> String {
-    let size = value.abs();
-    if !value.is_finite() {
-        "?".to_owned()
-    } else if size >= 1e6 || (size < 1e-3 && size > 0.0) {
-        format!("{value:.2e}")
-    } else if size >= 100.0 {
-        format!("{value:.0}")
-    } else if size >= 10.0 {
-        format!("{value:.1}")
-    } else {
-        format!("{value:.2}")
     }
 }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::html::{Cell, escape, table};
-use super::{ReportInput, short};
-use crate::criticism::{NextExperiment, Parameter, Step};
+use super::html::{Cell, escape, short, table};
+use super::input::ReportInput;
+use crate::diagnosis::{NextExperiment, Parameter, Step};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
 use crate::uncertain::with_error;

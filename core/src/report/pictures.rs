@@ -1,9 +1,8 @@
 //! The pictures of a report.
 
-use super::html::figure;
-use super::short;
+use super::html::{figure, short};
 use super::svg::{Axis, Bar, Chart, bars, range};
-use crate::criticism::{Finding, MissingPart, Profile, ReplayChannel, Step};
+use crate::diagnosis::{Finding, MissingPart, Profile, ReplayChannel, Step};
 use crate::effect::{StepPart, name_of};
 use crate::measurement::{Channel, Measurement};
 

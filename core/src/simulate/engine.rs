@@ -12,6 +12,9 @@ use super::sliding::Sliding;
 use super::trajectory::{Cut, Trajectory};
 use crate::relay::Relay;
 
+/// Steps after which a run is cut: the fastest mode of a plant may be a billion times faster than its cycle.
+pub const MAX_STEPS: usize = 3_000_000;
+
 /// The first and the last of so many parts of all switches are compared where a run has too many of them.
 const COMPARED_PARTS: usize = 10;
 
@@ -199,7 +202,7 @@ impl<'a> Engine<'a> {
                     Some(Cut::Chattering)
                 } else if !fine {
                     Some(Cut::TooManySwitches)
-                } else if steps > super::MAX_STEPS {
+                } else if steps > MAX_STEPS {
                     Some(Cut::TooFast)
                 } else {
                     None

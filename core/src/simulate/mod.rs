@@ -13,6 +13,7 @@ mod trajectory;
 
 use nalgebra::DVector;
 
+pub use engine::MAX_STEPS;
 pub(crate) use engine::{Change, Engine};
 pub(crate) use flow::{Flow, State};
 pub use noise::Noise;
@@ -24,9 +25,6 @@ pub(crate) use sliding::Sliding;
 
 /// Switches after which a run ends, as chattering or as too long, unless the caller says otherwise.
 pub const MAX_SWITCHES: usize = 20_000;
-
-/// Steps after which a run is cut: the fastest mode of a plant may be a billion times faster than its cycle.
-pub const MAX_STEPS: usize = 3_000_000;
 
 /// Samples that a run may have.
 pub const MAX_SAMPLES: usize = 10_000_000;

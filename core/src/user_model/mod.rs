@@ -24,10 +24,11 @@ mod write;
 
 use serde::{Deserialize, Serialize};
 
-use crate::criticism::Step;
+use crate::diagnosis::Step;
 use crate::effect::{EffectId, Formula, VISCOUS_FRICTION};
 use crate::measurement::Kind;
 
+pub use crate::diagnosis::Status;
 pub use read::ModelFileError;
 
 /// Longest file that is read, bytes.
@@ -35,26 +36,6 @@ pub const MAX_BYTES: usize = 100_000;
 
 /// Most effects in a file.
 pub const MAX_PRESENT: usize = 20;
-
-/// How well a parameter is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Status {
-    /// Not at all: fitted to the data.
-    #[default]
-    Free,
-    /// About: deviations count against this standard deviation, in the unit of the parameter (above 0).
-    Prior(f64),
-    /// Exactly: never changed.
-    Fixed,
-}
-
-impl Status {
-    /// Whether it is [`Status::Free`].
-    pub fn is_free(&self) -> bool {
-        *self == Self::Free
-    }
-}
 
 /// A parameter of which something is known.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,8 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{Known, MAX_BYTES, MAX_PRESENT, Present, Status, UserModel};
-use crate::criticism::baseline_symbols;
-use crate::effect::{self, EffectId, Formula, VISCOUS_FRICTION};
+use crate::effect::{self, EffectId, Formula, VISCOUS_FRICTION, baseline};
 use crate::measurement::Kind;
 
 /// Why a text is no model.
@@ -103,8 +102,11 @@ impl Reader<'_> {
         };
         let mut model = UserModel::blank(kind);
         if let Some(value) = entry("parameters") {
-            let symbols = baseline_symbols(kind);
-            model.parameters = self.parameters(value, "the baseline", symbols)?;
+            let symbols: Vec<&str> = baseline::parameters(kind)
+                .iter()
+                .map(|p| p.symbol)
+                .collect();
+            model.parameters = self.parameters(value, "the baseline", &symbols)?;
             for p in &model.parameters {
                 // Inertia and time constant divide; the gain of a process may have either sign.
                 let positive = ["J1", "T"].contains(&p.symbol.as_str());

@@ -1,6 +1,6 @@
 //! Measurements that come with the page.
 
-use crate::enclosed::{self, Enclosed};
+use hysteron_work::enclosed::{self, Enclosed};
 
 /// A drifting test that comes with the app.
 pub struct BuiltIn {

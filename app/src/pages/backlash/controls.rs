@@ -2,13 +2,13 @@
 
 use hysteron_core::drive::{Command, Contact, drifting_test, figures};
 
-use super::scene::MILLI;
+use super::units::MILLI;
 use super::{Backlash, SPEED};
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};
-use crate::pages::controls::{reset_asked, slider};
-use crate::pages::typed::{DECIMALS, Typed};
 use crate::recent::Recents;
+use crate::widgets::controls::{reset_asked, slider};
+use crate::widgets::typed::{DECIMALS, Typed};
 
 /// Width below which the playback stands in two rows, points.
 const NARROW_PLAYBACK: f32 = 520.0;

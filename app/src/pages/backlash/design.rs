@@ -2,10 +2,10 @@
 
 use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
 
-use super::scene::MILLI;
+use super::units::MILLI;
 use crate::language::tr;
-use crate::pages::controls::reset_asked;
-use crate::pages::typed::{DECIMALS, Typed};
+use crate::widgets::controls::reset_asked;
+use crate::widgets::typed::{DECIMALS, Typed};
 
 /// What is asked for, and the last proposal.
 pub struct Design {

@@ -3,35 +3,37 @@
 mod built_in;
 mod controls;
 mod design;
+mod drift;
 mod picture;
 mod plots;
 mod scene;
 mod settings;
 mod side;
+mod units;
 mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 use hysteron_core::measurement::Kind;
 
-use super::playback::Playback;
-use super::{Desk, Hint, View};
+use crate::desk::Desk;
+use crate::page::{Hint, Offer, Page, Settable, View};
+use crate::widgets::playback::Playback;
 use built_in::BuiltIn;
-pub use settings::is_built_in;
 
-use crate::content::Content;
-use crate::document::parsed;
-use crate::export::Table;
-use crate::files::{Files, Held, MEASUREMENT};
+use crate::export::{Table, Tables};
+use crate::files::{Files, Held};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
-use crate::pages::controls::claim_ui;
-use crate::reading::Reading;
-use crate::recent::{Recent, Recents, measurement};
-use crate::tasks::{GapReport, GapTask, ReadTask};
+use crate::link::parsed;
+use crate::recent::{Recents, measurement};
 use crate::theme;
+use crate::widgets::controls::claim_ui;
 use design::Design;
+use hysteron_work::content::Content;
+use hysteron_work::reading::Reading;
+use hysteron_work::tasks::{GapReport, GapTask, ReadTask};
 use scene::{Scene, Shown};
 
 /// Speed of the playback, times real time.
@@ -360,15 +362,16 @@ impl Backlash {
     }
 }
 
+/// The page.
+pub fn page() -> Page {
+    let mut view = Backlash::default();
+    let door = view
+        .files
+        .door("Drop the measurement to find the gap in it");
+    Page::new("backlash", "Backlash", view).with_door(door)
+}
+
 impl View for Backlash {
-    fn id(&self) -> &'static str {
-        "backlash"
-    }
-
-    fn title(&self) -> &'static str {
-        "Backlash"
-    }
-
     fn update(&mut self, ctx: &egui::Context) {
         self.take_news(ctx);
     }
@@ -376,100 +379,15 @@ impl View for Backlash {
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.simulate(ui.ctx());
         self.estimate(ui.ctx());
+        if std::mem::take(&mut desk.play) {
+            self.playback.toggle(ui.ctx());
+        }
         self.play(ui);
         if ui.available_width() < layout::NARROW {
             self.narrow_ui(ui, &desk.recent, &mut desk.targets);
         } else {
             self.wide_ui(ui, &desk.recent, &mut desk.targets);
         }
-    }
-
-    fn takes_files(&self) -> bool {
-        true
-    }
-
-    fn drop_hint(&self) -> &'static str {
-        "Drop the measurement to find the gap in it"
-    }
-
-    fn opened(&mut self) -> Vec<Recent> {
-        self.files.opened()
-    }
-
-    fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        let content = Content::Plain(bytes.to_vec().into());
-        self.open_as(ctx, name, content, Reading::default());
-    }
-
-    fn open_dialog(&self, ctx: &egui::Context) {
-        self.files.open_dialog(ctx, MEASUREMENT);
-    }
-
-    fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {
-        self.files.open_dropped(ctx, file);
-    }
-
-    fn toggle_play(&mut self, ctx: &egui::Context) {
-        self.playback.toggle(ctx);
-    }
-
-    fn hint(&self) -> Option<Hint> {
-        if self.measured() {
-            return Some(Hint {
-                sentence: "Is the gap all that is missing? Drop the file on Compare too."
-                    .to_owned(),
-                commands: vec![super::Command::Go("compare")],
-            });
-        }
-        let motor = &self.input.drive.motor;
-        let drifts = motor.coulomb > 0.0 || motor.viscous > 0.0;
-        Some(if drifts {
-            Hint::open(
-                "Take friction and delay away: then no asymmetry makes it drift.",
-                "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
-            )
-        } else {
-            Hint::open(
-                "Give friction and delay back: they make an uneven relay drift through the gap.",
-                "v1;backlash",
-            )
-        })
-    }
-
-    fn table_names(&self) -> Vec<&'static str> {
-        self.scene.iter().map(|_| "drive").collect()
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        let Some(run) = self.scene.as_ref().map(|s| &s.run) else {
-            return Vec::new();
-        };
-        let mut table = Table::new("drive").with("t [s]", run.time.iter().copied());
-        for (title, values) in [
-            ("u [N m]", &run.input),
-            ("x1 [rad]", &run.x1),
-            ("v1 [rad/s]", &run.v1),
-            ("x2 [rad]", &run.x2),
-        ] {
-            // The load of a measured drive may be unknown.
-            if values.len() == run.time.len() {
-                table = table.with(title, values.iter().copied());
-            }
-        }
-        vec![table]
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(ctx, &parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {
@@ -493,5 +411,78 @@ impl View for Backlash {
             "times_real_time": simulated.map(|_| self.input.duration / self.worked),
             "playing": self.playback.playing,
         })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Backlash {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(ctx, &parsed(settings)?)
+    }
+}
+
+impl Backlash {
+    /// What to try next.
+    fn hint(&self) -> Option<Hint> {
+        if self.measured() {
+            return Some(Hint {
+                sentence: "Is the gap all that is missing? Drop the file on Compare too."
+                    .to_owned(),
+                commands: vec![crate::command::Command::Go("compare")],
+            });
+        }
+        let motor = &self.input.drive.motor;
+        let drifts = motor.coulomb > 0.0 || motor.viscous > 0.0;
+        Some(if drifts {
+            Hint::open(
+                "Take friction and delay away: then no asymmetry makes it drift.",
+                "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
+            )
+        } else {
+            Hint::open(
+                "Give friction and delay back: they make an uneven relay drift through the gap.",
+                "v1;backlash",
+            )
+        })
+    }
+
+    /// Names of the tables that can be given now.
+    fn table_names(&self) -> Vec<&'static str> {
+        self.scene.iter().map(|_| "drive").collect()
+    }
+
+    /// The numbers behind what is shown.
+    fn tables(&self) -> Vec<Table> {
+        let Some(run) = self.scene.as_ref().map(|s| &s.run) else {
+            return Vec::new();
+        };
+        let mut table = Table::new("drive").with("t [s]", run.time.iter().copied());
+        for (title, values) in [
+            ("u [N m]", &run.input),
+            ("x1 [rad]", &run.x1),
+            ("v1 [rad/s]", &run.v1),
+            ("x2 [rad]", &run.x2),
+        ] {
+            // The load of a measured drive may be unknown.
+            if values.len() == run.time.len() {
+                table = table.with(title, values.iter().copied());
+            }
+        }
+        vec![table]
     }
 }

@@ -5,8 +5,8 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2}
 use super::plots::{CONTACT, LOAD};
 use super::scene::Scene;
 use crate::language::{tr, tr_number};
-use crate::pages::chart::round_step;
 use crate::theme;
+use crate::widgets::chart::round_step;
 
 /// Share of the width that the gap takes at least.
 const LEAST_GAP: f64 = 0.12;

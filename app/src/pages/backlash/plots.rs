@@ -7,9 +7,9 @@ use egui_plot::{
 
 use super::scene::{Now, Scene};
 use crate::language::tr;
-use crate::pages::chart::{Shape, caption_ui, curve, dot, extremes, still};
-use crate::pages::chart_cursor::{mark_ui, pointed};
 use crate::theme;
+use crate::widgets::chart::{Shape, caption_ui, curve, dot, extremes, still};
+use crate::widgets::chart_cursor::{mark_ui, pointed};
 
 /// Periods of the relay that the phase portrait shows before the present one.
 const PERIODS: f64 = 3.0;

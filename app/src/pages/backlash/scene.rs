@@ -7,8 +7,9 @@ use hysteron_core::drive::{
 use hysteron_core::figures::Check;
 use hysteron_core::measurement::{Measurement, Quantity};
 
-use super::words::lesson;
-use crate::pages::chart::{envelope, extremes};
+use super::drift::lesson;
+use super::units::MILLI;
+use crate::widgets::chart::{envelope, extremes};
 
 /// Most points of a curve over the whole run.
 const CURVE_POINTS: usize = 1800;
@@ -19,9 +20,6 @@ const MAP_POINTS: usize = 4000;
 /// Points between two corners of the phase portrait, and between those of the closed form.
 const BENDS: usize = 4;
 const ORBIT: usize = 24;
-
-/// Milliradians in a radian: the page speaks of them.
-pub const MILLI: f64 = 1e3;
 
 /// Share of the record by which a period is guessed where no relay is known, s.
 const MEASURED_PERIOD: f64 = 5e-3;

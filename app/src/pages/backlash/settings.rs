@@ -32,11 +32,6 @@ pub(super) struct Settings {
     file: Option<String>,
 }
 
-/// Whether a measurement of this name comes with the page.
-pub fn is_built_in(name: &str) -> bool {
-    BUILT_IN.iter().any(|b| b.file.id == name)
-}
-
 impl Backlash {
     pub(super) fn set_to(&self) -> Settings {
         Settings {
@@ -55,7 +50,7 @@ impl Backlash {
         let file = match &settings.file {
             Some(name) if settings.file != self.file => {
                 let file = self.known(name);
-                Some(file.ok_or_else(|| crate::document::not_enclosed(name))?)
+                Some(file.ok_or_else(|| crate::link::not_enclosed(name))?)
             }
             _ => None,
         };

@@ -5,7 +5,7 @@ use hysteron_core::drive::{Command, drifting_test};
 
 use super::Backlash;
 use super::built_in::BUILT_IN;
-use super::scene::MILLI;
+use super::units::MILLI;
 use crate::files::MEASUREMENT;
 use crate::hook::Targets;
 use crate::language::{tr, tr_number, tr_sentence};
@@ -76,11 +76,11 @@ impl Backlash {
                 ))
                 .clicked()
             {
-                self.files.open_dialog(ui.ctx(), MEASUREMENT);
+                self.files.entrance.open_dialog(ui.ctx(), MEASUREMENT);
             }
         });
         if let Some(recent) = recent.ui(ui, measurement, targets) {
-            self.files.reopen(ui.ctx(), &recent);
+            self.files.entrance.reopen(ui.ctx(), &recent);
         }
         if let Some(built_in) = chosen {
             self.open_built_in(ui.ctx(), built_in);

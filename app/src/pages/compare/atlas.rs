@@ -2,13 +2,13 @@
 
 use egui::Color32;
 use egui_plot::{HLine, Line, LineStyle, Points, Span};
-use hysteron_core::criticism::{Finding, Profile, ProfileBin, StepReport};
+use hysteron_core::diagnosis::{Finding, Profile, ProfileBin, StepReport};
 
-use super::Compare;
 use super::parts::Part;
+use super::state::Compare;
 use crate::language::tr;
-use crate::pages::chart::{Chart, Pen, Shape, caption_ui};
 use crate::theme;
+use crate::widgets::chart::{Chart, Pen, Shape, caption_ui};
 
 /// Least width of a picture, and its height, points.
 const WIDTH: f32 = 260.0;

@@ -4,7 +4,7 @@ use hysteron_core::measurement::{
     COUNTS, FoundColumn, Kind, Quantity, Role, guess, needs_torque_constant, usual_units,
 };
 
-use crate::reading::Reading;
+use hysteron_work::reading::Reading;
 
 /// A channel that a column can be.
 pub(super) struct Channel {

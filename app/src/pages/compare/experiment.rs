@@ -1,16 +1,17 @@
 //! What these data cannot tell apart, and the experiment that can.
 
-use hysteron_core::criticism::{FittedModel, Limits, NextExperiment, Opening, Program, Trial};
+use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, Opening, Program, Trial};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
 
-use super::{Command, Compare};
+use super::command::Command;
+use super::state::Compare;
+use crate::command;
 use crate::hook::Targets;
 use crate::language::tr;
-use crate::pages;
-use crate::pages::typed::Typed;
 use crate::purpose::Purpose;
 use crate::theme;
+use crate::widgets::typed::Typed;
 
 /// Width of the widest bar, points.
 const BAR: f32 = 90.0;
@@ -45,7 +46,7 @@ pub(super) fn ui(
 }
 
 /// What shows the experiment with the first model at its largest gain.
-pub(super) fn preview(page: &Compare, proposal: &NextExperiment) -> Option<Vec<pages::Command>> {
+pub(super) fn preview(page: &Compare, proposal: &NextExperiment) -> Option<Vec<command::Command>> {
     let Program::Relay { gains, .. } = &proposal.program else {
         return None;
     };
@@ -67,12 +68,12 @@ fn purpose(page: &Compare, proposal: &NextExperiment, model: &FittedModel) -> St
 }
 
 /// The page that shows a loop, and what opens it there and says its purpose.
-fn opened(opening: Opening, sentence: String) -> (&'static str, Vec<pages::Command>) {
+fn opened(opening: Opening, sentence: String) -> (&'static str, Vec<command::Command>) {
     let (page, title, set) = match opening {
-        Opening::Loop(input) => ("explore", "Explore", pages::Command::SetLoop(input)),
+        Opening::Loop(input) => ("explore", "Explore", command::Command::SetLoop(input)),
         Opening::Drive(run) => {
             let run = serde_json::to_value(*run).unwrap_or_default();
-            let set = pages::Command::Set("backlash", "run", run);
+            let set = command::Command::Set("backlash", "run", run);
             ("backlash", "Backlash", set)
         }
     };
@@ -81,8 +82,8 @@ fn opened(opening: Opening, sentence: String) -> (&'static str, Vec<pages::Comma
         sentence,
         from: ("compare", "Back to Compare"),
     };
-    let say = pages::Command::SetPurpose(Some(Box::new(purpose)));
-    (title, vec![set, say, pages::Command::Go(page)])
+    let say = command::Command::SetPurpose(Some(Box::new(purpose)));
+    (title, vec![set, say, command::Command::Go(page)])
 }
 
 /// One row for each model: its loop under the relay at each gain.

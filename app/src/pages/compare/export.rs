@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::criticism::{Program, Step};
+use hysteron_core::diagnosis::{Program, Step};
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
 
-use super::Compare;
+use super::state::Compare;
 use crate::save::Document;
 
 /// Samples of an input that is saved, at most.

@@ -1,17 +1,18 @@
 //! What an effect would leave if it were what is missing, beside what is left.
 
 use egui_plot::{Line, LineStyle};
-use hysteron_core::criticism::{Fingerprint, Profile, StepReport};
+use hysteron_core::diagnosis::{Fingerprint, Profile, StepReport};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Measurement;
 
 use super::atlas::{draw, grid_ui, small, words};
+use super::command::Command;
 use super::parts::Part;
-use super::{Command, Compare};
+use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};
-use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
+use crate::widgets::chart::{Chart, Shape, caption_ui};
 
 /// Height of a plot over time, and width of its labels, points.
 const HEIGHT: f32 = 170.0;

@@ -1,10 +1,13 @@
 //! What to try next: it follows from what is open, and from what was found.
 
-use hysteron_core::criticism::{StepReport, Verdict};
+use hysteron_core::diagnosis::{StepReport, Verdict};
 use hysteron_core::effect::{EffectId, name_of};
 
-use super::{Compare, Look, experiment};
-use crate::pages::{Command, Hint};
+use super::experiment;
+use super::look::Look;
+use super::state::Compare;
+use crate::command::Command;
+use crate::page::Hint;
 
 impl Compare {
     pub(super) fn next(&self) -> Hint {

@@ -1,11 +1,11 @@
 //! The way from the baseline to the model on screen, back and forth; and proposals that are looked for again.
 
-use hysteron_core::criticism::{Limits, StepReport};
+use hysteron_core::diagnosis::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 
-use super::Compare;
+use super::state::Compare;
 use crate::jobs::{Job, News};
-use crate::tasks::ExperimentTask;
+use hysteron_work::tasks::ExperimentTask;
 
 impl Compare {
     /// Every effect that was added, those that were taken back last.

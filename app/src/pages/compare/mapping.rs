@@ -3,14 +3,14 @@
 use egui::Ui;
 use hysteron_core::measurement::{FoundColumn, Kind};
 
-use super::choice::{Channel, Choice, Chosen};
-use super::{Command, Compare};
-use crate::content::Content;
+use super::choice::{Channel, Chosen};
+use super::command::Command;
+use super::form::Form;
+use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
-use crate::pages::chart::significant;
-use crate::recent::Recent;
 use crate::theme;
+use crate::widgets::chart::significant;
 
 /// Widths of the names of channels, and of the lists of columns and of units, points.
 const TITLE_WIDTH: f32 = 104.0;
@@ -23,50 +23,7 @@ const WIDEST: f32 = 940.0;
 /// Significant digits of the values that are shown.
 const DIGITS: i32 = 4;
 
-/// A file whose columns are to be understood.
-pub(super) struct Form {
-    pub file: String,
-    pub content: Content,
-    /// Where the file is, if it can be opened again.
-    pub origin: Option<Recent>,
-    /// Why it is asked.
-    reason: String,
-    pub columns: Vec<FoundColumn>,
-    pub choice: Choice,
-    /// Why it cannot be read as was chosen, or why another file was refused meanwhile.
-    pub error: Option<String>,
-}
-
 impl Form {
-    /// The form for a file that was refused for this `reason`, with these columns in it.
-    pub fn new(
-        file: String,
-        content: Content,
-        origin: Option<Recent>,
-        reason: String,
-        columns: Vec<FoundColumn>,
-    ) -> Self {
-        Self {
-            file,
-            content,
-            origin,
-            reason,
-            choice: Choice::likeliest(&columns),
-            columns,
-            error: None,
-        }
-    }
-
-    pub fn hook_state(&self) -> serde_json::Value {
-        serde_json::json!({
-            "file": self.file,
-            "reason": self.reason,
-            "missing": self.choice.missing(),
-            "reading": self.choice.reading(&self.columns),
-            "error": self.error,
-        })
-    }
-
     fn ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
         ui.set_max_width(ui.available_width().min(WIDEST));
         theme::answer_ui(ui, "Which column is what?");

@@ -1,11 +1,11 @@
 //! Where no effect explains the rest: what is missing, estimated without a model.
 
 use egui_plot::{HLine, Line, PlotPoints};
-use hysteron_core::criticism::{MissingPart, StepReport};
+use hysteron_core::diagnosis::{MissingPart, StepReport};
 
 use crate::language::tr;
-use crate::pages::chart::Chart;
 use crate::theme;
+use crate::widgets::chart::Chart;
 
 /// Estimates that are drawn.
 const MOST: usize = 3;

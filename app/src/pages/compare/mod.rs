@@ -2,206 +2,58 @@
 
 mod answer;
 mod atlas;
+mod awaited;
+mod built_in;
 mod choice;
+mod command;
 mod experiment;
 mod export;
 mod fingerprint;
+mod form;
+mod formula;
 mod hint;
 mod history;
+mod look;
 mod mapping;
 mod missing;
 mod open;
+mod opening;
 mod own;
 mod parameters;
 mod parts;
 mod plots;
 mod reveal;
+mod sealed;
 mod settings;
 mod side;
+mod state;
 mod waterfall;
 mod welcome;
 
-use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
-
-use hysteron_core::criticism::{Limits, StepReport};
-use hysteron_core::effect::EffectId;
-use hysteron_core::measurement::Measurement;
-use hysteron_core::user_model::UserModel;
-use serde::{Deserialize, Serialize};
-
-use super::{Desk, Hint, View};
-pub use settings::is_built_in;
-
-use crate::document::parsed;
-use crate::export::Table;
-use crate::files::{Files, MEASUREMENT, MODEL};
+use crate::desk::Desk;
+use crate::export::{Table, Tables};
+use crate::files::{MEASUREMENT, MODEL};
 use crate::hook::Targets;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
-use crate::reading::Reading;
-use crate::recent::Recent;
+use crate::link::parsed;
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::save::save;
-use crate::tasks::{ExperimentTask, Source};
 use crate::theme;
-use answer::times_noise;
-use welcome::{BUILT_IN, BuiltIn};
+use built_in::{BUILT_IN, BuiltIn};
+use command::Command;
+use form::Form;
+use look::Look;
+use opening::Opening;
+use sealed::Sealed;
+pub use state::Compare;
 
 /// Height of the plots over time in a narrow window, points.
 const NARROW_PLOTS: f32 = 220.0;
 
 /// Longest time without a new frame while a job runs.
 const ALIVE: std::time::Duration = std::time::Duration::from_millis(100);
-
-/// The page.
-pub struct Compare {
-    measurement: Option<Arc<Measurement>>,
-    /// What its file does not say itself.
-    reading: Reading,
-    /// The form for a file that is not open yet.
-    form: Option<mapping::Form>,
-    source: Source,
-    /// The file that is being read.
-    opening: Option<open::Opening>,
-    /// What the user knows of the model.
-    model: Option<UserModel>,
-    /// The file that says it.
-    model_file: Option<String>,
-    /// Effects of the user's own that were added here, as the command line takes them.
-    own: Vec<String>,
-    /// The formula in the editor.
-    typed: Option<own::Typed>,
-    /// Effects on top of the baseline, in the order in which they were added.
-    effects: Vec<EffectId>,
-    /// Finished steps by their effects, so that undo is instant.
-    reports: HashMap<Vec<EffectId>, StepReport>,
-    /// Effects of the step on screen: the last one finished.
-    shown: Option<Vec<EffectId>>,
-    /// How much of it is there.
-    parts: parts::Parts,
-    job: Option<Job>,
-    progress: (f64, String),
-    message: Option<String>,
-    /// Effects that were taken back, the next one to come again first.
-    undone: Vec<EffectId>,
-    /// What the plots show, and whether beside the step before.
-    look: Look,
-    before: bool,
-    /// The effect whose fingerprint is shown; the likeliest if it is none of those.
-    fingerprint: Option<EffectId>,
-    /// Limits of the next experiment that are being set.
-    limits: Option<Limits>,
-    /// A search within other limits: for which model, and the number of the proposal.
-    search: Option<(Vec<EffectId>, usize, Job<ExperimentTask>)>,
-    /// A step of the way that is computed beside: a link brings the last one alone.
-    earlier: Option<(Vec<EffectId>, Job)>,
-    /// Steps of the way that cannot be computed.
-    lost: HashSet<Vec<EffectId>>,
-    /// The finding that is shaded.
-    finding: usize,
-    /// The truth that came with the measurement, sealed.
-    sealed: Option<reveal::Sealed>,
-    files: Files,
-    /// What saving a file has to say.
-    saved: (Sender<String>, Receiver<String>),
-}
-
-impl Default for Compare {
-    fn default() -> Self {
-        Self {
-            measurement: None,
-            reading: Reading::default(),
-            form: None,
-            source: Source::default(),
-            opening: None,
-            model: None,
-            model_file: None,
-            own: Vec::new(),
-            typed: None,
-            effects: Vec::new(),
-            reports: HashMap::new(),
-            shown: None,
-            parts: parts::Parts::default(),
-            job: None,
-            progress: (0.0, String::new()),
-            message: None,
-            undone: Vec::new(),
-            look: Look::default(),
-            before: false,
-            fingerprint: None,
-            limits: None,
-            search: None,
-            earlier: None,
-            lost: HashSet::new(),
-            finding: 0,
-            sealed: None,
-            files: Files::default(),
-            saved: channel(),
-        }
-    }
-}
-
-/// What the plots show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Look {
-    /// Everything over time.
-    #[default]
-    Time,
-    /// The residual over every axis.
-    Places,
-    /// What an effect would leave.
-    Fingerprint,
-    /// The truth of a mystery.
-    Reveal,
-}
-
-/// What a click asks for; carried out once, after drawing.
-#[derive(Clone)]
-enum Command {
-    OpenBuiltIn(usize),
-    OpenDialog,
-    /// Opens a file once more.
-    Reopen(Recent),
-    Close,
-    /// Which column of a file is what.
-    Choose(Box<choice::Choice>),
-    /// Opens the file with what was chosen, or leaves it.
-    OpenMapped,
-    CancelMapping,
-    /// Leaves the file that is being read.
-    CancelReading,
-    Add(EffectId),
-    Undo,
-    Redo,
-    /// Goes to the model with so many effects.
-    Step(usize),
-    Look(Look),
-    Before(bool),
-    Fingerprint(EffectId),
-    Limit(Limits),
-    /// Looks for a proposal again, within these limits.
-    Search(usize, Limits),
-    /// Saves the input of a proposal.
-    SaveInput(usize),
-    /// The word that opens the seal is being typed, and whether it can be read.
-    Word(String, bool),
-    /// Opens the seal.
-    Reveal,
-    /// What the app is to do.
-    Desk(Vec<super::Command>),
-    Cancel,
-    Shade(usize),
-    Dismiss,
-    ExportReport,
-    SaveModel,
-    OpenModel,
-    DropModel,
-    Type(own::Typed),
-    AddOwn(own::Typed),
-}
 
 impl Compare {
     /// Takes what jobs and files have brought.
@@ -246,11 +98,6 @@ impl Compare {
         if let Some(sealed) = &mut self.sealed {
             sealed.update(self.shown.as_deref().unwrap_or_default());
         }
-    }
-
-    /// The step on screen.
-    fn report(&self) -> Option<&StepReport> {
-        self.reports.get(self.shown.as_ref()?)
     }
 
     /// Draws the page and carries out what was clicked.
@@ -377,25 +224,19 @@ impl Compare {
         match command {
             Command::OpenBuiltIn(index) => {
                 if let Some(BuiltIn { file, .. }) = BUILT_IN.get(index) {
-                    self.opening = Some(open::Opening::new(ctx, file.id, file.content()));
+                    self.opening = Some(Opening::new(ctx, file.id, file.content()));
                 }
             }
-            Command::Reopen(recent) => self.files.reopen(ctx, &recent),
-            Command::OpenDialog => self.files.open_dialog(ctx, MEASUREMENT),
-            Command::OpenModel => self.files.open_dialog(ctx, MODEL),
+            Command::Reopen(recent) => self.files.entrance.reopen(ctx, &recent),
+            Command::OpenDialog => self.files.entrance.open_dialog(ctx, MEASUREMENT),
+            Command::OpenModel => self.files.entrance.open_dialog(ctx, MODEL),
             Command::Type(typed) => self.typed = Some(typed),
             Command::AddOwn(typed) => self.add_own(ctx, &typed),
             Command::DropModel => {
                 self.forget_model();
                 self.restart(ctx);
             }
-            Command::Close => {
-                let files = std::mem::take(&mut self.files);
-                *self = Self {
-                    files,
-                    ..Self::default()
-                };
-            }
+            Command::Close => self.close(),
             Command::Choose(choice) => {
                 if let Some(form) = &mut self.form {
                     form.choice = *choice;
@@ -459,9 +300,9 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.is_behind() || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(reveal::Sealed::is_busy),
+            "busy": self.is_behind() || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
             "progress": self.progress.0,
-            "mapping": self.form.as_ref().map(mapping::Form::hook_state),
+            "mapping": self.form.as_ref().map(Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
             "effects": report.map(|r| r.step.effects.clone()),
             "error": report.map(|r| r.step.error),
@@ -477,20 +318,19 @@ impl Compare {
             "fingerprint": self.chosen(),
             "model": self.model_file,
             "message": self.message,
-            "sealed": self.sealed.as_ref().map(reveal::Sealed::hook_state),
+            "sealed": self.sealed.as_ref().map(Sealed::hook_state),
         })
     }
 }
 
+/// The page.
+pub fn page() -> Page {
+    let mut view = Compare::default();
+    let door = view.files.door("Drop the measurement to compare it");
+    Page::new("compare", "Compare", view).with_door(door)
+}
+
 impl View for Compare {
-    fn id(&self) -> &'static str {
-        "compare"
-    }
-
-    fn title(&self) -> &'static str {
-        "Compare"
-    }
-
     fn update(&mut self, ctx: &egui::Context) {
         Self::update(self, ctx);
     }
@@ -499,10 +339,40 @@ impl View for Compare {
         Self::ui(self, ui, desk);
     }
 
+    fn hook_state(&self) -> serde_json::Value {
+        Self::hook_state(self)
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Compare {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(ctx, &parsed(settings)?)
+    }
+}
+
+impl Compare {
+    /// What to try next.
     fn hint(&self) -> Option<Hint> {
         Some(self.next())
     }
 
+    /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
         self.measurement
             .iter()
@@ -510,6 +380,7 @@ impl View for Compare {
             .collect()
     }
 
+    /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let Some(measurement) = &self.measurement else {
             return Vec::new();
@@ -537,42 +408,5 @@ impl View for Compare {
             );
         }
         vec![table]
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(ctx, &parsed(settings)?)
-    }
-
-    fn hook_state(&self) -> serde_json::Value {
-        Self::hook_state(self)
-    }
-
-    fn takes_files(&self) -> bool {
-        true
-    }
-
-    fn opened(&mut self) -> Vec<Recent> {
-        self.files.opened()
-    }
-
-    fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        self.open_as(ctx, name, bytes.to_vec(), Reading::default());
-    }
-
-    fn open_dialog(&self, ctx: &egui::Context) {
-        self.files.open_dialog(ctx, MEASUREMENT);
-    }
-
-    fn open_dropped(&mut self, ctx: &egui::Context, file: &egui::DroppedFileHandle) {
-        self.files.open_dropped(ctx, file);
     }
 }

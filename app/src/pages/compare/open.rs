@@ -5,67 +5,17 @@ use std::sync::Arc;
 use hysteron_core::measurement::FoundColumn;
 use hysteron_core::user_model::UserModel;
 
-use super::mapping::Form;
-use super::reveal::Sealed;
-use super::settings::Awaited;
-use super::{Compare, Look, own};
-use crate::content::Content;
+use super::form::Form;
+use super::formula::Typed;
+use super::look::Look;
+use super::opening::Opening;
+use super::sealed::Sealed;
+use super::state::Compare;
 use crate::files::Held;
 use crate::jobs::{Job, News};
-use crate::reading::Reading;
-use crate::recent::Recent;
-use crate::tasks::{Opened, ReadReport, ReadTask};
-
-/// A file that is being read.
-pub(super) struct Opening {
-    pub file: String,
-    content: Content,
-    reading: Reading,
-    /// Where it is, if it can be opened again.
-    origin: Option<Recent>,
-    /// What a link sets as soon as it is open.
-    pub then: Option<Awaited>,
-    /// Whether the form says what its columns are.
-    from_form: bool,
-    job: Job<ReadTask>,
-}
-
-impl Opening {
-    /// A file that says itself what its columns are.
-    pub fn new(ctx: &egui::Context, file: &str, content: Content) -> Self {
-        Self::read_as(ctx, file, content, Reading::default())
-    }
-
-    /// The same, with what a link sets as soon as it is open.
-    pub fn with(self, awaited: Awaited) -> Self {
-        Self {
-            then: Some(awaited),
-            ..self
-        }
-    }
-
-    /// A file that was open before.
-    pub fn again(ctx: &egui::Context, file: Held) -> Self {
-        Self::read_as(ctx, &file.name, file.content, file.reading)
-    }
-
-    fn read_as(ctx: &egui::Context, file: &str, content: Content, reading: Reading) -> Self {
-        let task = ReadTask {
-            file: file.to_owned(),
-            content: content.clone(),
-            reading: reading.clone(),
-        };
-        Self {
-            file: file.to_owned(),
-            content,
-            reading,
-            origin: None,
-            then: None,
-            from_form: false,
-            job: Job::run(ctx, task),
-        }
-    }
-}
+use hysteron_work::content::Content;
+use hysteron_work::reading::Reading;
+use hysteron_work::tasks::{Opened, ReadReport};
 
 impl Compare {
     /// Opens a measurement, or a model (TOML), from the bytes of a file; a bad one leaves everything as it was.
@@ -224,7 +174,7 @@ impl Compare {
     }
 
     /// Adds an effect of the user's own to the model.
-    pub(super) fn add_own(&mut self, ctx: &egui::Context, typed: &own::Typed) {
+    pub(super) fn add_own(&mut self, ctx: &egui::Context, typed: &Typed) {
         let Some(measurement) = &self.measurement else {
             return;
         };

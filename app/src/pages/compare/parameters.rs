@@ -1,6 +1,6 @@
 //! Every parameter of the model with its uncertainty.
 
-use hysteron_core::criticism::{Parameter, StepReport};
+use hysteron_core::diagnosis::{Parameter, StepReport};
 use hysteron_core::effect::name_of;
 use hysteron_core::uncertain::{interval, with_error};
 

@@ -5,14 +5,14 @@ use std::ops::Range;
 use egui_plot::{
     HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Span, Text,
 };
-use hysteron_core::criticism::{Finding, ReplayChannel};
+use hysteron_core::diagnosis::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 
-use super::Compare;
 use super::parts::Part;
+use super::state::Compare;
 use crate::language::{self, tr};
-use crate::pages::chart::{Chart, Key, Pen, Shape, caption_ui, envelope, extremes};
 use crate::theme;
+use crate::widgets::chart::{Chart, Key, Pen, Shape, caption_ui, envelope, extremes};
 
 /// Most points of a curve that are drawn; above, each stretch shows its extremes.
 const MAX_POINTS: usize = 10_000;

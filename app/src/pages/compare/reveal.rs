@@ -5,70 +5,18 @@ use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 use hysteron_core::uncertain::{with_error, written_like};
 
-use super::{Command, Compare};
+use super::command::Command;
+use super::sealed::Sealed;
+use super::state::Compare;
 use crate::hook::Targets;
-use crate::jobs::{Job, News};
+use crate::jobs::Job;
 use crate::language::tr;
 use crate::motion;
-use crate::tasks::RevealTask;
 use crate::theme;
+use hysteron_work::tasks::RevealTask;
 
 /// Width that the table of numbers needs, points; in a narrower window each is a line of its own.
 const TABLE: f32 = 600.0;
-
-/// A sealed truth that came with the measurement, and what was revealed of it.
-#[derive(Default)]
-pub(super) struct Sealed {
-    seal: Vec<u8>,
-    /// The measurement as a text for a link, where it came in one.
-    pub link: Option<String>,
-    pub word: String,
-    /// Whether the word can be read while it is typed.
-    pub legible: bool,
-    job: Option<Job<RevealTask>>,
-    message: Option<String>,
-    /// The truth beside the model with these effects.
-    revealed: Option<(Vec<EffectId>, Reveal)>,
-}
-
-impl Sealed {
-    pub fn new(seal: Vec<u8>) -> Self {
-        Self {
-            seal,
-            ..Self::default()
-        }
-    }
-
-    /// For tests.
-    pub fn hook_state(&self) -> serde_json::Value {
-        serde_json::json!({
-            "busy": self.job.is_some(),
-            "message": self.message,
-            "points": self.revealed.as_ref().map(|(_, r)| r.points()),
-        })
-    }
-
-    /// Whether the truth has been seen.
-    pub fn is_revealed(&self) -> bool {
-        self.revealed.is_some()
-    }
-
-    pub fn is_busy(&self) -> bool {
-        self.job.is_some()
-    }
-
-    /// Takes what the job has found.
-    pub fn update(&mut self, shown: &[EffectId]) {
-        for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
-            match news {
-                News::Progress(..) => continue,
-                News::Report(reveal) => self.revealed = Some((shown.to_vec(), *reveal)),
-                News::Failed(text) => self.message = Some(text),
-            }
-            self.job = None;
-        }
-    }
-}
 
 impl Compare {
     /// The model on screen, with what the record cannot tell from its effects.

@@ -1,62 +1,22 @@
-//! What is set on the page: the measurement by its name, and what was added to the model.
+//! How the page gives what is set on it, and takes it: the measurement by its name, and what was added to the model.
 
 use hysteron_core::effect::{self, EffectId};
 use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::Mystery;
 use hysteron_core::user_model::UserModel;
-use serde::{Deserialize, Serialize};
+use hysteron_work::content::Content;
+use hysteron_work::reading::Reading;
 
-use super::open::Opening;
-use super::{BUILT_IN, Command, Compare, Look};
-use crate::content::Content;
+use super::awaited::{Awaited, Meant, Settings, effect_of};
+use super::built_in::BUILT_IN;
+use super::look::Look;
+use super::opening::Opening;
+use super::state::Compare;
 use crate::files::Held;
-use crate::reading::Reading;
+use crate::link::not_enclosed;
 
 /// Effects that a link may add.
 const MOST_EFFECTS: usize = 12;
-
-#[derive(Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Settings {
-    /// Name of the measurement that is open, unless it is the next.
-    file: Option<String>,
-    /// The measurement itself: a mystery that came in a link.
-    mystery: Option<String>,
-    /// Name of the file with the user's model.
-    model: Option<String>,
-    /// Effects of the user's own, as the command line takes them.
-    own: Vec<String>,
-    /// Effects on top of the baseline, in the order in which they were added.
-    effects: Vec<String>,
-    /// The finding that is shaded.
-    finding: usize,
-    /// What the plots show, and whether beside the step before.
-    look: Look,
-    before: bool,
-    /// The effect whose fingerprint is shown, if someone chose one.
-    fingerprint: Option<String>,
-}
-
-/// Whether a measurement of this name comes with the page.
-pub fn is_built_in(name: &str) -> bool {
-    BUILT_IN.iter().any(|b| b.file.id == name)
-}
-
-/// What a link sets as soon as its measurement is open.
-#[derive(Clone)]
-pub(super) struct Awaited {
-    settings: Settings,
-    meant: Meant,
-    kind: Kind,
-}
-
-/// What settings name.
-#[derive(Clone)]
-struct Meant {
-    model: Option<UserModel>,
-    effects: Vec<EffectId>,
-    fingerprint: Option<EffectId>,
-}
 
 impl Compare {
     pub(super) fn set_to(&self) -> Settings {
@@ -89,13 +49,13 @@ impl Compare {
                 self.held_model(name)?;
             }
             if self.measurement.is_some() || self.opening.is_some() {
-                self.carry_out(ctx, Command::Close);
+                self.close();
             }
             return Ok(());
         }
         if let Some(file) = other {
             let then = self.awaited(settings, file.kind)?;
-            self.carry_out(ctx, Command::Close);
+            self.close();
             self.opening = Some(Opening::again(ctx, file).with(then));
             return Ok(());
         }
@@ -135,7 +95,7 @@ impl Compare {
                 let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
                 let file = built_in.map(|b| Held::from(&b.file));
                 let file = file.or_else(|| self.files.held(name).cloned());
-                let file = file.ok_or_else(|| crate::document::not_enclosed(name))?;
+                let file = file.ok_or_else(|| not_enclosed(name))?;
                 Ok(Some(file))
             }
             (None, Some(text)) if settings.mystery != present.mystery => {
@@ -166,7 +126,7 @@ impl Compare {
             Some(name) => {
                 let model = self.held_model(name)?.clone();
                 let fits = (model.kind == kind).then_some(model);
-                fits.ok_or_else(|| crate::document::not_enclosed(name))?
+                fits.ok_or_else(|| not_enclosed(name))?
             }
             None if settings.own.is_empty() => return Ok(None),
             None => UserModel::blank(kind),
@@ -179,7 +139,7 @@ impl Compare {
 
     fn held_model(&self, name: &str) -> Result<&UserModel, String> {
         let model = self.files.held_model(name);
-        model.ok_or_else(|| crate::document::not_enclosed(name))
+        model.ok_or_else(|| not_enclosed(name))
     }
 
     /// Sets what was to be set as soon as the measurement is open, which it is now.
@@ -221,26 +181,4 @@ impl Compare {
         };
         self.before = settings.before;
     }
-}
-
-impl Settings {
-    /// What it names, where the user's `model` is this.
-    fn meant(&self, model: Option<UserModel>) -> Result<Meant, String> {
-        let effect = |id: &String| effect_of(id, model.as_ref());
-        Ok(Meant {
-            effects: self.effects.iter().map(effect).collect::<Result<_, _>>()?,
-            fingerprint: self.fingerprint.as_ref().map(effect).transpose()?,
-            model,
-        })
-    }
-}
-
-/// An effect of the library, or of the user's own.
-fn effect_of(id: &str, model: Option<&UserModel>) -> Result<EffectId, String> {
-    let own = model.iter().flat_map(|m| &m.candidates).map(|c| c.id);
-    let library = effect::registry().iter().map(|e| e.id());
-    library
-        .chain(own)
-        .find(|e| e.as_str() == id)
-        .ok_or_else(|| "This link adds an effect that does not exist.".to_owned())
 }

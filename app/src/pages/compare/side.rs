@@ -1,16 +1,19 @@
 //! The side of the page: the file, what the data say, and what could be added.
 
 use egui::RichText;
-use hysteron_core::criticism::{Candidate, StepReport};
+use hysteron_core::diagnosis::{Candidate, StepReport};
 use hysteron_core::effect;
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
 use hysteron_core::uncertain::with_error;
 
+use super::answer::times_noise;
+use super::command::Command;
+use super::look::Look;
 use super::parts::Part;
+use super::state::Compare;
 use super::waterfall::{BAR_WIDTH, bar_ui};
-use super::{Command, Compare, Look, experiment, missing, own, parameters, times_noise, waterfall};
-use crate::bar;
+use super::{experiment, missing, own, parameters, waterfall};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
@@ -133,7 +136,7 @@ pub(super) fn progress_ui(page: &Compare, ui: &mut egui::Ui, commands: &mut Vec<
     if page.job.is_some() {
         ui.horizontal(|ui| {
             // What it is doing is a sentence.
-            let width = ui.available_width() - bar::button(ui, "Cancel");
+            let width = ui.available_width() - theme::button_width(ui, "Cancel");
             let bar = egui::ProgressBar::new(page.progress.0 as f32).desired_width(width);
             ui.add(bar.text(tr(page.progress.1.clone())));
             if ui.button(tr("Cancel")).clicked() {

@@ -1,11 +1,12 @@
 //! How the error fell, step by step: back to any of them, and forth again.
 
 use egui::Color32;
-use hysteron_core::criticism::StepReport;
+use hysteron_core::diagnosis::StepReport;
 use hysteron_core::effect::name_of;
 
-use super::{Command, Compare, times_noise};
-use crate::bar;
+use super::answer::times_noise;
+use super::command::Command;
+use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::motion;
@@ -48,7 +49,9 @@ pub(super) fn ui(
     let floor = known().next_back().map_or(1.0, |r| r.noise_floor);
     let room = ui.available_width() - NUMBERS;
     // Names are cut only where there is no room for them beside narrow bars.
-    let names = steps.iter().map(|(label, _)| bar::button_of(ui, label));
+    let names = steps
+        .iter()
+        .map(|(label, _)| theme::button_width_of(ui, label));
     let names = names.fold(LEAST_LABEL, f32::max);
     let names = names.min((room - LEAST_BAR).max(LEAST_LABEL));
     let width = (room - names).clamp(LEAST_BAR, BAR_WIDTH);

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{Command, Compare};
-use crate::enclosed::{self, Enclosed};
+use super::built_in::{BUILT_IN, BuiltIn};
+use super::command::Command;
+use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::layout;
@@ -16,31 +17,6 @@ const GLIMPSE: std::ops::RangeInclusive<f32> = 90.0..=240.0;
 const GLIMPSE_SHARE: f32 = 0.25;
 const GLIMPSE_SWITCHES: usize = 12;
 const GLIMPSE_SAMPLES: usize = 1000;
-
-/// A measurement that comes with the app.
-pub(super) struct BuiltIn {
-    pub file: Enclosed,
-    title: &'static str,
-    story: &'static str,
-}
-
-pub(super) const BUILT_IN: [BuiltIn; 3] = [
-    BuiltIn {
-        file: enclosed::DRIVE_02,
-        title: "A drive that loses its swing",
-        story: "A motor under a velocity relay. It never moves quite as far as its inertia says it should.",
-    },
-    BuiltIn {
-        file: enclosed::DRIVE_12,
-        title: "A drive that answers late",
-        story: "The same rig with another amplifier and older bearings. One effect is not enough.",
-    },
-    BuiltIn {
-        file: enclosed::PROCESS_02,
-        title: "A slow heating process",
-        story: "A heater switched by a relay. The temperature overshoots both limits, every time.",
-    },
-];
 
 /// A measurement: how it begins, what it is, and the button that opens it.
 fn card_ui(

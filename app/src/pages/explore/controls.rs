@@ -6,7 +6,7 @@ use hysteron_core::simulate::Noise;
 
 use super::Explore;
 use crate::language::tr;
-use crate::pages::controls::slider;
+use crate::widgets::controls::slider;
 
 /// Time between the values of the noise, as a share of a second.
 const NOISE_INTERVAL: f64 = 0.02;

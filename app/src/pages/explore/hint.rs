@@ -2,7 +2,8 @@
 
 use hysteron_core::explore::{ExploreData, ExploreInput};
 
-use crate::pages::{Command, Hint};
+use crate::command::Command;
+use crate::page::Hint;
 
 /// Share by which the describing function may miss the amplitude and still be right enough to be tried further.
 const RIGHT: f64 = 0.05;

@@ -4,7 +4,6 @@ mod controls;
 mod hint;
 mod nyquist;
 mod plant_editor;
-pub mod plots;
 mod settings;
 mod table;
 
@@ -13,14 +12,16 @@ use std::collections::VecDeque;
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks, figures};
 
-use super::playback::Playback;
-use super::{Desk, Hint, View};
-use crate::document::parsed;
-use crate::export::Table;
+use crate::desk::Desk;
+use crate::export::{Table, Tables};
 use crate::language::tr;
 use crate::layout;
-use crate::pages::controls::claim_ui;
+use crate::link::parsed;
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
+use crate::widgets::controls::claim_ui;
+use crate::widgets::playback::Playback;
+use crate::widgets::relay_loop::{self, TABLES, tables};
 use nyquist::Nyquist;
 use plant_editor::PlantEditor;
 
@@ -53,18 +54,18 @@ struct Finished {
     data: Result<(ExploreData, Vec<Check>), String>,
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("explore", "Explore", Explore::default())
+}
+
 impl View for Explore {
-    fn id(&self) -> &'static str {
-        "explore"
-    }
-
-    fn title(&self) -> &'static str {
-        "Explore"
-    }
-
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.input.clone_from(&desk.relay_loop);
         self.compute();
+        if std::mem::take(&mut desk.play) {
+            self.playback.toggle(ui.ctx());
+        }
         self.play(ui);
         if ui.available_width() < layout::NARROW {
             self.narrow_ui(ui);
@@ -78,35 +79,6 @@ impl View for Explore {
             desk.relay_loop.clone_from(&self.input);
             ui.ctx().request_repaint();
         }
-    }
-
-    fn toggle_play(&mut self, ctx: &egui::Context) {
-        self.playback.toggle(ctx);
-    }
-
-    fn hint(&self) -> Option<Hint> {
-        self.data().map(|(data, _)| hint::hint(&self.input, data))
-    }
-
-    fn table_names(&self) -> Vec<&'static str> {
-        self.data().map_or_else(Vec::new, |_| TABLES.to_vec())
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        self.data().map_or_else(Vec::new, |(data, _)| tables(data))
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(&parsed(settings)?)
     }
 
     fn hook_state(&self) -> serde_json::Value {
@@ -126,6 +98,45 @@ impl View for Explore {
             "checks": data.map(|(_, all)| all.iter().map(|c| c.holds).collect::<Vec<_>>()),
             "plant_error": self.editor.error(),
         })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Explore {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(&parsed(settings)?)
+    }
+}
+
+impl Explore {
+    /// What to try next.
+    fn hint(&self) -> Option<Hint> {
+        self.data().map(|(data, _)| hint::hint(&self.input, data))
+    }
+
+    /// Names of the tables that can be given now.
+    fn table_names(&self) -> Vec<&'static str> {
+        self.data().map_or_else(Vec::new, |_| TABLES.to_vec())
+    }
+
+    /// The numbers behind what is shown.
+    fn tables(&self) -> Vec<Table> {
+        self.data().map_or_else(Vec::new, |(data, _)| tables(data))
     }
 }
 
@@ -268,13 +279,13 @@ impl Explore {
             return;
         };
         let relay = &mut self.input.relay;
-        let amplitude = plots::swing_at(data, self.playback.clock);
+        let amplitude = relay_loop::swing_at(data, self.playback.clock);
         self.line_at = Some(self.nyquist.ui(ui, relay, data, amplitude, height));
     }
 
     fn phase_ui(&self, ui: &mut egui::Ui, height: f32) {
         if let Some((data, _)) = self.data() {
-            plots::phase_ui(ui, data, self.playback.clock, height);
+            relay_loop::phase_ui(ui, data, self.playback.clock, height);
         }
     }
 
@@ -282,30 +293,6 @@ impl Explore {
         let Some((data, _)) = self.data() else {
             return;
         };
-        plots::time_ui(ui, &self.input.relay, data, self.playback.clock, height);
+        relay_loop::time_ui(ui, &self.input.relay, data, self.playback.clock, height);
     }
-}
-
-/// Names of [`tables`].
-pub const TABLES: [&str; 5] = [
-    "time series",
-    "relay input",
-    "phase portrait",
-    "limit cycle",
-    "Nyquist curve",
-];
-
-/// The numbers behind the plots.
-pub fn tables(data: &ExploreData) -> Vec<Table> {
-    let [y, rate] = ["output y", "its rate dy/dt [1/s]"];
-    vec![
-        Table::new(TABLES[0])
-            .with("time [s]", data.time.iter().copied())
-            .with(y, data.output.iter().copied()),
-        Table::curve(TABLES[1], ["time [s]", "input u"], &data.input),
-        Table::curve(TABLES[2], [y, rate], &data.phase),
-        Table::curve(TABLES[3], [y, rate], &data.cycle),
-        Table::curve(TABLES[4], ["real part", "imaginary part"], &data.nyquist)
-            .with("frequency [rad/s]", data.nyquist_frequency.iter().copied()),
-    ]
 }

@@ -8,8 +8,8 @@ use hysteron_core::explore::ExploreData;
 use hysteron_core::relay::Relay;
 
 use crate::language::tr;
-use crate::pages::chart::{Shape, caption_ui, curve, dot, still};
 use crate::theme;
+use crate::widgets::chart::{Shape, caption_ui, curve, dot, still};
 
 /// How near the pointer must come to take hold, points.
 const REACH: f32 = 9.0;

@@ -5,8 +5,8 @@ use hysteron_core::limit_cycle::Cycle;
 use hysteron_core::tuning::relay_gain;
 
 use crate::language::{tr, tr_number};
-use crate::pages::chart::significant;
 use crate::theme;
+use crate::widgets::chart::significant;
 
 /// Describing function, exact and simulated values with their differences in per cent.
 pub fn predictions_ui(ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData) {

@@ -3,20 +3,24 @@
 mod picture;
 mod settings;
 mod side;
+mod words;
 
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
-use crate::export::Table;
+use crate::command::Command;
+use crate::desk::Desk;
+use crate::export::{Table, Tables};
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
-use crate::tasks::MapTask;
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
+use hysteron_work::tasks::MapTask;
 use picture::Picture;
+use words::{axis_title, number, with_unit};
 
 /// The page: what is asked for, what is known of it, and what is drawn.
 #[derive(Default)]
@@ -168,15 +172,12 @@ impl Maps {
     }
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("maps", "Maps", Maps::default())
+}
+
 impl View for Maps {
-    fn id(&self) -> &'static str {
-        "maps"
-    }
-
-    fn title(&self) -> &'static str {
-        "Maps"
-    }
-
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.follow(&desk.relay_loop);
         let commands = &mut desk.commands;
@@ -214,6 +215,41 @@ impl View for Maps {
         });
     }
 
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "share": self.map.share(),
+            "point": self.point,
+            "message": self.message,
+            "answer": self.answer(),
+        })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Maps {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(parsed(settings)?, &desk.relay_loop)
+    }
+}
+
+impl Maps {
+    /// What to try next.
     fn hint(&self) -> Option<Hint> {
         Some(Hint::open(
             "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
@@ -221,10 +257,12 @@ impl View for Maps {
         ))
     }
 
+    /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
         vec!["map"]
     }
 
+    /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let size = self.map.size();
         let known: Vec<_> = (0..size * size)
@@ -244,59 +282,5 @@ impl View for Maps {
             table = table.with(title, values);
         }
         vec![table]
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(parsed(settings)?, &desk.relay_loop)
-    }
-
-    fn hook_state(&self) -> serde_json::Value {
-        serde_json::json!({
-            "busy": self.job.is_some(),
-            "share": self.map.share(),
-            "point": self.point,
-            "message": self.message,
-            "answer": self.answer(),
-        })
-    }
-}
-
-/// Four digits that mean something.
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if size >= 1000.0 {
-        format!("{value:.0}")
-    } else if size >= 100.0 {
-        format!("{value:.1}")
-    } else if size >= 10.0 {
-        format!("{value:.2}")
-    } else {
-        format!("{value:.3}")
-    }
-}
-
-fn with_unit(value: f64, unit: &str) -> String {
-    if unit.is_empty() {
-        number(value)
-    } else {
-        format!("{} {unit}", number(value))
-    }
-}
-
-/// Name with its unit, for axes.
-fn axis_title(label: &str, unit: &str) -> String {
-    if unit.is_empty() {
-        label.to_owned()
-    } else {
-        format!("{label} [{unit}]")
     }
 }

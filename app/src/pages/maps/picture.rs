@@ -4,11 +4,10 @@ use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
 use egui_plot::{MarkerShape, PlotImage, PlotPoint, Points};
 use hysteron_core::maps::{Map, MapInput, Outcome, Quantity};
 
-use super::side::stability;
-use super::{axis_title, number, with_unit};
+use super::words::{axis_title, number, stability, with_unit};
 use crate::colors::viridis;
 use crate::language::{tr, tr_number};
-use crate::pages::chart::Chart;
+use crate::widgets::chart::Chart;
 
 /// Pixels of the texture along a cell, so that hatching shows.
 const PIXELS: usize = 4;

@@ -5,7 +5,6 @@ use hysteron_core::maps::{Axis, Quantity};
 use serde::{Deserialize, Serialize};
 
 use super::Maps;
-use crate::document::check;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -43,7 +42,10 @@ impl Maps {
         input
             .validate()
             .map_err(|e| format!("This map cannot be: {e}."))?;
-        check(&input.base)?;
+        input
+            .base
+            .validate()
+            .map_err(|e| format!("This loop cannot be: {e}."))?;
         self.input = input;
         self.quantity = settings.quantity;
         self.point = settings.point;

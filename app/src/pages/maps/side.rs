@@ -3,10 +3,12 @@
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Parameter, Quantity};
 
-use super::{Command, Maps, axis_title, with_unit};
+use super::Maps;
+use super::words::{axis_title, stability, with_unit};
+use crate::command::Command;
 use crate::language::tr;
-use crate::pages::controls::reset_asked;
-use crate::pages::typed::{DECIMALS, Typed};
+use crate::widgets::controls::reset_asked;
+use crate::widgets::typed::{DECIMALS, Typed};
 
 impl Maps {
     /// Axes and quantity.
@@ -90,11 +92,6 @@ impl Maps {
             commands.push(Command::Go("explore"));
         }
     }
-}
-
-/// A verdict for the value of [`Quantity::Stability`].
-pub(super) fn stability(value: f64) -> &'static str {
-    if value > 0.5 { "stable" } else { "unstable" }
 }
 
 fn suffix(unit: &str) -> String {

@@ -5,9 +5,10 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
+use super::machines::MACHINES;
+use crate::desk::Desk;
 use crate::language::tr;
-use crate::pages::Desk;
-use crate::pages::typed::{DECIMALS, Typed};
+use crate::widgets::typed::{DECIMALS, Typed};
 
 /// Name and story of an experiment.
 fn words(experiment: Experiment) -> (&'static str, &'static str) {
@@ -42,12 +43,6 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
         ),
     }
 }
-
-/// Name of what can be measured, and its name for tests.
-pub(super) const MACHINES: [(Kind, &str, &str); 2] = [
-    (Kind::Drive, "drive", "A drive"),
-    (Kind::Process, "process", "A process"),
-];
 
 const fn strength_name(strength: Strength) -> &'static str {
     match strength {

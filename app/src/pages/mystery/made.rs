@@ -2,23 +2,26 @@
 
 use egui_plot::Line;
 use hysteron_core::measurement::Kind;
-use hysteron_core::mystery::{Mystery, columns};
+use hysteron_core::mystery::{Choice, Experiment, Mystery, columns};
 
-use super::Asked;
+use crate::command::Command;
+use crate::desk::Desk;
 use crate::export::Table;
 use crate::language::tr;
 use crate::link::VERSION;
-use crate::pages::chart::{Shape, caption_ui, curve, envelope, still};
-use crate::pages::{Command, Desk};
 use crate::save::Document;
-use crate::tasks::Made;
 use crate::theme;
+use crate::widgets::chart::{Shape, caption_ui, curve, envelope, still};
+use hysteron_work::tasks::Made;
 
 /// Longest link that is offered, characters: browsers take more, but not every message does.
 const LONGEST: usize = 16_384;
 
 /// Most points of a curve.
 const MOST_POINTS: usize = 4000;
+
+/// What is measured and what is hidden in it.
+pub(super) type Asked = (Experiment, Choice);
 
 /// A mystery, ready to be shown.
 pub(super) struct Product {

@@ -1,6 +1,7 @@
 //! Which effect is hidden? A bench that makes a measurement whose truth is sealed.
 
 mod choices;
+mod machines;
 mod made;
 mod picture;
 
@@ -10,17 +11,20 @@ use hysteron_core::report::sha256;
 use serde::{Deserialize, Serialize};
 use web_time::SystemTime;
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
-use crate::export::Table;
+use crate::command::Command;
+use crate::desk::Desk;
+use crate::export::{Table, Tables};
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
-use crate::tasks::MysteryTask;
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
-use choices::MACHINES;
-use made::Product;
+
+use hysteron_work::tasks::MysteryTask;
+use machines::MACHINES;
+use made::{Asked, Product};
 
 /// The page. What is chosen and the word are no settings: a link of this page tells neither.
 #[derive(Default)]
@@ -42,9 +46,6 @@ pub struct Bench {
     /// Mysteries that were made since the app started.
     count: u32,
 }
-
-/// What is measured and what is hidden in it.
-type Asked = (Experiment, Choice);
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -207,15 +208,12 @@ fn salt(count: u32) -> [u8; hysteron_core::mystery::SALT] {
     salt
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("mystery", "Mystery", Bench::default())
+}
+
 impl View for Bench {
-    fn id(&self) -> &'static str {
-        "mystery"
-    }
-
-    fn title(&self) -> &'static str {
-        "Mystery"
-    }
-
     fn update(&mut self, _ctx: &egui::Context) {
         for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
             match news {
@@ -233,26 +231,23 @@ impl View for Bench {
         });
     }
 
-    fn hint(&self) -> Option<Hint> {
-        if self.made.is_some() {
-            return Some(Hint::say(
-                "Hand on the mystery: its file, or its link. Whoever solves it needs your word at the end.",
-            ));
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "made": self.made.as_ref().map(|m| m.name.clone()),
+            "message": self.message,
+        })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
         }
-        Some(Hint::open(
-            "Never looked for a hidden effect? Begin with a drive that loses its swing.",
-            "v1;compare;compare.file=drive-02",
-        ))
     }
+}
 
-    fn table_names(&self) -> Vec<&'static str> {
-        self.made.iter().map(|_| "mystery").collect()
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        self.made.iter().map(made::table).collect()
-    }
-
+impl Settable for Bench {
     fn settings(&self) -> serde_json::Value {
         serde_json::json!(Settings {
             experiment: self.experiment,
@@ -274,12 +269,29 @@ impl View for Bench {
         self.by_hand = by_hand;
         Ok(())
     }
+}
 
-    fn hook_state(&self) -> serde_json::Value {
-        serde_json::json!({
-            "busy": self.job.is_some(),
-            "made": self.made.as_ref().map(|m| m.name.clone()),
-            "message": self.message,
-        })
+impl Bench {
+    /// What to try next.
+    fn hint(&self) -> Option<Hint> {
+        if self.made.is_some() {
+            return Some(Hint::say(
+                "Hand on the mystery: its file, or its link. Whoever solves it needs your word at the end.",
+            ));
+        }
+        Some(Hint::open(
+            "Never looked for a hidden effect? Begin with a drive that loses its swing.",
+            "v1;compare;compare.file=drive-02",
+        ))
+    }
+
+    /// Names of the tables that can be given now.
+    fn table_names(&self) -> Vec<&'static str> {
+        self.made.iter().map(|_| "mystery").collect()
+    }
+
+    /// The numbers behind what is shown.
+    fn tables(&self) -> Vec<Table> {
+        self.made.iter().map(made::table).collect()
     }
 }

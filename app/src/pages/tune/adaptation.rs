@@ -4,7 +4,7 @@ use egui_plot::{Line, MarkerShape, Points};
 use hysteron_core::tuning::PhaseMarginReport;
 
 use super::draw::{beside, curve, number, plot, table};
-use super::{Seen, Stage};
+use super::stage::{Seen, Stage};
 use crate::language::{tr, tr_number};
 use crate::theme;
 

@@ -5,9 +5,9 @@ use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{AMPLITUDE_CONVENTION, Pid, RULES, TuningInput, Wish, rule};
 
 use super::Tune;
+use crate::desk::Desk;
 use crate::language::tr;
-use crate::pages::Desk;
-use crate::pages::controls::slider;
+use crate::widgets::controls::slider;
 
 impl Tune {
     pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {

@@ -4,8 +4,8 @@ use egui_plot::{Line, LineStyle, PlotPoints};
 use hysteron_core::tuning::{Pid, RelayTest};
 
 use crate::language::tr;
-use crate::pages::chart::{Chart, Shape, caption_ui};
 use crate::theme;
+use crate::widgets::chart::{Chart, Shape, caption_ui};
 
 /// Colour of what was before.
 pub const BEFORE: egui::Color32 = theme::RESIDUAL;

@@ -6,11 +6,11 @@ use hysteron_core::tuning::{LoopReport, Response, TuningReport};
 use super::draw::{
     AFTER, BEFORE, CAPTION, beside, controller, curve, maybe, number, plot, series, table,
 };
-use super::{Seen, Stage};
+use super::stage::{Seen, Stage};
 use crate::export::Table;
 use crate::language::tr;
-use crate::pages::chart::{Key, Shape, caption_ui, sparse};
 use crate::theme;
+use crate::widgets::chart::{Key, Shape, caption_ui, sparse};
 
 pub const STAGE: Stage = Stage {
     id: "loops",

@@ -8,41 +8,24 @@ mod model;
 mod oscillation;
 mod rules;
 mod settings;
+mod stage;
 mod ultimate;
 
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{TuningInput, TuningReport};
 
-use super::{Command, Desk, Hint, View};
-use crate::document::parsed;
-use crate::export::Table;
+use crate::command::Command;
+use crate::desk::Desk;
+use crate::export::{Table, Tables};
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
+use crate::link::parsed;
 use crate::motion;
-use crate::tasks::TuneTask;
+use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
-
-/// What a step shows.
-#[derive(Clone, Copy)]
-struct Seen<'a> {
-    input: &'a TuningInput,
-    report: &'a TuningReport,
-}
-
-/// A step of the experiment: one file each.
-struct Stage {
-    /// Its name in tests.
-    id: &'static str,
-    /// What its button says.
-    title: &'static str,
-    question: &'static str,
-    answer: fn(Seen<'_>) -> String,
-    /// What the next step does.
-    next: &'static str,
-    /// Draws it in about this height; may choose another rule.
-    ui: fn(&mut egui::Ui, Seen<'_>, f32, &mut String),
-}
+use hysteron_work::tasks::TuneTask;
+use stage::{Seen, Stage};
 
 /// The experiment, in its order.
 const STAGES: [Stage; 6] = [
@@ -83,15 +66,12 @@ impl Default for Tune {
     }
 }
 
+/// The page.
+pub fn page() -> Page {
+    Page::new("tune", "Tune", Tune::default())
+}
+
 impl View for Tune {
-    fn id(&self) -> &'static str {
-        "tune"
-    }
-
-    fn title(&self) -> &'static str {
-        "Tune"
-    }
-
     fn update(&mut self, _ctx: &egui::Context) {
         let news = self.job.as_mut().map(Job::news).unwrap_or_default();
         for said in news {
@@ -139,6 +119,42 @@ impl View for Tune {
         });
     }
 
+    fn hook_state(&self) -> serde_json::Value {
+        let stage = STAGES.get(self.stage);
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "step": stage.map(|s| s.id),
+            "rule": self.input.rule,
+            "answer": self.answer(),
+            "message": self.message,
+        })
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: self.hint(),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+}
+
+impl Settable for Tune {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        self.take(&parsed(settings)?)
+    }
+}
+
+impl Tune {
+    /// What to try next.
     fn hint(&self) -> Option<Hint> {
         let stage = STAGES.get(self.stage)?;
         let command = STAGES
@@ -152,6 +168,7 @@ impl View for Tune {
         })
     }
 
+    /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
         match self.seen() {
             None => Vec::new(),
@@ -160,6 +177,7 @@ impl View for Tune {
         }
     }
 
+    /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let Some(seen) = self.seen() else {
             return Vec::new();
@@ -180,30 +198,6 @@ impl View for Tune {
                 nyquist,
             ),
         ]
-    }
-
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(&parsed(settings)?)
-    }
-
-    fn hook_state(&self) -> serde_json::Value {
-        let stage = STAGES.get(self.stage);
-        serde_json::json!({
-            "busy": self.job.is_some(),
-            "step": stage.map(|s| s.id),
-            "rule": self.input.rule,
-            "answer": self.answer(),
-            "message": self.message,
-        })
     }
 }
 

@@ -3,7 +3,7 @@
 use hysteron_core::tuning::{AsymmetricTest, Model, TuningError};
 
 use super::draw::{beside, number, run_ui, table};
-use super::{Seen, Stage};
+use super::stage::{Seen, Stage};
 use crate::language::tr;
 
 pub const STAGE: Stage = Stage {

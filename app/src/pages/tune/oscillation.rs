@@ -1,7 +1,7 @@
 //! Step 1: the relay takes the controller's place.
 
 use super::draw::{number, run_ui};
-use super::{Seen, Stage};
+use super::stage::{Seen, Stage};
 use crate::language::tr;
 
 pub const STAGE: Stage = Stage {

@@ -3,7 +3,7 @@
 use hysteron_core::tuning::{LoopReport, rule};
 
 use super::draw::{cell, controller, maybe, number, set_table};
-use super::{Seen, Stage};
+use super::stage::{Seen, Stage};
 use crate::language::{tr, tr_number};
 
 /// Room below which the table is set tight, and the width of the names of rules then, points.

@@ -4,10 +4,10 @@ use egui_plot::{Line, LineStyle, MarkerShape, Points};
 use hysteron_core::tuning::Ultimate;
 
 use super::draw::{CAPTION, beside, curve, error, maybe, number, plot, table};
-use super::{Seen, Stage};
+use super::stage::{Seen, Stage};
 use crate::language::tr;
-use crate::pages::chart::{Shape, caption_ui};
 use crate::theme;
+use crate::widgets::chart::{Shape, caption_ui};
 
 pub const STAGE: Stage = Stage {
     id: "ultimate",

@@ -1,11 +1,8 @@
 //! The experiments that are simulated: what one model does, and what the others leave of it.
 
-use super::FittedModel;
 use super::candidates::Sizes;
 use super::design::LEAST_SAMPLES;
-use super::limits::{Limits, extent};
-use super::program::Program;
-use crate::criticism::CriticismError;
+use super::limits::extent;
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
 use crate::criticism::noise::Noise;
@@ -13,6 +10,7 @@ use crate::criticism::score::score;
 use crate::criticism::session::{Scored, Session};
 use crate::criticism::structure::Structure;
 use crate::criticism::window;
+use crate::diagnosis::{CriticismError, FittedModel, Limits, Program};
 use crate::effect::EffectId;
 use crate::measurement::{Channel, Kind, Measurement, Quantity};
 use crate::model::{Run, Sensor, run_controlled};

@@ -1,7 +1,6 @@
 //! The programs that are tried: what one would do at the bench, sized by the limits and the plant.
 
-use super::limits::Limits;
-use super::program::{Program, Sine};
+use crate::diagnosis::{Limits, Program, Sine};
 use crate::measurement::Kind;
 
 /// What the sizes of a program follow from.

@@ -2,10 +2,10 @@
 
 use super::bench::{Bench, Hypothesis, Outcome};
 use super::candidates::candidates;
-use super::limits::Limits;
-use super::program::{Program, Shape};
-use super::{NextExperiment, Trial, words};
+use super::program::Shape;
+use super::words;
 use crate::criticism::session::{Scored, Session};
+use crate::diagnosis::{Limits, NextExperiment, Program, Trial};
 use crate::effect::{Effect, EffectId};
 use crate::measurement::Kind;
 

@@ -1,12 +1,12 @@
 //! The search as a job of its own, for limits that a user changes.
 
+use super::TRYING;
 use super::bench::Hypothesis;
 use super::design::Design;
-use super::limits::Limits;
-use super::{FittedModel, NextExperiment, TRYING};
 use crate::criticism::session::Session;
-use crate::criticism::{CriticismError, Progress};
+use crate::diagnosis::{CriticismError, FittedModel, Limits, NextExperiment};
 use crate::measurement::Measurement;
+use crate::progress::Progress;
 use crate::user_model::UserModel;
 
 /// Looks for the experiment again, within other limits.

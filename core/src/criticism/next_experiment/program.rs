@@ -1,49 +1,8 @@
-//! What may drive an experiment: relays, levels in turn, sums of sines.
+//! A program as what drives an experiment sample by sample.
 
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
 
-use serde::{Deserialize, Serialize};
-
-/// One sine of a sum, `amplitude sin(2 pi frequency t + phase)`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sine {
-    /// In the unit of the input.
-    pub amplitude: f64,
-    /// Hz.
-    pub frequency: f64,
-    /// rad.
-    pub phase: f64,
-}
-
-/// An input, as a controller would make it sample by sample.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub enum Program {
-    /// A relay on the velocity of a drive or the output of a process, `u = -k h`.
-    Relay {
-        /// Gains k in the unit of the input, in turn; at least one, each above 0.
-        gains: Vec<f64>,
-        /// How long each gain holds, s; without meaning where there is one.
-        hold: f64,
-        /// Hysteresis, in the unit of what it switches on; at least 0.
-        hysteresis: f64,
-        /// Asymmetry a: the levels are `k (1 + a)` and `-k (1 - a)`.
-        asymmetry: f64,
-    },
-    /// Levels one after the other, over and over.
-    Levels {
-        /// In the unit of the input.
-        levels: Vec<f64>,
-        /// How long each holds, s.
-        hold: f64,
-    },
-    /// A sum of sines.
-    Multisine {
-        /// From low to high.
-        sines: Vec<Sine>,
-    },
-}
+use crate::diagnosis::Program;
 
 /// What kind of program it is: of each kind one is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,102 +60,6 @@ impl Program {
         }
         scaled
     }
-
-    /// In words with numbers: `a relay with gain 0.5 N m and hysteresis 0.6 rad/s`. `input` and `output` are the
-    /// units.
-    pub fn words(&self, input: &str, output: &str) -> String {
-        let with = |value: f64, unit: &str| {
-            if unit == "1" {
-                short(value)
-            } else {
-                format!("{} {unit}", short(value))
-            }
-        };
-        match self {
-            Self::Relay {
-                gains,
-                hold,
-                hysteresis,
-                asymmetry,
-            } => {
-                let hysteresis = with(*hysteresis, output);
-                let mut text = match gains.as_slice() {
-                    [gain] => format!("a relay with gain {}", with(*gain, input)),
-                    [first, second] => format!(
-                        "a relay with gains {} and {} in turn, {} s each",
-                        short(*first),
-                        with(*second, input),
-                        short(*hold)
-                    ),
-                    _ => format!(
-                        "a relay with gains {} in turn, {} s each",
-                        list(gains, input),
-                        short(*hold)
-                    ),
-                };
-                if *asymmetry != 0.0 {
-                    let _ = write!(text, ", asymmetry {}", short(*asymmetry));
-                }
-                text + &format!(", hysteresis {hysteresis}")
-            }
-            Self::Levels { levels, hold } => {
-                let kind = match self.shape() {
-                    Shape::TwoLevels => "two levels in a random order",
-                    _ => "a staircase",
-                };
-                let shown: &[f64] = match self.shape() {
-                    Shape::TwoLevels => &[levels[0].abs(), -levels[0].abs()],
-                    _ => levels,
-                };
-                format!(
-                    "{kind}, each step {} s long: {}",
-                    short(*hold),
-                    list(shown, input)
-                )
-            }
-            Self::Multisine { sines } => {
-                let ends = sines.first().zip(sines.last());
-                let (low, high) = ends.map_or((0.0, 0.0), |(a, b)| (a.frequency, b.frequency));
-                let size = sines.first().map_or(0.0, |s| s.amplitude);
-                format!(
-                    "a sum of {} sines from {} to {} Hz, {} each",
-                    sines.len(),
-                    short(low),
-                    short(high),
-                    with(size, input)
-                )
-            }
-        }
-    }
-}
-
-/// Values with their unit at the end.
-fn list(values: &[f64], unit: &str) -> String {
-    let numbers: Vec<String> = values.iter().map(|v| short(*v)).collect();
-    let unit = if unit == "1" {
-        String::new()
-    } else {
-        format!(" {unit}")
-    };
-    format!("{}{unit}", numbers.join(", "))
-}
-
-/// A number with three digits that count.
-pub(super) fn short(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    if !(1e-4..1e5).contains(&size) {
-        return format!("{value:.2e}");
-    }
-    let digits = (2 - libm::log10(size).floor() as i32).clamp(0, 7) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
 }
 
 /// A program under way.
@@ -251,21 +114,6 @@ impl Controller<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_have_three_digits_that_count() {
-        for (value, text) in [
-            (0.5, "0.5"),
-            (0.065, "0.065"),
-            (1234.5, "1234"),
-            (0.123_456, "0.123"),
-            (-3.0, "-3"),
-            (2e-5, "2.00e-5"),
-            (20.0, "20"),
-        ] {
-            assert_eq!(short(value), text);
-        }
-    }
 
     #[test]
     fn a_relay_switches_at_its_hysteresis_and_changes_its_gain() {

@@ -1,21 +1,11 @@
 //! The proposal in words.
 
-use super::NextExperiment;
-use super::program::short;
+use crate::diagnosis::{NextExperiment, short, times};
 use crate::effect::name_of;
 
 /// Separation below which two models do the same for all that can be computed or measured: it would take some two
 /// million samples to see it, and a slow sensor is computed as if its signal were straight between samples.
 const THE_SAME: f64 = 5e-3;
-
-/// Times the noise, with as many digits as count.
-pub(super) fn times(separation: f64) -> String {
-    if separation < 0.01 {
-        "less than 0.01".to_owned()
-    } else {
-        short(separation)
-    }
-}
 
 /// What to do and what to expect.
 pub(super) fn text(proposal: &NextExperiment) -> String {

@@ -5,12 +5,12 @@ mod points;
 
 use std::collections::VecDeque;
 
-use super::baseline;
 use super::data::Data;
 use super::fit::{Fit, same_place};
+use super::guess::guess;
 use super::knowledge::Knowledge;
 use super::structure::Structure;
-use crate::effect::Scales;
+use crate::effect::{Scales, baseline};
 use crate::model::Start;
 
 /// Iterations that every starting point gets before the best are chosen.
@@ -91,7 +91,7 @@ impl Search {
     pub fn baseline(data: &Data, knowledge: &Knowledge) -> Self {
         let structure = Structure::new(data.kind, Vec::new(), knowledge.clone());
         let plain = baseline::model(data.kind, &[1.0, 1.0]);
-        let guess = baseline::guess(data, &data.excitation.effective_input(&plain));
+        let guess = guess(data, &data.excitation.effective_input(&plain));
         let mut values = guess.unwrap_or_else(|| vec![1.0, 1.0]);
         structure.begin(&mut values, 0);
         Self::from_points(

@@ -1,10 +1,9 @@
 //! Two effects that only show together.
 
 use super::Search;
-use crate::criticism::baseline;
 use crate::criticism::fit::Fit;
 use crate::criticism::session::Session;
-use crate::effect::EffectId;
+use crate::effect::{EffectId, baseline};
 
 /// A body at rest under a load is held by its friction: without that it falls, and without the load nothing pulls at it.
 const HOLDS: EffectId = EffectId::new("coulomb_friction");

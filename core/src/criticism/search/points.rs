@@ -1,12 +1,12 @@
 //! Where searches begin.
 
 use super::{Ground, Point, Search, come_on};
-use crate::criticism::baseline;
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
+use crate::criticism::guess::guess;
 use crate::criticism::probes::Probed;
 use crate::criticism::structure::Structure;
-use crate::effect::{Effect, Scales};
+use crate::effect::{Effect, Scales, baseline};
 use crate::model::load_torque;
 
 /// A regressed baseline that differs by less than this share from the present one is no new start.
@@ -150,7 +150,7 @@ impl Search {
                 *input -= torque;
             }
         }
-        let guess = baseline::guess(data, &acting)?;
+        let guess = guess(data, &acting)?;
         let far = guess
             .iter()
             .zip(&fit.values)

@@ -1,7 +1,6 @@
 //! What to add, to leave out, or to follow on trial, of what a step has fitted.
 
 use super::StepJob;
-use crate::criticism::Contradiction;
 use crate::criticism::judge::{
     HUGE_FALL, alike, helps_clearly, is_certain, may_hide, nested, part_does, tied,
 };
@@ -11,6 +10,7 @@ use crate::criticism::select::{
     LEAST_FALL, fall, fall_on_both, goes_first, helps, is_plain_noise, outweighs,
 };
 use crate::criticism::session::Scored;
+use crate::diagnosis::Contradiction;
 use crate::effect::{Effect, EffectId};
 
 /// The effect that is tried together with others where nothing helps by itself.

@@ -11,10 +11,11 @@ use super::search::Search;
 use super::select::{fall, is_plain_noise, is_too_rich};
 use super::session::{Scored, Session};
 use super::verdict::Class;
-use super::{Contradiction, CriticismError, Limits, NextExperiment, Progress, Step, StepReport};
 use crate::crew::Crew;
+use crate::diagnosis::{Contradiction, CriticismError, Limits, NextExperiment, Step, StepReport};
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::Measurement;
+use crate::progress::Progress;
 use crate::user_model::UserModel;
 
 /// Error of a perfect model in noise units.

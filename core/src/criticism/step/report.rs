@@ -12,7 +12,7 @@ use crate::criticism::verdict::{
     add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_limited,
     add_pauses, add_rest, add_resting_place, verdict,
 };
-use crate::criticism::{Candidate, Step, StepReport};
+use crate::diagnosis::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
 use crate::measurement::Kind;
 

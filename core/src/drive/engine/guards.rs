@@ -3,8 +3,9 @@
 use super::DriveJob;
 use crate::drive::Contact;
 use crate::drive::flow::Step;
-use crate::drive::modes::{Friction, holding, pull_share};
+use crate::drive::modes::{holding, pull_share};
 use crate::drive::polynomial::first_rise;
+use crate::drive::state::Friction;
 use crate::drive::trajectory::{EventKind, Mass, Side};
 
 /// What ends a step before its time.

@@ -6,9 +6,9 @@ mod switching;
 use std::collections::VecDeque;
 
 use crate::drive::flow::{REACH, Rates, Step};
-use crate::drive::modes::{Friction, State};
 use crate::drive::polynomial::integral_of_square;
 use crate::drive::relay::{Command, VelocityRelay};
+use crate::drive::state::{Friction, State};
 use crate::drive::trajectory::{DriveRun, Event, EventKind, Side};
 use crate::drive::{Contact, Drive, DriveError, DriveInput};
 

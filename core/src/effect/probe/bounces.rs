@@ -7,8 +7,9 @@
 
 use std::f64::consts::SQRT_2;
 
-use super::{Probe, STILL, free_body, solved};
-use crate::model::slope;
+use super::equations::solved;
+use super::{Probe, STILL};
+use crate::model::{free_body, slope};
 use crate::order::quantile;
 use crate::simplex::minimise;
 use nalgebra::{DMatrix, DVector};

@@ -8,8 +8,9 @@ use std::f64::consts::SQRT_2;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::Probe;
+use super::equations::solved;
 use super::spatial::{APART, FASTEST_SPATIAL, Row, rows};
-use super::{Probe, solved};
 use crate::effect::spec::SEEN_TURN;
 use crate::sums::dot;
 

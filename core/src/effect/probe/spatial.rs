@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use rustfft::FftPlanner;
 
-use super::{BASE, Probe, solved, spans_stride};
+use super::equations::{solved, spans_stride};
+use super::{BASE, Probe};
 use crate::effect::spec::SEEN_TURN;
 use crate::order::median;
 use crate::sums::dot;

@@ -1,8 +1,8 @@
 //! What can be hidden in a drive.
 
-use super::{Family, Hide, Hideable};
 use crate::effect::EffectId;
 use crate::mystery::Experiment::{Drifting, Relay, Sines, Stairs};
+use crate::mystery::hideable::{Family, Hide, Hideable};
 use crate::rig::{Friction, Load};
 
 pub(super) const MENU: &[Hideable] = &[

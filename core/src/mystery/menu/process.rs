@@ -1,8 +1,8 @@
 //! What can be hidden in a process.
 
-use super::{Family, Hide, Hideable};
 use crate::effect::EffectId;
 use crate::mystery::Experiment::{ProcessBinary, ProcessRelay, ProcessStairs};
+use crate::mystery::hideable::{Family, Hide, Hideable};
 
 /// Shares of a time constant of some 30 s and of an input of 1. What shifts, bends or cuts off the static
 /// characteristic is one family: of two such effects a diagnosis may find neither.

@@ -1,0 +1,130 @@
+//! `hysteron gap FILE.csv`
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use hysteron_core::backlash::{BacklashMap, GapEstimate, backlash_map, estimate_gap};
+use hysteron_core::measurement::{ImportOptions, Mapping, Quantity, TorqueConstant};
+use serde_json::json;
+
+use crate::output::Format;
+use crate::read::read;
+
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
+
+/// Traverses that the text lists one by one.
+const LISTED: usize = 12;
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Drifting test: CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file
+    #[arg(value_name = "FILE.csv")]
+    file: PathBuf,
+    /// Which column is what: t, u, x1 or v1, its name in the file (- before it turns the sign), its unit
+    #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
+    map: Option<Mapping>,
+    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"; the gap does not depend on it
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    torque_constant: Option<TorqueConstant>,
+    /// For a person or for a program
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// The estimate, or one line that says what is wrong with the input.
+pub fn run(arguments: &Arguments) -> Result<String, String> {
+    let options = ImportOptions {
+        kind: None,
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: arguments.torque_constant,
+    };
+    let (measurement, _) = read(&arguments.file, &options)?;
+    let name = &measurement.name;
+    let estimate = estimate_gap(&measurement).map_err(|e| format!("{name}: {e}"))?;
+    let has_load = measurement
+        .reference
+        .iter()
+        .any(|c| c.quantity == Quantity::LoadPosition);
+    let map = if has_load {
+        backlash_map(&measurement).ok()
+    } else {
+        None
+    };
+    Ok(match arguments.format {
+        Format::Text => text(name, &estimate, map.as_ref(), &measurement.warnings),
+        Format::Json => format!("{:#}\n", json(&estimate)),
+    })
+}
+
+fn json(estimate: &GapEstimate) -> serde_json::Value {
+    json!({
+        "schema": SCHEMA,
+        "gap": estimate.gap,
+        "std_error": estimate.std_error,
+        "unit": estimate.unit,
+        "traverses": estimate.traverses.len(),
+        "text": estimate.text,
+        "interval": estimate.interval,
+        "quality": estimate.quality,
+    })
+}
+
+fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[String]) -> String {
+    let (scale, unit) = estimate.written_in();
+    let scaled = |length: f64| length * scale;
+    let mut out = format!(
+        "{}: {}\n",
+        name.replace(char::is_control, " "),
+        estimate.text
+    );
+    if let Some(interval) = estimate.interval {
+        let [low, high] = interval.map(scaled);
+        let _ = writeln!(out, "95 % interval {low:.3} to {high:.3} {unit}");
+    }
+    if !estimate.traverses.is_empty() && estimate.gap.is_some() {
+        let (at, gap) = (format!("at [{unit}]"), format!("gap [{unit}]"));
+        let _ = writeln!(
+            out,
+            "\n{:>10} {at:>11} {:>12} {at:>11} {gap:>12}",
+            "left [s]", "reached [s]"
+        );
+        for t in estimate.traverses.iter().take(LISTED) {
+            let _ = writeln!(
+                out,
+                "{:10.4} {:11.3} {:12.4} {:11.3} {:12.3} ± {:.3}",
+                t.from.time,
+                scaled(t.from.position),
+                t.to.time,
+                scaled(t.to.position),
+                scaled(t.gap),
+                scaled(t.std_error)
+            );
+        }
+        if estimate.traverses.len() > LISTED {
+            let _ = writeln!(out, "... {} more", estimate.traverses.len() - LISTED);
+        }
+    }
+    if let Some(map) = map {
+        match (map.gap, map.asymmetry) {
+            (Some(gap), Some(asymmetry)) => {
+                let [gap, asymmetry] = [gap, asymmetry].map(scaled);
+                let _ = writeln!(
+                    out,
+                    "\nBy the backlash map with the measured load, for reference: gap {gap:.3} {unit}, its middle at \
+                     {asymmetry:.3} {unit}"
+                );
+            }
+            _ => {
+                let _ = writeln!(
+                    out,
+                    "\nBy the measured load, for reference: it was pushed one way at most, so that its map shows no gap"
+                );
+            }
+        }
+    }
+    for note in notes {
+        let _ = writeln!(out, "Note: {note}");
+    }
+    out
+}

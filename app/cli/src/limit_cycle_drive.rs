@@ -1,0 +1,114 @@
+//! `hysteron limit-cycle` on a drive: the motor's cycle inside the gap.
+
+use std::fmt::Write as _;
+
+use hysteron_core::drive::{
+    Command, Direction, DriftingCycle, DriveInput, EventKind, drifting_cycle, run, summarize,
+};
+use serde_json::json;
+
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
+
+/// What is predicted and simulated, of the motor's velocity.
+pub struct DriveReport {
+    cycle: Option<DriftingCycle>,
+    /// Period and amplitude of the last simulated cycle, wherever the motor is then.
+    simulated: Option<(f64, f64)>,
+    direction: Option<Direction>,
+    gap: f64,
+}
+
+impl DriveReport {
+    pub fn new(input: &DriveInput) -> Result<Self, String> {
+        let Command::Relay(relay) = input.command else {
+            return Err("a drive under a constant torque has no limit cycle".to_owned());
+        };
+        let done = run(input).map_err(|e| e.to_string())?;
+        let ups: Vec<_> = done
+            .events
+            .iter()
+            .filter(|e| e.kind == EventKind::SwitchUp)
+            .collect();
+        let simulated = match ups.as_slice() {
+            [.., from, to] if done.chattering.is_none() => {
+                let within = done
+                    .events
+                    .iter()
+                    .filter(|e| e.time >= from.time && e.time <= to.time);
+                let [low, high] = within
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], e| {
+                        [low.min(e.v1), high.max(e.v1)]
+                    });
+                Some((to.time - from.time, 0.5 * (high - low)))
+            }
+            _ => None,
+        };
+        Ok(Self {
+            cycle: drifting_cycle(&input.drive.motor, &relay),
+            simulated,
+            direction: summarize(input, &done).direction(&relay),
+            gap: 2.0 * input.drive.half_gap,
+        })
+    }
+
+    pub fn json(&self) -> serde_json::Value {
+        let exact: Vec<_> = self
+            .cycle
+            .iter()
+            .map(|c| {
+                let down = c.points[3].time;
+                json!({"period": c.period, "amplitude": amplitude(c), "half_periods": [down, c.period - down],
+                       "range": [c.trough, c.peak], "stable": true, "swing": c.swing,
+                       "drift": c.drift, "drift_velocity": c.drift_velocity()})
+            })
+            .collect();
+        json!({
+            "schema": SCHEMA,
+            "describing_function": [],
+            "exact": exact,
+            "simulated": self.simulated.map(|(period, amplitude)| json!({"period": period, "amplitude": amplitude})),
+            "ultimate": null,
+            "exists": self.cycle.is_some(),
+            "text": self.text(),
+        })
+    }
+
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let Some(cycle) = &self.cycle else {
+            return "The relay cannot keep the motor swinging: there is no cycle, and no amplitude (half of peak to peak).\n"
+                .to_owned();
+        };
+        let _ = writeln!(
+            text,
+            "In the gap the motor's velocity oscillates: period {:.9} s, amplitude {:.9} rad/s or m/s (half of peak to peak).",
+            cycle.period,
+            amplitude(cycle)
+        );
+        let _ = writeln!(
+            text,
+            "It swings over {:.6e} rad or m, {:.1} % of the gap, and drifts by {:.6e} a period, {:.6e} a second{}.",
+            cycle.swing,
+            100.0 * cycle.swing / self.gap,
+            cycle.drift,
+            cycle.drift_velocity(),
+            match self.direction {
+                Some(Direction::Against) => ": against the stronger push, friction outweighs delay",
+                Some(Direction::With) => ": with the stronger push, delay outweighs friction",
+                _ => "",
+            }
+        );
+        if let Some((period, amplitude)) = self.simulated {
+            let _ = writeln!(
+                text,
+                "Simulated, at the end of the run: period {period:.9} s, amplitude {amplitude:.9}."
+            );
+        }
+        text
+    }
+}
+
+fn amplitude(cycle: &DriftingCycle) -> f64 {
+    0.5 * (cycle.peak - cycle.trough)
+}

@@ -1,0 +1,58 @@
+//! What goes to stdout and stderr, and the exit code that comes of it.
+
+use std::io::{self, Write as _};
+use std::process::ExitCode;
+
+/// How a result is written.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Format {
+    /// Words and tables
+    Text,
+    /// One JSON object; of many files one line each
+    Json,
+}
+
+/// Prints what a subcommand has to say, or the one line that says what is wrong with its input.
+pub fn finish(result: Result<String, String>) -> ExitCode {
+    match result {
+        Ok(output) => print(&output),
+        Err(line) => fail(&line, 2),
+    }
+}
+
+/// Prints a text; the exit code.
+pub fn print(output: &str) -> ExitCode {
+    let mut stdout = io::stdout().lock();
+    match stdout
+        .write_all(output.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => write_error(&error),
+    }
+}
+
+/// The exit code where stdout or a file of results cannot be written.
+pub fn write_error(error: &io::Error) -> ExitCode {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        ExitCode::SUCCESS
+    } else {
+        fail(&format!("the output cannot be written: {error}"), 1)
+    }
+}
+
+/// Says in one line what is wrong; the exit code.
+pub fn fail(message: &str, code: u8) -> ExitCode {
+    complain(message);
+    ExitCode::from(code)
+}
+
+/// Exactly one line on stderr, whatever a file name or an argument has in it.
+pub fn complain(message: &str) {
+    let words: Vec<&str> = message
+        .split(|c: char| c.is_control() || c == ' ')
+        .filter(|w| !w.is_empty())
+        .collect();
+    // Where stderr is closed there is nobody left to tell.
+    let _ = writeln!(io::stderr(), "hysteron: {}", words.join(" "));
+}

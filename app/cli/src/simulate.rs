@@ -1,0 +1,160 @@
+//! `hysteron simulate SCENARIO.toml`
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
+use hysteron_core::scenario::AnyScenario;
+use hysteron_core::simulate::{Cut, Noise, Trajectory};
+
+/// Share by which the last two cycles may differ and still count as settled.
+const SETTLED: f64 = 1e-3;
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Loop or drive to run: tables [plant] or [drive], [relay] and [run]
+    #[arg(value_name = "SCENARIO.toml")]
+    file: PathBuf,
+    /// Where to write time, input and output; the output is what the relay sees, with the noise if there is some
+    #[arg(long, value_name = "OUT.csv")]
+    csv: Option<PathBuf>,
+}
+
+/// What happened in words, or one line that says what is wrong with the input.
+pub fn run(arguments: &Arguments) -> Result<String, String> {
+    let shown = arguments.file.display();
+    let (mut text, table, samples) = match read(&arguments.file)? {
+        AnyScenario::Loop(scenario) => {
+            let run = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
+            let noise = scenario.options.noise;
+            (summary(&run), table(&run, noise), run.time.len())
+        }
+        AnyScenario::Drive(input) => {
+            let run = drive::run(&input).map_err(|e| format!("{shown}: {e}"))?;
+            let said = drive_summary(&input, &run);
+            (said, drive_table(&run), run.time.len())
+        }
+    };
+    if let Some(path) = &arguments.csv {
+        std::fs::write(path, table)
+            .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
+        let _ = writeln!(text, "{samples} samples written to {}.", path.display());
+    }
+    Ok(text)
+}
+
+/// Reads a scenario file.
+pub fn read(path: &Path) -> Result<AnyScenario, String> {
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(format!("{shown} is a directory; expected a TOML file"));
+    }
+    let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let text = std::str::from_utf8(&bytes).map_err(|e| {
+        let line = bytes[..e.valid_up_to()].split(|b| *b == b'\n').count();
+        format!("{shown}, line {line}: not UTF-8 text; expected a TOML file")
+    })?;
+    AnyScenario::from_toml(text).map_err(|e| format!("{shown}: {e}"))
+}
+
+fn summary(run: &Trajectory) -> String {
+    let mut text = String::new();
+    let end = run.end();
+    let switches = run.rises.len() + run.falls.len();
+    let _ = writeln!(text, "{switches} switches up to {end:.6} s.");
+    let why = run.cut.map(|cut| match cut {
+        Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
+        Cut::TooManySwitches => {
+            "The run was cut there after as many switches as it may have: a shorter duration is run to its end."
+        }
+        Cut::TooFast => {
+            "A part of the plant is far too fast for the rest: the run was cut there after millions of steps."
+        }
+    });
+    if let Some(why) = why {
+        let _ = writeln!(text, "{why}");
+    }
+    if !run.sliding.is_empty() {
+        let total: f64 = run.sliding.iter().map(|s| s[1] - s[0]).sum();
+        let _ = writeln!(
+            text,
+            "The output slides along the threshold {} times, {total:.6} s in all.",
+            run.sliding.len()
+        );
+    }
+    match run.settled(SETTLED) {
+        Some((period, amplitude)) => {
+            let _ = writeln!(
+                text,
+                "It oscillates: period {period:.9} s, amplitude {amplitude:.9} (half of peak to peak)."
+            );
+        }
+        None if run.cut.is_none() => {
+            let _ = writeln!(text, "It has not settled into an oscillation.");
+        }
+        None => {}
+    }
+    text
+}
+
+/// Input and output at the sampling instants, in the columns that `hysteron diagnose` reads: the output as a recorder
+/// would have it, with what the relay sees of the noise.
+fn table(run: &Trajectory, noise: Option<Noise>) -> String {
+    let noise = noise.map_or_else(|| vec![0.0; run.time.len()], |noise| noise.at(&run.time));
+    let mut text = String::from("t [s],u [1],y [1]\n");
+    let mut inputs = run.input.iter().peekable();
+    let mut u = 0.0;
+    for ((t, y), noise) in run.time.iter().zip(&run.output).zip(noise) {
+        while let Some(change) = inputs.next_if(|i| i[0] <= *t) {
+            u = change[1];
+        }
+        let _ = writeln!(text, "{t},{u},{}", y + noise);
+    }
+    text
+}
+
+/// What a drive did.
+fn drive_summary(input: &DriveInput, run: &DriveRun) -> String {
+    let mut text = String::new();
+    let end = run.time.last().copied().unwrap_or(0.0);
+    let _ = writeln!(
+        text,
+        "{} switches and {} impacts up to {end:.6} s.",
+        run.switches(),
+        run.impacts()
+    );
+    if let Some(time) = run.chattering {
+        let _ = writeln!(
+            text,
+            "It switches without end at {time:.6} s, and the run was cut there."
+        );
+    }
+    let found: Summary = summarize(input, run);
+    if let Some(drift) = found.drifts.first() {
+        let _ = writeln!(
+            text,
+            "In the gap the motor drifts at {:.6e} rad/s (or m/s) from {:.3} s to {:.3} s.",
+            drift.velocity, drift.from, drift.to
+        );
+    }
+    let count = found.traverses.len();
+    if count > 0 {
+        let mean = found.traverses.iter().map(|t| t.travel).sum::<f64>() / count as f64;
+        let _ = writeln!(
+            text,
+            "It crosses the gap {count} times, {mean:.6} rad (or m) from contact to contact; the gap is {:.6}.",
+            2.0 * input.drive.half_gap
+        );
+    }
+    text
+}
+
+/// Torque, motor and load at the sampling instants, in the columns that `hysteron gap` and `diagnose` read.
+fn drive_table(run: &DriveRun) -> String {
+    let mut text = String::from("t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]\n");
+    for (i, t) in run.time.iter().enumerate() {
+        let (u, x1, v1, x2) = (run.input[i], run.x1[i], run.v1[i], run.x2[i]);
+        let _ = writeln!(text, "{t},{u},{x1},{v1},{x2}");
+    }
+    text
+}

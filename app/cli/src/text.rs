@@ -1,0 +1,373 @@
+//! A diagnosis as a person wants to read it: 80 columns, no colours.
+
+use std::fmt::Write as _;
+
+use hysteron_core::diagnosis::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
+use hysteron_core::effect::{EffectId, name_of};
+use hysteron_core::measurement::Kind;
+use hysteron_core::uncertain;
+use hysteron_core::uncertain::shown_unit;
+
+const WIDTH: usize = 80;
+
+/// Longest bar of the chart, in characters.
+const BAR: usize = 40;
+
+/// Above this ratio of largest to smallest a linear bar of the smallest would not be seen.
+const LOGARITHMIC_FROM: f64 = 40.0;
+
+/// The report on the measurement called `name`, with notes of its import; ends with a newline.
+pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
+    let mut out = String::new();
+    let kind = match diagnosis.kind {
+        Kind::Drive => "drive",
+        Kind::Process => "process",
+    };
+    let title: String = name
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    paragraph(
+        &mut out,
+        "",
+        &format!("{title}: {} samples of a {kind}", diagnosis.samples),
+    );
+    for note in notes {
+        bullet(&mut out, note);
+    }
+    for (i, step) in diagnosis.steps.iter().enumerate() {
+        let before = i.checked_sub(1).and_then(|k| diagnosis.steps.get(k));
+        let is_last = i + 1 == diagnosis.steps.len();
+        describe_step(&mut out, step, before, is_last, diagnosis.noise_floor);
+    }
+    if !diagnosis.steps.is_empty() {
+        chart(&mut out, diagnosis);
+    }
+    heading(&mut out, "Verdict");
+    paragraph(&mut out, "  ", &diagnosis.verdict.text);
+    if let Some(experiment) = &diagnosis.verdict.next_experiment
+        && !diagnosis.verdict.text.contains(experiment.as_str())
+    {
+        paragraph(&mut out, "  ", &format!("Next experiment: {experiment}"));
+    }
+    for proposal in &diagnosis.verdict.experiments {
+        other_experiments(&mut out, proposal);
+    }
+    let _ = writeln!(out, "\nTook {:.2} s.", diagnosis.seconds);
+    out
+}
+
+/// What the other kinds of experiment would do.
+fn other_experiments(out: &mut String, proposal: &NextExperiment) {
+    if !proposal.others.is_empty() {
+        paragraph(
+            out,
+            "  ",
+            "In other experiments the models would differ by:",
+        );
+    }
+    for other in &proposal.others {
+        let times = other.times_noise();
+        bullet(out, &format!("{times} times the noise with {}", other.text));
+    }
+}
+
+fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: bool, floor: f64) {
+    let title = before.map_or_else(|| "Baseline".to_owned(), |before| change(step, before));
+    heading(out, &title);
+    paragraph(
+        out,
+        "  ",
+        &format!(
+            "Error {} times the noise on held-back data; a perfect model would leave {}.",
+            short(step.error),
+            short(floor)
+        ),
+    );
+    // Of the last model all are said: the body is what it was found to be with all effects.
+    let fresh = |p: &&Parameter| match before {
+        None => true,
+        Some(_) if is_last => true,
+        Some(before) => p.effect.is_some_and(|e| !before.effects.contains(&e)),
+    };
+    parameters(
+        out,
+        &step.parameters.iter().filter(fresh).collect::<Vec<_>>(),
+    );
+    if !step.findings.is_empty() {
+        let _ = writeln!(out, "\n  Where it fails");
+        for finding in &step.findings {
+            bullet(out, &finding.text);
+        }
+    }
+    if !step.tests.is_empty() {
+        let _ = writeln!(out, "\n  What is left");
+        for test in &step.tests {
+            bullet(out, &test.text);
+        }
+    }
+    candidates(out, &step.candidates);
+}
+
+/// What was added to and taken from the model before, such as `+ Coulomb friction`.
+fn change(step: &Step, before: &Step) -> String {
+    let only_in = |a: &Step, b: &Step, sign: &str| -> Vec<String> {
+        a.effects
+            .iter()
+            .filter(|e| !b.effects.contains(e))
+            .map(|e| format!("{sign} {}", name_of(*e)))
+            .collect()
+    };
+    let mut parts = only_in(step, before, "+");
+    parts.extend(only_in(before, step, "-"));
+    if parts.is_empty() {
+        "Refitted".to_owned()
+    } else {
+        parts.join(" ")
+    }
+}
+
+fn names(ids: &[EffectId]) -> String {
+    ids.iter()
+        .map(|id| id.as_str())
+        .collect::<Vec<_>>()
+        .join(" + ")
+}
+
+fn parameters(out: &mut String, list: &[&Parameter]) {
+    let rows: Vec<(&str, &str, String, String)> = list
+        .iter()
+        .map(|p| {
+            let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
+            (
+                p.name.as_str(),
+                p.label.as_str(),
+                with_uncertainty(p.value, p.std_error),
+                shown_unit(unit),
+            )
+        })
+        .collect();
+    let width =
+        |f: fn(&(&str, &str, String, String)) -> usize| rows.iter().map(f).max().unwrap_or(0);
+    let (name, label, value) = (
+        width(|r| r.0.chars().count()),
+        width(|r| r.1.chars().count()),
+        width(|r| r.2.chars().count()),
+    );
+    for (n, l, v, unit) in &rows {
+        line(
+            out,
+            &format!("  {n:<name$}  {l:<label$}  {v:>value$} {unit}"),
+        );
+    }
+}
+
+fn candidates(out: &mut String, list: &[Candidate]) {
+    if list.is_empty() {
+        return;
+    }
+    let rows: Vec<(String, &Candidate)> = list.iter().map(|c| (names(&c.effects), c)).collect();
+    let width = rows
+        .iter()
+        .map(|r| r.0.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max("What could be added".len());
+    let _ = writeln!(out);
+    line(
+        out,
+        &format!(
+            "  {:<width$}  {:>9}  {:>10}",
+            "What could be added", "error", "evidence"
+        ),
+    );
+    for (name, candidate) in rows {
+        let head = format!(
+            "  {name:<width$}  {:>9}  {:>10.1}  ",
+            short(candidate.error),
+            candidate.delta_bic
+        );
+        let note = if !candidate.equivalent_to.is_empty() {
+            let ids: Vec<&str> = candidate.equivalent_to.iter().map(|e| e.as_str()).collect();
+            format!("same as {}", ids.join(", "))
+        } else if candidate.significant {
+            "helps".to_owned()
+        } else if candidate.promising {
+            "perhaps: chance is not ruled out".to_owned()
+        } else {
+            "too little to add it".to_owned()
+        };
+        let indent = head.chars().count();
+        let notes = wrap(&note, WIDTH.saturating_sub(indent).max(20));
+        for (i, piece) in notes.iter().enumerate() {
+            let lead = if i == 0 {
+                head.clone()
+            } else {
+                " ".repeat(indent)
+            };
+            line(out, &format!("{lead}{piece}"));
+        }
+    }
+    paragraph(
+        out,
+        "  ",
+        "(error: in noise units after a refit; evidence: change of BIC, negative is better)",
+    );
+}
+
+/// The error of every model and the noise floor as bars.
+fn chart(out: &mut String, diagnosis: &Diagnosis) {
+    let mut rows: Vec<(String, f64)> = Vec::new();
+    let mut before: Option<&Step> = None;
+    for step in &diagnosis.steps {
+        rows.push((
+            before.map_or_else(|| "baseline".to_owned(), |b| change(step, b)),
+            step.error,
+        ));
+        before = Some(step);
+    }
+    rows.push(("noise floor".to_owned(), diagnosis.noise_floor));
+    let finite = || {
+        rows.iter()
+            .map(|r| r.1)
+            .filter(|e| e.is_finite() && *e > 0.0)
+    };
+    let (most, least) = (
+        finite().fold(0.0, f64::max),
+        finite().fold(f64::INFINITY, f64::min),
+    );
+    let logarithmic = most > LOGARITHMIC_FROM * least;
+    let scale = if logarithmic {
+        ", bars logarithmic"
+    } else {
+        ""
+    };
+    heading(out, &format!("Error step by step (times the noise{scale})"));
+    let width = rows
+        .iter()
+        .map(|r| r.0.chars().count())
+        .max()
+        .unwrap_or(0)
+        .min(WIDTH - BAR - 14);
+    for (label, error) in &rows {
+        let label: String = label.chars().take(width).collect();
+        let share = if logarithmic {
+            // Bars begin at half the least, so that the least is seen as well.
+            (error / (0.5 * least)).ln() / (most / (0.5 * least)).ln()
+        } else {
+            error / most
+        };
+        let value = short(*error);
+        line(
+            out,
+            &format!("  {label:<width$}  {value:>8}  {}", bar(share)),
+        );
+    }
+}
+
+/// A bar with a resolution of an eighth of a character.
+fn bar(share: f64) -> String {
+    const PARTS: [&str; 8] = ["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"];
+    let share = if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let eighths = (share * (BAR * 8) as f64).round() as usize;
+    "█".repeat(eighths / 8) + PARTS[eighths % 8]
+}
+
+/// Three significant digits, no exponent within the usual range.
+fn short(value: f64) -> String {
+    match value.abs() {
+        a if !a.is_finite() => "unknown".to_owned(),
+        a if a >= 1e5 || (a < 1e-3 && a > 0.0) => format!("{value:.2e}"),
+        a if a >= 99.95 => format!("{value:.0}"),
+        a if a >= 9.995 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+/// `value ± error`, or what is known of it.
+fn with_uncertainty(value: f64, error: f64) -> String {
+    uncertain::with_uncertainty(value, error).unwrap_or_else(|| {
+        if value.is_finite() {
+            format!("{value} (uncertainty unknown)")
+        } else {
+            "unknown".to_owned()
+        }
+    })
+}
+
+fn heading(out: &mut String, text: &str) {
+    let _ = writeln!(out);
+    let lines = wrap(text, WIDTH);
+    let rule = lines.iter().map(|l| l.chars().count()).max().unwrap_or(0);
+    for text in lines {
+        line(out, &text);
+    }
+    line(out, &"-".repeat(rule));
+}
+
+fn paragraph(out: &mut String, indent: &str, text: &str) {
+    for piece in wrap(text, WIDTH - indent.len()) {
+        line(out, &format!("{indent}{piece}"));
+    }
+}
+
+fn bullet(out: &mut String, text: &str) {
+    for (i, piece) in wrap(text, WIDTH - 4).iter().enumerate() {
+        line(
+            out,
+            &format!("{}{piece}", if i == 0 { "  - " } else { "    " }),
+        );
+    }
+}
+
+fn line(out: &mut String, text: &str) {
+    out.push_str(text.trim_end());
+    out.push('\n');
+}
+
+/// Lines of at most `width` characters; only a single longer word goes beyond.
+fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut used = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if used > 0 && used + 1 + length > width {
+            lines.push(String::new());
+            used = 0;
+        }
+        if let Some(last) = lines.last_mut() {
+            if used > 0 {
+                last.push(' ');
+                used += 1;
+            }
+            last.push_str(word);
+            used += length;
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_no_uncertainty_is_known_it_says_so() {
+        assert_eq!(with_uncertainty(0.3, 0.02), "0.300 ± 0.020");
+        assert_eq!(with_uncertainty(0.3, f64::NAN), "0.3 (uncertainty unknown)");
+        assert_eq!(with_uncertainty(f64::NAN, 0.1), "unknown");
+    }
+
+    #[test]
+    fn bars_are_as_long_as_their_share() {
+        assert_eq!(bar(1.0).chars().count(), BAR);
+        assert_eq!(bar(0.5).chars().count(), BAR / 2);
+        assert_eq!(bar(0.0), "");
+        assert_eq!(bar(1.0 / 320.0), "▏");
+        assert_eq!(bar(f64::NAN), "");
+    }
+}

@@ -1,0 +1,98 @@
+//! What a page is to the app around it.
+
+use serde_json::Value;
+
+use crate::command::Command;
+use crate::desk::Desk;
+use crate::export::Tables;
+use crate::files::Door;
+
+/// A page, and what is known of it whatever is on it.
+pub struct Page {
+    /// Its name in links and tests.
+    pub id: &'static str,
+    /// What its tab says.
+    pub title: &'static str,
+    /// The page itself.
+    pub view: Box<dyn View>,
+    /// Where files come in, if it takes any.
+    pub door: Option<Door>,
+}
+
+impl Page {
+    /// A page that takes no files.
+    pub fn new(id: &'static str, title: &'static str, view: impl View + 'static) -> Self {
+        Self {
+            id,
+            title,
+            view: Box::new(view),
+            door: None,
+        }
+    }
+
+    /// A page that takes the files that come in by this door.
+    pub fn with_door(self, door: Door) -> Self {
+        Self {
+            door: Some(door),
+            ..self
+        }
+    }
+}
+
+/// What a page does.
+pub trait View: Settable {
+    /// Takes in what its jobs and files have brought; also called while another page is in front.
+    fn update(&mut self, _ctx: &egui::Context) {}
+    /// Draws it.
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk);
+    /// What the app around it can offer now.
+    fn offer(&self) -> Offer<'_> {
+        Offer::default()
+    }
+    /// What it shows, for tests: an object, with `busy` while a job runs.
+    fn hook_state(&self) -> Value;
+}
+
+/// What is set on a page, as a plain value: what links, undo and the autosave keep.
+pub trait Settable {
+    /// What is set.
+    fn settings(&self) -> Value;
+    /// Sets it.
+    ///
+    /// # Errors
+    /// One sentence where it cannot be; then nothing is changed.
+    fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), String>;
+}
+
+/// What the app around a page offers for it.
+#[derive(Default)]
+pub struct Offer<'a> {
+    /// What to try next.
+    pub hint: Option<Hint>,
+    /// The numbers behind what it shows.
+    pub tables: Tables<'a>,
+}
+
+/// What to try next: a sentence, and what does it at a press; some things only the user can do.
+pub struct Hint {
+    pub sentence: String,
+    pub commands: Vec<Command>,
+}
+
+impl Hint {
+    /// One that a link shows.
+    pub fn open(sentence: &str, link: &str) -> Self {
+        Self {
+            sentence: sentence.to_owned(),
+            commands: vec![Command::OpenLink(link.to_owned())],
+        }
+    }
+
+    /// One that the app cannot do.
+    pub fn say(sentence: impl Into<String>) -> Self {
+        Self {
+            sentence: sentence.into(),
+            commands: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Measurements that come with the page.
+
+use hysteron_work::enclosed::{self, Enclosed};
+
+/// A measurement that comes with the app.
+pub(super) struct BuiltIn {
+    pub file: Enclosed,
+    pub title: &'static str,
+    pub story: &'static str,
+}
+
+pub(super) const BUILT_IN: [BuiltIn; 3] = [
+    BuiltIn {
+        file: enclosed::DRIVE_02,
+        title: "A drive that loses its swing",
+        story: "A motor under a velocity relay. It never moves quite as far as its inertia says it should.",
+    },
+    BuiltIn {
+        file: enclosed::DRIVE_12,
+        title: "A drive that answers late",
+        story: "The same rig with another amplifier and older bearings. One effect is not enough.",
+    },
+    BuiltIn {
+        file: enclosed::PROCESS_02,
+        title: "A slow heating process",
+        story: "A heater switched by a relay. The temperature overshoots both limits, every time.",
+    },
+];

@@ -1,0 +1,55 @@
+//! What is asked of the page.
+
+use hysteron_core::diagnosis::Limits;
+use hysteron_core::effect::EffectId;
+
+use super::choice::Choice;
+use super::formula::Typed;
+use super::look::Look;
+use crate::command;
+use crate::recent::Recent;
+
+/// What a click asks for; carried out once, after drawing.
+#[derive(Clone)]
+pub(super) enum Command {
+    OpenBuiltIn(usize),
+    OpenDialog,
+    /// Opens a file once more.
+    Reopen(Recent),
+    Close,
+    /// Which column of a file is what.
+    Choose(Box<Choice>),
+    /// Opens the file with what was chosen, or leaves it.
+    OpenMapped,
+    CancelMapping,
+    /// Leaves the file that is being read.
+    CancelReading,
+    Add(EffectId),
+    Undo,
+    Redo,
+    /// Goes to the model with so many effects.
+    Step(usize),
+    Look(Look),
+    Before(bool),
+    Fingerprint(EffectId),
+    Limit(Limits),
+    /// Looks for a proposal again, within these limits.
+    Search(usize, Limits),
+    /// Saves the input of a proposal.
+    SaveInput(usize),
+    /// The word that opens the seal is being typed, and whether it can be read.
+    Word(String, bool),
+    /// Opens the seal.
+    Reveal,
+    /// What the app is to do.
+    Desk(Vec<command::Command>),
+    Cancel,
+    Shade(usize),
+    Dismiss,
+    ExportReport,
+    SaveModel,
+    OpenModel,
+    DropModel,
+    Type(Typed),
+    AddOwn(Typed),
+}

@@ -1,0 +1,52 @@
+//! A file that does not say what its columns are, and what was chosen for them.
+
+use hysteron_core::measurement::FoundColumn;
+use hysteron_work::content::Content;
+
+use super::choice::Choice;
+use crate::recent::Recent;
+
+/// A file whose columns are to be understood.
+pub(super) struct Form {
+    pub file: String,
+    pub content: Content,
+    /// Where the file is, if it can be opened again.
+    pub origin: Option<Recent>,
+    /// Why it is asked.
+    pub(super) reason: String,
+    pub columns: Vec<FoundColumn>,
+    pub choice: Choice,
+    /// Why it cannot be read as was chosen, or why another file was refused meanwhile.
+    pub error: Option<String>,
+}
+
+impl Form {
+    /// The form for a file that was refused for this `reason`, with these columns in it.
+    pub fn new(
+        file: String,
+        content: Content,
+        origin: Option<Recent>,
+        reason: String,
+        columns: Vec<FoundColumn>,
+    ) -> Self {
+        Self {
+            file,
+            content,
+            origin,
+            reason,
+            choice: Choice::likeliest(&columns),
+            columns,
+            error: None,
+        }
+    }
+
+    pub fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({
+            "file": self.file,
+            "reason": self.reason,
+            "missing": self.choice.missing(),
+            "reading": self.choice.reading(&self.columns),
+            "error": self.error,
+        })
+    }
+}

@@ -1,0 +1,83 @@
+//! What can be learned here: the lessons, in the order of the course.
+
+use crate::command::Command;
+use crate::desk::Desk;
+use crate::language::tr;
+use crate::layout;
+use crate::lessons::{self, Lesson};
+use crate::page::{Page, Settable, View};
+use crate::theme;
+
+/// The page.
+#[derive(Default)]
+pub struct Lessons;
+
+/// The page.
+pub fn page() -> Page {
+    Page::new("lessons", "Lessons", Lessons::default())
+}
+
+impl View for Lessons {
+    fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        egui::CentralPanel::default().show(ui, |ui| {
+            theme::scroll("lessons").show(ui, |ui| {
+                ui.add_space(6.0);
+                theme::answer_ui(ui, "What can a relay teach in ten minutes?");
+                ui.label(tr("Each lesson stands beside the app: its buttons set the pages, and its question is checked."));
+                ui.add_space(8.0);
+                let all: Vec<_> = lessons::all().enumerate().collect();
+                if ui.available_width() < layout::NARROW {
+                    for (index, lesson) in &all {
+                        layout::card(ui, 0.0, |ui| lesson_ui(ui, desk, *index, lesson));
+                    }
+                    return;
+                }
+                for (number, row) in all.chunks(2).enumerate() {
+                    layout::row(ui, ("lessons", number), 2, |ui, place| {
+                        if let Some((index, lesson)) = row.get(place) {
+                            lesson_ui(ui, desk, *index, lesson);
+                        }
+                    });
+                }
+            });
+        });
+    }
+
+    fn hook_state(&self) -> serde_json::Value {
+        serde_json::json!({"busy": false})
+    }
+}
+
+impl Settable for Lessons {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!({})
+    }
+
+    fn set(
+        &mut self,
+        _ctx: &egui::Context,
+        _settings: &serde_json::Value,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// A lesson: its title, how long it takes, and how it begins.
+fn lesson_ui(ui: &mut egui::Ui, desk: &mut Desk, index: usize, lesson: &Lesson) {
+    let title = format!("{}  {}", index + 1, lesson.title);
+    let button = ui.button(egui::RichText::new(title).size(17.0));
+    desk.targets
+        .note(format!("lesson:{}", lesson.id), ui, &button);
+    if button.clicked() {
+        desk.commands
+            .push(Command::Lesson(Some(lesson.id.to_owned())));
+    }
+    lesson.beginning_ui(ui);
+    ui.horizontal(|ui| {
+        ui.small(tr(format!("{} minutes", lesson.minutes)));
+        if desk.study.solved.contains(lesson.id) {
+            ui.colored_label(theme::readable(ui, theme::NOISE), tr("solved"));
+        }
+    });
+}

@@ -1,0 +1,400 @@
+//! What the plots of several pages share.
+
+use std::ops::{Deref, DerefMut};
+use std::rc::Rc;
+
+use egui::{Id, IdSalt, WidgetInfo};
+use egui_plot::{
+    AxisHints, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory, PlotPoint,
+    PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
+};
+
+pub use super::chart_axes::round_step;
+use super::chart_axes::{
+    LABELS, beside, grid, grid_x, label, power_label, powers, shown_from, unit_of,
+};
+pub use super::chart_caption::{Key, Shape, caption_ui};
+use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
+pub use super::chart_curves::{envelope, extremes, sparse};
+use super::chart_keys::Worked;
+use super::chart_menu;
+pub use super::chart_reading::significant;
+use super::chart_reading::{Reader, reading};
+use super::chart_zoom::Zoomed;
+use crate::export::Table;
+use crate::language::tr;
+use crate::theme;
+
+/// How near a point must be to be pointed at, points on the screen.
+const REACH: f32 = 8.0;
+
+pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
+    points.iter().copied().collect()
+}
+
+/// A plot whose axes have names, whose labels have as many decimals as they need, and that has a menu.
+pub struct Chart<'a> {
+    plot: Plot<'a>,
+    salt: IdSalt,
+    /// What its zoom is called in links, and which of its axes have one.
+    zoom: (String, [bool; 2]),
+    /// Names of the axes with their units, in English.
+    axes: [String; 2],
+    /// The x of what is drawn are logarithms to base 10.
+    decades: bool,
+    /// It can be dragged only while it is zoomed: else a finger on it moves the page.
+    drag_zoomed: bool,
+    /// What is read in it, and plots that show each other where they are read: their x is the same.
+    read: Reader<'a>,
+    linked: Option<Id>,
+    /// Enter is for the page, not for the menu.
+    pressed: bool,
+}
+
+impl<'a> Chart<'a> {
+    /// A plot of this height; the labels of y are at least `width` wide, so that plots above each other line up.
+    /// No other of its page has its name.
+    pub fn new(
+        name: impl Into<String>,
+        [x, y]: [impl Into<String>; 2],
+        height: f32,
+        width: f32,
+    ) -> Self {
+        let name = name.into();
+        let salt = IdSalt::new(&name);
+        let axes = [x.into(), y.into()];
+        let axis = |hints: AxisHints<'static>, i: usize| {
+            let unit = unit_of(&axes[i]).to_owned();
+            hints
+                .label_spacing(shown_from(LABELS[i][1]))
+                .formatter(move |mark, range| label(mark, range, &unit))
+        };
+        let unit = unit_of(&axes[0]).to_owned();
+        let [x, y] = [0, 1].map(|i| tr(&axes[i]));
+        let read = reading([x.clone(), y.clone()], |p| [p.x, p.y]);
+        let plot = Plot::new(salt)
+            .height(height)
+            .allow_scroll(false)
+            .custom_x_axes(vec![axis(AxisHints::new_x().label(x), 0)])
+            .custom_y_axes(vec![axis(
+                AxisHints::new_y()
+                    .label(beside(&y, height))
+                    .min_thickness(width),
+                1,
+            )])
+            .x_grid_spacer(uniform_grid_spacer(move |input| grid_x(&input, &unit)))
+            .y_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[1])));
+        Self {
+            plot,
+            salt,
+            zoom: (name, [true; 2]),
+            axes,
+            decades: false,
+            drag_zoomed: false,
+            read,
+            linked: None,
+            pressed: false,
+        }
+    }
+
+    /// With a logarithmic x: what is drawn has the logarithm to base 10 there, and what is read its power.
+    #[must_use]
+    pub fn decades(mut self) -> Self {
+        self.decades = true;
+        let names = [0, 1].map(|i| tr(&self.axes[i]));
+        let x = AxisHints::new_x()
+            .label(names[0].clone())
+            .label_spacing(shown_from(LABELS[0][1]))
+            .formatter(|mark, _| power_label(mark.value));
+        self.read = reading(names, |p| [10_f64.powf(p.x), p.y]);
+        self.with(|plot| {
+            plot.custom_x_axes(vec![x])
+                .x_grid_spacer(|input| powers(&input))
+        })
+    }
+
+    /// With more of what a plot can do.
+    #[must_use]
+    pub fn with(mut self, more: impl FnOnce(Plot<'a>) -> Plot<'a>) -> Self {
+        self.plot = more(self.plot);
+        self
+    }
+
+    /// Shows its data until someone zooms; a double click shows all of it again.
+    #[must_use]
+    pub fn still(mut self) -> Self {
+        self.drag_zoomed = true;
+        self.with(|plot| plot.allow_axis_zoom_drag(false))
+    }
+
+    /// Is zoomed in x alone, together with those of the same group, which moves them.
+    #[must_use]
+    pub fn zoomed_as(mut self, group: &str) -> Self {
+        self.zoom = (group.to_owned(), [true, false]);
+        self
+    }
+
+    /// Shows where others of this group are read, and they where it is.
+    #[must_use]
+    pub fn linked(mut self, group: Id) -> Self {
+        self.linked = Some(group);
+        self
+    }
+
+    /// Is a choice of places, of which these words are said; a press takes one.
+    #[must_use]
+    pub fn choice(mut self, read: impl Fn([f64; 2]) -> Option<String> + 'a) -> Self {
+        self.pressed = true;
+        self.read = Rc::new(move |at| match at {
+            HoverPosition::NearDataPoint { position, .. }
+            | HoverPosition::Elsewhere { position } => read([position.x, position.y]),
+        });
+        self
+    }
+
+    /// Stays where it is.
+    #[must_use]
+    pub fn fixed(mut self) -> Self {
+        self.drag_zoomed = false;
+        self.zoom.1 = [false; 2];
+        self.with(|plot| {
+            plot.allow_zoom(false)
+                .allow_boxed_zoom(false)
+                .allow_axis_zoom_drag(false)
+                .allow_drag(false)
+        })
+    }
+
+    /// Draws it.
+    pub fn show<R>(
+        self,
+        ui: &mut egui::Ui,
+        draw: impl FnOnce(&mut Pen<'_, 'a>) -> R + 'a,
+    ) -> PlotResponse<R> {
+        let Self {
+            mut plot,
+            salt,
+            zoom: (name, zoomed),
+            axes,
+            decades,
+            drag_zoomed,
+            read,
+            linked,
+            pressed,
+        } = self;
+        let ctx = ui.ctx().clone();
+        let id = ui.scope_id().with(salt);
+        plot = plot.id(id);
+        let menu = egui::Popup::is_any_open(&ctx);
+        let keys = chart_cursor::live(&ctx).is_some();
+        if menu || keys {
+            // What is read at the pointer would cover the menu, or what the keys read.
+            plot = plot.label_formatter(|_| None).show_crosshair(!keys);
+        } else {
+            let read = read.clone();
+            plot = plot.label_formatter(move |at| read(at));
+        }
+        if drag_zoomed {
+            let memory = PlotMemory::load(&ctx, id);
+            let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
+            plot = plot.allow_drag(zoomed);
+        }
+        let zoom = Zoomed::new(id, &name, zoomed);
+        let change = zoom.change(&ctx);
+        if change.is_some() {
+            // What is drawn may depend on what was in view before.
+            ctx.request_repaint();
+        }
+        let start = ui.cursor().min;
+        let table = chart_menu::wants_numbers(&ctx, id).then(|| Table::new("plot"));
+        let titles = axes.clone();
+        let worked = Worked {
+            plot: id,
+            group: linked,
+            axes: zoomed,
+        };
+        let shown = plot.show(ui, move |plot| {
+            if let Some(change) = change {
+                change.make(plot);
+            }
+            let curves = plot.response().has_focus().then(Vec::new);
+            let mut pen = Pen {
+                plot,
+                id,
+                axes: titles,
+                decades,
+                table,
+                curves,
+            };
+            let inner = draw(&mut pen);
+            let curves = pen.curves.unwrap_or_default();
+            let asked = worked.work(pen.plot, &curves);
+            (inner, pen.table, asked)
+        });
+        zoom.note(&ctx);
+        let (inner, table, asked) = shown.inner;
+        let (response, transform) = (shown.response, shown.transform);
+        let live = chart_cursor::live(&ctx);
+        let cursor = live.as_ref().filter(|r| r.plot == id).map(|r| &r.cursor);
+        if let Some(group) = linked {
+            let pointer = response.hover_pos().filter(|_| live.is_none());
+            let x = cursor.map(|c| c.at[0]);
+            let x = x.or(pointer.map(|p| transform.value_from_position(p).x));
+            chart_cursor::point(&ctx, group, id, x);
+            if let Some((other, x)) = chart_cursor::pointed(&ctx, group)
+                && other != id
+            {
+                line_ui(ui, &transform, x);
+            }
+        }
+        let text = cursor.and_then(|c| c.text(&read));
+        let info = || WidgetInfo {
+            current_text_value: text.as_ref().map(|t| t.replace('\n', "; ")),
+            ..WidgetInfo::labeled(
+                egui::Role::Image,
+                true,
+                tr(format!("Plot: {} over {}", axes[1], axes[0])),
+            )
+        };
+        response.widget_info(info);
+        if let Some(cursor) = cursor.filter(|_| !menu && !chart_menu::wished(&ctx, id)) {
+            theme::tell(&response);
+            cursor_ui(ui, &response, &transform, cursor, text.as_deref());
+        }
+        chart_menu::ui(
+            ui,
+            id,
+            &axes,
+            start,
+            response.rect,
+            (table, asked && !pressed),
+        );
+        PlotResponse {
+            inner,
+            response,
+            transform,
+            hovered_plot_item: shown.hovered_plot_item,
+        }
+    }
+}
+
+/// Draws in a plot, and notes the numbers of its curves where they are asked for.
+pub struct Pen<'p, 'd> {
+    plot: &'p mut PlotUi<'d>,
+    id: Id,
+    axes: [String; 2],
+    decades: bool,
+    table: Option<Table>,
+    /// What the keys can read, if they are here.
+    curves: Option<Vec<Curve>>,
+}
+
+impl<'d> Pen<'_, 'd> {
+    /// Whether the numbers of whole curves are asked for, not only what is in view.
+    pub fn notes(&self) -> bool {
+        self.table.is_some()
+    }
+
+    pub fn line(&mut self, line: Line<'d>) {
+        self.note(&line, true);
+        self.plot.line(line);
+    }
+
+    pub fn points(&mut self, points: Points<'d>) {
+        self.note(&points, false);
+        self.plot.points(points);
+    }
+
+    /// The place that is read, with the keys or the pointer.
+    pub fn pointed(&self) -> Option<[f64; 2]> {
+        if let Some(reading) = chart_cursor::live(self.ctx()) {
+            return (reading.plot == self.id).then_some(reading.cursor.at);
+        }
+        let place = self.pointer_coordinate()?;
+        self.response().hovered().then_some([place.x, place.y])
+    }
+
+    /// The first of some points that is where the plot is pointed at.
+    pub fn pointed_among(&self, points: &[[f64; 2]]) -> Option<usize> {
+        let place = self.screen_from_plot(self.pointed()?.into());
+        let near = |p: &[f64; 2]| self.screen_from_plot((*p).into()).distance(place) <= REACH;
+        points.iter().position(near)
+    }
+
+    /// Notes a curve where it is asked for; two columns of a table: x and y.
+    fn note(&mut self, item: &dyn PlotItem, joined: bool) {
+        let PlotGeometry::Points(points) = item.geometry() else {
+            return;
+        };
+        if let Some(curves) = &mut self.curves
+            && item.allow_hover()
+        {
+            let name = item.name().to_owned();
+            let points = points.iter().map(|p| [p.x, p.y]).collect();
+            curves.push(Curve {
+                name,
+                points,
+                joined,
+            });
+        }
+        let Some(table) = self.table.as_mut().filter(|_| !points.is_empty()) else {
+            return;
+        };
+        let name = item.name().replace('\u{a0}', " ");
+        let titles = distinct(table, &name, &self.axes);
+        let place = |p: &PlotPoint| {
+            if self.decades { 10_f64.powf(p.x) } else { p.x }
+        };
+        let values = [
+            points.iter().map(place).collect(),
+            points.iter().map(|p| p.y).collect(),
+        ];
+        table.columns.extend(titles.into_iter().zip(values));
+    }
+}
+
+/// Titles of the columns of a curve that no other in the table has: curves of the same name are numbered.
+fn distinct(table: &Table, name: &str, axes: &[String; 2]) -> [String; 2] {
+    let taken = |title: &String| table.columns.iter().any(|(t, _)| t == title);
+    let mut count = 1;
+    loop {
+        let number = if count == 1 {
+            String::new()
+        } else {
+            format!(" {count}")
+        };
+        let titles = axes
+            .each_ref()
+            .map(|axis| format!("{name}{number}: {axis}"));
+        if !titles.iter().any(taken) {
+            return titles;
+        }
+        count += 1;
+    }
+}
+
+impl<'d> Deref for Pen<'_, 'd> {
+    type Target = PlotUi<'d>;
+
+    fn deref(&self) -> &PlotUi<'d> {
+        self.plot
+    }
+}
+
+impl DerefMut for Pen<'_, '_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        self.plot
+    }
+}
+
+/// A plot that shows its data until someone zooms.
+pub fn still(name: &'static str, x: &'static str, y: &'static str, height: f32) -> Chart<'static> {
+    Chart::new(name, [x, y], height, 0.0).still()
+}
+
+/// The place that the playback has reached.
+pub fn dot(name: &'static str, at: [f64; 2]) -> Points<'static> {
+    Points::new(tr(name), vec![at])
+        .color(theme::MODEL)
+        .radius(6.0)
+}

@@ -1,0 +1,15 @@
+//! What several pages draw with: plots, sliders and fields, a playback, and the plots of a relay loop.
+
+pub mod chart;
+mod chart_axes;
+mod chart_caption;
+pub mod chart_cursor;
+mod chart_curves;
+mod chart_keys;
+pub mod chart_menu;
+mod chart_reading;
+pub mod chart_zoom;
+pub mod controls;
+pub mod playback;
+pub mod relay_loop;
+pub mod typed;

@@ -1,0 +1,81 @@
+//! How a file is read that does not say itself what its columns are: as the options of the command line say it, so that it
+//! can be kept, and read again elsewhere.
+
+use hysteron_core::measurement::{ImportOptions, Kind, Mapping, MappingError};
+use serde::{Deserialize, Serialize};
+
+/// What a file does not say; nothing where it says everything.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Reading {
+    /// Drive or process; told by the columns if `None`.
+    pub kind: Option<Kind>,
+    /// Which column is what, as behind `--map`.
+    pub map: String,
+    /// As behind `--torque-constant`.
+    pub torque_constant: String,
+}
+
+impl Reading {
+    /// What the importer needs.
+    ///
+    /// # Errors
+    /// One sentence.
+    pub fn options(&self) -> Result<ImportOptions, String> {
+        let mapping = match self.map.as_str() {
+            "" => Mapping::default(),
+            map => map.parse::<Mapping>().map_err(|e| e.to_string())?,
+        };
+        let torque_constant = match self.torque_constant.as_str() {
+            "" => None,
+            constant => Some(constant.parse().map_err(|e: MappingError| e.to_string())?),
+        };
+        Ok(ImportOptions {
+            kind: self.kind,
+            mapping,
+            torque_constant,
+        })
+    }
+
+    /// Options of the command line for the same.
+    pub fn arguments(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let all = [
+            ("--kind", self.kind.map_or("", Kind::name)),
+            ("--map", self.map.as_str()),
+            ("--torque-constant", self.torque_constant.as_str()),
+        ];
+        all.into_iter().filter(|(_, value)| !value.is_empty())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_what_the_command_line_takes() {
+        let nothing = Reading::default();
+        assert_eq!(nothing.options(), Ok(ImportOptions::default()));
+        assert_eq!(nothing.arguments().count(), 0);
+        let reading = Reading {
+            kind: Some(Kind::Drive),
+            map: "t=time [ms], u=-current [A], v1=-".to_owned(),
+            torque_constant: "0.05 N m/A".to_owned(),
+        };
+        let options = reading.options().expect("options");
+        assert_eq!(Ok(&options.mapping), reading.map.parse().as_ref());
+        assert!(options.torque_constant.is_some_and(|c| c.value() == 0.05));
+        let arguments: Vec<_> = reading.arguments().collect();
+        let expected = [
+            ("--kind", "drive"),
+            ("--map", "t=time [ms], u=-current [A], v1=-"),
+            ("--torque-constant", "0.05 N m/A"),
+        ];
+        assert_eq!(arguments, expected);
+        let wrong = Reading {
+            map: "t".to_owned(),
+            ..nothing
+        };
+        assert!(wrong.options().is_err_and(|e| e.contains("not a mapping")));
+    }
+}

@@ -1,0 +1,202 @@
+//! Long computations by name: what they need, and what they say meanwhile. What they do is in `work.rs`: on
+//! the web it is the worker that does it.
+
+use hysteron_core::backlash::GapEstimate;
+use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, StepReport};
+use hysteron_core::drive::DriveInput;
+use hysteron_core::effect::EffectId;
+use hysteron_core::maps::{MapInput, Tile};
+use hysteron_core::measurement::{FoundColumn, Measurement};
+use hysteron_core::mystery::{Answer, Mystery, Request, Reveal};
+use hysteron_core::tuning::{TuningInput, TuningReport};
+use hysteron_core::user_model::UserModel;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::content::Content;
+use crate::reading::Reading;
+
+/// What a task says while it runs.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(tag = "type", content = "value", rename_all = "lowercase")]
+pub enum News<R = StepReport> {
+    /// Share done, 0 to 1, and what it is doing.
+    Progress(f64, String),
+    /// The result; a task may hand it over in parts.
+    Report(Box<R>),
+    /// Why there is none.
+    Failed(String),
+}
+
+/// A long computation.
+pub trait Task: Serialize + DeserializeOwned + Send + 'static {
+    /// Its name in messages.
+    const NAME: &'static str;
+    /// What it hands over.
+    type Report: Serialize + DeserializeOwned + Send + 'static;
+}
+
+/// Reads a measurement.
+#[derive(Serialize, Deserialize)]
+pub struct ReadTask {
+    /// Name of the file.
+    pub file: String,
+    /// What is in it.
+    pub content: Content,
+    /// What it does not say itself.
+    pub reading: Reading,
+}
+
+/// What was read.
+#[derive(Serialize, Deserialize)]
+pub enum ReadReport {
+    /// A measurement.
+    Measurement(Box<Opened>),
+    /// A table that does not say what its columns are.
+    Unclear {
+        /// What is not understood.
+        reason: String,
+        /// What there is.
+        columns: Vec<FoundColumn>,
+    },
+}
+
+/// A measurement, and what else is known of its file.
+#[derive(Serialize, Deserialize)]
+pub struct Opened {
+    /// What was measured.
+    pub measurement: Measurement,
+    /// Where it comes from.
+    pub source: Source,
+    /// The truth about it, sealed, if it is a mystery.
+    pub seal: Option<Vec<u8>>,
+}
+
+/// The very file that was read.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Source {
+    /// Its length.
+    pub bytes: usize,
+    /// Its fingerprint.
+    pub sha256: String,
+}
+
+impl Task for ReadTask {
+    const NAME: &'static str = "read";
+    type Report = ReadReport;
+}
+
+/// Criticises the baseline with effects on a measurement.
+#[derive(Serialize, Deserialize)]
+pub struct StepTask {
+    /// The measurement.
+    pub measurement: Box<Measurement>,
+    /// Effects on top of the baseline.
+    pub effects: Vec<EffectId>,
+    /// What the user knows of the model.
+    pub model: Option<UserModel>,
+}
+
+impl Task for StepTask {
+    const NAME: &'static str = "step";
+    type Report = StepReport;
+}
+
+/// Looks for the experiment that tells models apart, within limits.
+#[derive(Serialize, Deserialize)]
+pub struct ExperimentTask {
+    /// The measurement.
+    pub measurement: Box<Measurement>,
+    /// What the user knows of the model.
+    pub model: Option<UserModel>,
+    /// The models, fitted.
+    pub models: Vec<FittedModel>,
+    /// How far the experiment may go.
+    pub limits: Limits,
+    /// What the others leave in this record beyond the first, in noise units.
+    pub today: f64,
+}
+
+impl Task for ExperimentTask {
+    const NAME: &'static str = "experiment";
+    type Report = NextExperiment;
+}
+
+/// Computes a parameter map, handed over tile by tile.
+#[derive(Serialize, Deserialize)]
+pub struct MapTask(pub MapInput);
+
+impl Task for MapTask {
+    const NAME: &'static str = "map";
+    type Report = Tile;
+}
+
+/// Runs the auto-tuning experiments.
+#[derive(Serialize, Deserialize)]
+pub struct TuneTask(pub TuningInput);
+
+impl Task for TuneTask {
+    const NAME: &'static str = "tune";
+    type Report = TuningReport;
+}
+
+/// Estimates a gap from the motor's columns alone.
+#[derive(Serialize, Deserialize)]
+pub enum GapTask {
+    /// Of a simulated drive, recorded as a rig would.
+    Simulated(Box<DriveInput>),
+    /// Of a measurement that is to be read.
+    Measured(Box<ReadTask>),
+}
+
+/// What the motor tells about the gap.
+#[derive(Serialize, Deserialize)]
+pub struct GapReport {
+    /// What was read, where a file was.
+    pub measurement: Option<Measurement>,
+    /// The estimate, or why there can be none.
+    pub estimate: Result<GapEstimate, String>,
+}
+
+impl Task for GapTask {
+    const NAME: &'static str = "gap";
+    type Report = GapReport;
+}
+
+/// Makes a mystery on the bench.
+#[derive(Serialize, Deserialize)]
+pub struct MysteryTask(pub Request);
+
+/// A mystery that was made.
+#[derive(Serialize, Deserialize)]
+pub struct Made {
+    /// The record, with the truth sealed.
+    pub mystery: Mystery,
+    /// The same as a text for a link.
+    pub link: String,
+}
+
+impl Task for MysteryTask {
+    const NAME: &'static str = "mystery";
+    type Report = Made;
+}
+
+/// Opens the sealed truth and judges a model by it.
+#[derive(Serialize, Deserialize)]
+pub struct RevealTask {
+    /// The truth, sealed.
+    pub seal: Vec<u8>,
+    /// The word that opens it.
+    pub word: String,
+    /// The model.
+    pub answer: Answer,
+}
+
+impl Task for RevealTask {
+    const NAME: &'static str = "reveal";
+    type Report = Reveal;
+}
+
+/// What the worker says whenever it listens: first, and after each task.
+#[cfg(target_arch = "wasm32")]
+pub const READY: &str = "ready";

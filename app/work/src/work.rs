@@ -1,0 +1,290 @@
+//! What long computations do. The same code runs on a thread natively and in the worker on the web; the page
+//! itself has none of it, which keeps it small.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use hysteron_core::backlash::estimate_gap;
+use hysteron_core::crew::Crew;
+use hysteron_core::criticism::{ExperimentJob, StepJob};
+use hysteron_core::diagnosis::{NextExperiment, StepReport};
+use hysteron_core::drive::{Recorder, record};
+use hysteron_core::maps::{MapJob, Tile};
+use hysteron_core::measurement::{ImportError, Measurement, Problem, columns, import};
+use hysteron_core::mystery::{Reveal, make, seal_of};
+use hysteron_core::progress::Progress;
+use hysteron_core::report::sha256;
+use hysteron_core::tuning::{TuningReport, tune};
+use hysteron_core::user_model::UserModel;
+
+use crate::content::Content;
+use crate::packed::unpack;
+use crate::tasks::{
+    ExperimentTask, GapReport, GapTask, Made, MapTask, MysteryTask, News, Opened, ReadReport,
+    ReadTask, RevealTask, Source, StepTask, Task, TuneTask,
+};
+
+/// Where a task says its news; false when nobody listens any more and it should end.
+pub type Say<'a, R> = &'a mut dyn FnMut(News<R>) -> bool;
+
+/// A task that can be carried out here.
+pub trait Work: Task {
+    /// Runs until it is finished or nobody listens.
+    fn run(self, say: Say<'_, Self::Report>);
+}
+
+impl Work for ReadTask {
+    fn run(self, say: Say<'_, ReadReport>) {
+        let bytes = bytes_of(&self.content);
+        let report = match self.read(&bytes) {
+            Ok(measurement) => Ok(ReadReport::Measurement(Box::new(Opened {
+                measurement,
+                source: Source {
+                    bytes: bytes.len(),
+                    sha256: sha256(&bytes),
+                },
+                seal: seal_of(&bytes),
+            }))),
+            Err(refused) => self.ask(&refused, &bytes).ok_or(refused),
+        };
+        say(match report {
+            Ok(report) => News::Report(Box::new(report)),
+            Err(refused) => News::Failed(refused.to_string()),
+        });
+    }
+}
+
+/// The bytes of a file.
+fn bytes_of(content: &Content) -> Cow<'_, [u8]> {
+    match content {
+        Content::Plain(bytes) => Cow::Borrowed(bytes),
+        Content::Packed(bytes) => Cow::Owned(unpack(bytes).unwrap_or_default()),
+        Content::Mystery(mystery) => Cow::Owned(mystery.csv().into_bytes()),
+    }
+}
+
+/// Columns that a measurement has at least: time, input, output.
+const FEWEST: usize = 3;
+
+/// Why a file is not read.
+enum Refused {
+    /// How it was to be read makes no sense.
+    Reading(String),
+    File(ImportError),
+}
+
+impl Refused {
+    /// What is wrong where someone who knows the columns of the file could have it read.
+    fn about_columns(&self) -> Option<&ImportError> {
+        match self {
+            Self::File(error) if error.problem.is_about_columns() => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reading(error) => error.fmt(f),
+            Self::File(error) => error.fmt(f),
+        }
+    }
+}
+
+impl ReadTask {
+    fn read(&self, bytes: &[u8]) -> Result<Measurement, Refused> {
+        let options = self.reading.options().map_err(Refused::Reading)?;
+        import(&self.file, bytes, &options).map_err(Refused::File)
+    }
+
+    /// Asks for the columns of a file that was refused, if that can help.
+    fn ask(&self, refused: &Refused, bytes: &[u8]) -> Option<ReadReport> {
+        let error = refused.about_columns()?;
+        let columns = columns(&self.file, bytes).ok()?;
+        (columns.len() >= FEWEST).then(|| ReadReport::Unclear {
+            reason: match error.problem {
+                // What the command line says goes on about options.
+                Problem::NotMapped { .. } => {
+                    "A file of MATLAB does not say what its columns are.".to_owned()
+                }
+                _ => error.to_string(),
+            },
+            columns,
+        })
+    }
+
+    /// A measurement of which a gap is to be estimated.
+    fn measured(&self) -> Result<Measurement, String> {
+        self.read(&bytes_of(&self.content)).map_err(|refused| {
+            if refused.about_columns().is_some() {
+                format!(
+                    "{refused}. Open it in Compare, which asks for its columns; then it can be opened here too."
+                )
+            } else {
+                refused.to_string()
+            }
+        })
+    }
+}
+
+impl Work for StepTask {
+    fn run(self, say: Say<'_, StepReport>) {
+        let blank = UserModel::blank(self.measurement.kind);
+        let model = self.model.as_ref().unwrap_or(&blank);
+        let mut job = match StepJob::with_model(&self.measurement, &self.effects, model) {
+            Ok(job) => job.with_crew(&crew()),
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        if let Some(report) = finish(|| job.advance(), say) {
+            let wrong = report.step.checked().err();
+            say(match wrong {
+                Some(error) => News::Failed(error.to_string()),
+                None => News::Report(Box::new(report)),
+            });
+        }
+    }
+}
+
+impl Work for ExperimentTask {
+    fn run(self, say: Say<'_, NextExperiment>) {
+        let blank = UserModel::blank(self.measurement.kind);
+        let model = self.model.as_ref().unwrap_or(&blank);
+        let job = ExperimentJob::new(
+            &self.measurement,
+            model,
+            &self.models,
+            self.limits,
+            self.today,
+        );
+        let mut job = match job {
+            Ok(job) => job,
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        match finish(|| job.advance(), say) {
+            Some(Some(found)) => say(News::Report(Box::new(found))),
+            Some(None) => say(News::Failed(NO_ROOM.to_owned())),
+            None => false,
+        };
+    }
+}
+
+/// What is said where nothing can be tried.
+const NO_ROOM: &str =
+    "These limits leave no room for an experiment: allow a longer record or more motion.";
+
+/// Advances a job to its end; `None` where nobody listens any more.
+fn finish<T, R>(mut advance: impl FnMut() -> Progress<T>, say: Say<'_, R>) -> Option<T> {
+    loop {
+        match advance() {
+            Progress::Running { fraction, text } => {
+                if !say(News::Progress(fraction, text)) {
+                    return None;
+                }
+            }
+            Progress::Done(result) => return Some(result),
+        }
+    }
+}
+
+impl Work for MapTask {
+    fn run(self, say: Say<'_, Tile>) {
+        let mut job = match MapJob::new(self.0) {
+            Ok(job) => job,
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        loop {
+            let tile = advance(&mut job);
+            if tile.is_empty() || !say(News::Report(Box::new(tile))) {
+                return;
+            }
+        }
+    }
+}
+
+impl Work for TuneTask {
+    fn run(self, say: Say<'_, TuningReport>) {
+        say(match tune(&self.0) {
+            Ok(report) => News::Report(Box::new(report)),
+            Err(error) => News::Failed(error.to_string()),
+        });
+    }
+}
+
+impl Work for GapTask {
+    fn run(self, say: Say<'_, GapReport>) {
+        let (read, keep) = match self {
+            Self::Simulated(input) => (
+                record(&input, &Recorder::default()).map_err(|e| e.to_string()),
+                false,
+            ),
+            Self::Measured(task) => (task.measured(), true),
+        };
+        say(match read {
+            Ok(measurement) => News::Report(Box::new(GapReport {
+                estimate: estimate_gap(&measurement).map_err(|e| e.to_string()),
+                measurement: keep.then_some(measurement),
+            })),
+            Err(error) => News::Failed(error),
+        });
+    }
+}
+
+impl Work for MysteryTask {
+    fn run(self, say: Say<'_, Made>) {
+        say(match make(&self.0) {
+            Ok(mystery) => News::Report(Box::new(Made {
+                link: mystery.link(),
+                mystery,
+            })),
+            Err(error) => News::Failed(error.to_string()),
+        });
+    }
+}
+
+impl Work for RevealTask {
+    fn run(self, say: Say<'_, Reveal>) {
+        say(match Reveal::open(&self.seal, &self.word, &self.answer) {
+            Ok(reveal) => News::Report(Box::new(reveal)),
+            Err(error) => News::Failed(error.to_string()),
+        });
+    }
+}
+
+/// Who does the parts of a computation: all cores.
+#[cfg(not(target_arch = "wasm32"))]
+fn crew() -> Crew {
+    crate::cores::all()
+}
+
+/// The worker alone.
+#[cfg(target_arch = "wasm32")]
+fn crew() -> Crew {
+    Crew::default()
+}
+
+/// One batch on all cores.
+#[cfg(not(target_arch = "wasm32"))]
+fn advance(job: &mut MapJob) -> Tile {
+    use rayon::prelude::*;
+    let outcomes = job
+        .batch()
+        .par_iter()
+        .map(|place| job.outcome(*place))
+        .collect();
+    job.accept(outcomes)
+}
+
+#[cfg(target_arch = "wasm32")]
+fn advance(job: &mut MapJob) -> Tile {
+    job.advance()
+}

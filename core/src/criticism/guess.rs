@@ -1,0 +1,90 @@
+//! The first guess of a baseline's values.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::data::Data;
+use crate::measurement::Kind;
+
+/// Chunk lengths, in samples, over which velocity differences are regressed; the first whose
+/// differences stand well above the noise is taken.
+const CHUNKS: [usize; 7] = [1, 2, 5, 10, 20, 50, 100];
+
+/// How far above the noise, root mean square.
+const CLEAR_OF_NOISE: f64 = 10.0;
+
+/// First guess by linear regression of `v(t2) - v(t1) = b int w dt - lambda int v dt + f (t2 - t1)` on chunks,
+/// with `w` the input that reaches the body (one value per interval).
+///
+/// `None` where the regression has no sensible solution.
+pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
+    let v = data.velocity_estimate();
+    let noise = data
+        .outputs
+        .iter()
+        .find(|o| o.is_velocity)
+        .map_or(0.0, |o| o.noise);
+    let n = data.len();
+    let time = &data.time;
+    let chunk = CHUNKS
+        .iter()
+        .copied()
+        .filter(|c| c * 20 < n)
+        .find(|c| {
+            let sum: f64 = (0..n - c).map(|i| (v[i + c] - v[i]).powi(2)).sum();
+            (sum / (n - c) as f64).sqrt() > CLEAR_OF_NOISE * noise
+        })
+        .unwrap_or((n / 40).clamp(1, 100));
+    // The constant term keeps an offset of the input from bending the other two.
+    let mut normal = Matrix3::zeros();
+    let mut right = Vector3::zeros();
+    let mut power = 0.0;
+    let mut i = 0;
+    while i + chunk < n {
+        let (mut iw, mut iv) = (0.0, 0.0);
+        for j in i..i + chunk {
+            let dt = time[j + 1] - time[j];
+            iw += w[j] * dt;
+            iv += 0.5 * (v[j] + v[j + 1]) * dt;
+        }
+        let row = Vector3::new(iw, -iv, time[i + chunk] - time[i]);
+        normal += row * row.transpose();
+        right += row * (v[i + chunk] - v[i]);
+        power += (v[i + chunk] - v[i]).powi(2);
+        i += chunk;
+    }
+    // Columns differ by orders of magnitude: scaled to unit length before solving.
+    let scale = normal
+        .diagonal()
+        .map(|d| 1.0 / d.max(f64::MIN_POSITIVE).sqrt());
+    let scaled = Matrix3::from_diagonal(&scale) * normal * Matrix3::from_diagonal(&scale);
+    let solution = scaled
+        .try_inverse()
+        .map(|m| (m * right.component_mul(&scale)).component_mul(&scale));
+    let (saa, sab, say) = (normal[(0, 0)], normal[(0, 1)], right[0]);
+    let (mut b, mut lambda) = solution.map_or((say / saa, 0.0), |x| (x[0], x[1]));
+    if !(b.is_finite() && lambda.is_finite()) {
+        (b, lambda) = (say / saa, 0.0);
+    }
+    let duration = time[n - 1] - time[0];
+    if data.kind == Kind::Drive && b <= 0.0 {
+        b = (say / saa).abs();
+    }
+    if lambda <= 0.0 {
+        lambda = match data.kind {
+            Kind::Drive => 0.0,
+            Kind::Process => 10.0 / duration,
+        };
+        b = (say - lambda * sab) / saa;
+    }
+    if data.kind == Kind::Drive && (b.is_nan() || b <= 0.0) {
+        // A resonance turns the motor against its torque: the sizes alone say how heavy it is.
+        (b, lambda) = ((power / saa).sqrt(), 0.0);
+    }
+    if !b.is_finite() || b == 0.0 {
+        return None;
+    }
+    Some(match data.kind {
+        Kind::Drive => vec![1.0 / b, lambda / b],
+        Kind::Process => vec![b / lambda, 1.0 / lambda],
+    })
+}

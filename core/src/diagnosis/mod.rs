@@ -1,0 +1,36 @@
+//! What a diagnosis says: plain values, the same in JSON, on the command line and on screen.
+//!
+//! Nothing is computed here: the jobs of [`criticism`](crate::criticism) fill these values, everything else reads them.
+
+mod error;
+mod experiment;
+mod fingerprint;
+mod limits;
+mod missing;
+mod opening;
+mod parameter;
+mod profile;
+mod program;
+mod replay;
+mod report;
+mod residual_test;
+mod step;
+mod verdict;
+
+pub use error::CriticismError;
+pub use experiment::{FittedModel, NextExperiment, Trial};
+pub use fingerprint::Fingerprint;
+pub use limits::{LimitError, Limits};
+pub use missing::MissingPart;
+pub use opening::Opening;
+pub use parameter::{Parameter, Status};
+pub use profile::{Profile, ProfileBin};
+pub use program::{Program, Sine};
+pub use replay::{Replay, ReplayChannel};
+pub use report::{Diagnosis, StepReport};
+pub use residual_test::{ResidualTest, ResidualTestKind};
+pub use step::{Candidate, Finding, Step};
+pub use verdict::{Contradiction, Verdict};
+
+pub(crate) use experiment::times;
+pub(crate) use program::short;

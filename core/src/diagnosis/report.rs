@@ -1,0 +1,56 @@
+//! A whole diagnosis, and everything about one of its models.
+
+use serde::{Deserialize, Serialize};
+
+use super::fingerprint::Fingerprint;
+use super::missing::MissingPart;
+use super::profile::Profile;
+use super::replay::Replay;
+use super::step::Step;
+use super::verdict::Verdict;
+use crate::effect::EffectId;
+use crate::measurement::Kind;
+
+/// A whole diagnosis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Diagnosis {
+    /// Version of this layout, 1.
+    pub schema: u32,
+    /// Drive or process.
+    pub kind: Kind,
+    /// Number of samples.
+    pub samples: usize,
+    /// Error of a perfect model, in the unit of [`Step::error`].
+    pub noise_floor: f64,
+    /// From the baseline to the last model.
+    pub steps: Vec<Step>,
+    /// What is missing.
+    pub verdict: Verdict,
+    /// Time taken in s; the caller's clock, since this crate has none.
+    pub seconds: f64,
+}
+
+/// Everything about one model on one measurement: what the Compare page shows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepReport {
+    /// Error, parameters, where it fails and what could be added.
+    pub step: Step,
+    /// Error of a perfect model.
+    pub noise_floor: f64,
+    /// Curves for the plots.
+    pub replay: Replay,
+    /// The residual over every axis.
+    pub atlas: Vec<Profile>,
+    /// What the best of the effects that were tried would leave.
+    #[serde(default)]
+    pub fingerprints: Vec<Fingerprint>,
+    /// The effect that data say should be added next, if any.
+    pub suggestion: Option<EffectId>,
+    /// Effects in the model that data say are not needed.
+    pub needless: Vec<EffectId>,
+    /// Where the verdict is unknown: what is missing, estimated without a model, the likeliest first.
+    #[serde(default)]
+    pub missing: Vec<MissingPart>,
+    /// Present when nothing should be added: what is missing from the baseline, and how sure.
+    pub verdict: Option<Verdict>,
+}

@@ -1,0 +1,63 @@
+//! What the data say in the end.
+
+use serde::{Deserialize, Serialize};
+
+use super::experiment::NextExperiment;
+use crate::effect::EffectId;
+
+/// A known value that the data contradict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contradiction {
+    /// The effect that it belongs to; `None` for the baseline model.
+    pub effect: Option<EffectId>,
+    /// Its symbol.
+    pub name: String,
+    /// The value that the user's model holds, in `unit`.
+    pub held: f64,
+    /// The value that the data want, in `unit`.
+    pub wanted: f64,
+    /// Standard error of the latter.
+    pub std_error: f64,
+    /// SI unit.
+    pub unit: String,
+    /// Held-back error with the known values released, in noise units.
+    pub error: f64,
+}
+
+/// What the data say in the end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The missing effects in the order found; each a class that this data cannot tell apart. What tells how the record
+    /// was made ([`is_of_record`](crate::effect::is_of_record)) is not among them.
+    pub missing: Vec<Vec<EffectId>>,
+    /// The residual that is left is noise.
+    pub complete: bool,
+    /// Structure is left that no effect explains.
+    pub unknown: bool,
+    /// The experiment that would separate the classes, in words.
+    pub next_experiment: Option<String>,
+    /// The same with numbers: one for each class of more than one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub experiments: Vec<NextExperiment>,
+    /// Known values that the data contradict; nothing is added before they are right.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contradicted: Vec<Contradiction>,
+    /// The verdict in plain words.
+    pub text: String,
+}
+
+impl Verdict {
+    /// Puts the experiments into words.
+    pub(crate) fn say_experiments(&mut self) {
+        let texts: Vec<&str> = self.experiments.iter().map(|e| e.text.as_str()).collect();
+        self.next_experiment = Some(texts.join(" "));
+    }
+
+    /// Puts a proposal in the place of another, in words too; one that is not there changes nothing.
+    pub fn replace_experiment(&mut self, index: usize, proposal: NextExperiment) {
+        if let Some(place) = self.experiments.get_mut(index) {
+            *place = proposal;
+            self.say_experiments();
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! What a report is made from.
+
+use crate::diagnosis::{Profile, Step, StepReport, Verdict};
+use crate::measurement::Measurement;
+use crate::user_model::UserModel;
+
+/// Where a report comes from and how to make it again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Provenance {
+    /// Command line that gives the same diagnosis.
+    pub command: String,
+    /// Version of the program.
+    pub version: String,
+    /// Size of the file, bytes.
+    pub bytes: usize,
+    /// Its [`sha256`](super::sha256).
+    pub sha256: String,
+}
+
+/// What a report is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportInput<'a> {
+    /// The measurement.
+    pub measurement: &'a Measurement,
+    /// From the baseline to the model that is reported.
+    pub steps: &'a [Step],
+    /// The residual of the baseline over every axis; may be empty.
+    pub first_atlas: &'a [Profile],
+    /// The model that is reported, with its curves.
+    pub last: &'a StepReport,
+    /// What the data say, if they have been heard to the end.
+    pub verdict: Option<&'a Verdict>,
+    /// The model that the user brought, if any.
+    pub model: Option<&'a UserModel>,
+    /// Where it comes from.
+    pub provenance: &'a Provenance,
+}
