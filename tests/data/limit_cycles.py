@@ -15,16 +15,10 @@ mp.mp.dps = 40
 STEP = mp.mpf("1.03")
 
 
-def polynomial(*roots):
-    p = [mp.mpf(1)]
-    for r in roots:
-        p = [a - r * b for a, b in zip(p + [0], [0] + p)]
-    return p
-
-
 def companion(num, den):
-    den = [mp.mpf(c) / mp.mpf(den[0]) for c in den]
-    num = [mp.mpf(c) for c in num]
+    lead = mp.mpf(den[0])
+    den = [mp.mpf(c) / lead for c in den]
+    num = [mp.mpf(c) / lead for c in num]
     n = len(den) - 1
     num = [mp.mpf(0)] * (n - len(num)) + num
     a = mp.zeros(n)
