@@ -89,7 +89,7 @@ def solve(num, den, lag, k, eps, guess):
         if values[i][1] > 0 >= values[i + 1][1] or (values[i][1] < 0 <= values[i + 1][1]):
             low, high = grid[i], grid[i + 1]
             if low < lag < high:
-                low, high = (low, lag) if output(a, b, c, k, lag, x0, lag)[1] <= 0 else (lag, high)
+                low, high = (low, lag) if output(a, b, c, k, lag, x0, lag)[1] <= 0 else (lag + mp.mpf(10) ** -30, high)
             if output(a, b, c, k, lag, x0, low)[1] * output(a, b, c, k, lag, x0, high)[1] < 0:
                 t = mp.findroot(lambda t: output(a, b, c, k, lag, x0, t)[1], (low, high), solver="anderson")
                 best = max(best, abs(output(a, b, c, k, lag, x0, t)[0]))

@@ -79,6 +79,8 @@ impl FreeMotor {
     fn unsure_of(self, spread: &[f64], cycles: &Cycles, step: f64) -> Self {
         let per_torque = self.acceleration * step / cycles.gain;
         Self {
+            // Placed switches leave more than the sensor's noise, from which a contact must stand out.
+            noise: self.noise.max(calm(&self.unexplained, cycles)),
             unsure: spread.iter().map(|s| s * per_torque).collect(),
             ..self
         }
@@ -252,9 +254,7 @@ fn mean_sign(a: f64, b: f64) -> f64 {
     (b.abs() - a.abs()) / (b - a)
 }
 
-/// Noise of the unexplained velocity: median deviation of its change over one or a few steps, and no less than what
-/// the calmer cycles show from their least to their largest value: where the sensor is all but perfect, what the fit leaves
-/// at switches and reversals is what a contact must stand out from.
+/// Noise of the unexplained velocity: median deviation of its change over one or a few steps.
 fn noise(record: &Record, unexplained: &[f64], cycles: &Cycles) -> f64 {
     let from = cycles.starts[0];
     let level = |apart: usize| {
@@ -274,6 +274,12 @@ fn noise(record: &Record, unexplained: &[f64], cycles: &Cycles) -> f64 {
     } else {
         3 + 2 * DIFFERENCE
     };
+    [1, 3, far].into_iter().map(level).fold(0.0, f64::max)
+}
+
+/// What the calmer cycles show from the least to the largest unexplained velocity, as the standard deviation of a noise that
+/// would.
+fn calm(unexplained: &[f64], cycles: &Cycles) -> f64 {
     let mut ranges: Vec<f64> = cycles
         .starts
         .windows(2)
@@ -282,8 +288,7 @@ fn noise(record: &Record, unexplained: &[f64], cycles: &Cycles) -> f64 {
             high - low
         })
         .collect();
-    let calm = quantile(&mut ranges, CALM) / normal_range(cycles.length);
-    [1, 3, far].into_iter().map(level).fold(calm, f64::max)
+    quantile(&mut ranges, CALM) / normal_range(cycles.length)
 }
 
 /// Share of the cycles that are calm: fewer are free in hardly any record.
