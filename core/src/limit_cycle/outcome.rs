@@ -13,7 +13,7 @@ use super::pattern::{self, OneCycle};
 use super::{Cycle, ExactCycle, Prediction, dominant, typical_frequency, words};
 use crate::plant::{MAX_ORDER, StateSpace, TransferFunction};
 use crate::relay::Relay;
-use crate::simulate::{Cut, Engine, Flow, Noise, SimulateError, Sliding, Trajectory};
+use crate::simulate::{Cut, Engine, Flow, Noise, Options, SimulateError, Sliding, Trajectory};
 
 /// What becomes of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -100,7 +100,8 @@ impl LongRun<'_> {
     pub fn run(&self, prediction: &Prediction) -> Result<LongRunResult, SimulateError> {
         let period = self.typical_period(prediction);
         if let Some(noise) = self.noise {
-            return self.run_noisy(noise, period, prediction);
+            self.check(noise)?;
+            return Ok(self.run_noisy(noise, period, prediction));
         }
         let flow = Flow::single(self.space, FIRST_PERIODS * period);
         let view = View::new(self, prediction);
@@ -171,12 +172,22 @@ impl LongRun<'_> {
         engine
     }
 
-    fn run_noisy(
-        &self,
-        noise: Noise,
-        period: f64,
-        prediction: &Prediction,
-    ) -> Result<LongRunResult, SimulateError> {
+    /// Whether the noise can be.
+    fn check(&self, noise: Noise) -> Result<(), SimulateError> {
+        let duration = if noise.interval > 0.0 {
+            noise.interval
+        } else {
+            1.0
+        };
+        let options = Options {
+            noise: Some(noise),
+            step: None,
+            ..Options::new(duration, duration)
+        };
+        options.check(self.space.b.len())
+    }
+
+    fn run_noisy(&self, noise: Noise, period: f64, prediction: &Prediction) -> LongRunResult {
         let duration = (NOISY_CYCLES * period).min(MOST_NOISE * noise.interval);
         let flow = Flow::single(self.space, period);
         let mut engine = self.engine(&flow, period, MOST_SWITCHES[1]);
@@ -190,15 +201,12 @@ impl LongRun<'_> {
             end += period;
             goes_on = engine.run(end);
             if unstable.is_lost(&flow.outer(&engine.x)) {
-                return Ok(LongRunResult::of(
-                    Some(Outcome::Unbounded),
-                    words::unstable(),
-                ));
+                return LongRunResult::of(Some(Outcome::Unbounded), words::unstable());
             }
         }
         let run = engine.finish().into_iter().next().unwrap_or_default();
         if run.cut == Some(Cut::TooFast) {
-            return Ok(LongRunResult::of(None, words::too_fast()));
+            return LongRunResult::of(None, words::too_fast());
         }
         let late = run
             .rises
@@ -207,16 +215,13 @@ impl LongRun<'_> {
             .filter(|t| **t > 0.5 * end)
             .count();
         if late == 0 {
-            return Ok(LongRunResult::of(
-                Some(Outcome::Rest),
-                words::rest_in_noise(),
-            ));
+            return LongRunResult::of(Some(Outcome::Rest), words::rest_in_noise());
         }
         let Some(found) = noisy_cycle(&run) else {
             let text = words::chatter_at_rest(late, 0.5 * end);
-            return Ok(LongRunResult::of(Some(Outcome::Chatter), text));
+            return LongRunResult::of(Some(Outcome::Chatter), text);
         };
-        Ok(noisy_result(&found, self.relay, noise, prediction))
+        noisy_result(&found, self.relay, noise, prediction)
     }
 }
 
@@ -327,7 +332,7 @@ impl<'a> View<'a> {
         self.at_rest(seen)
             .or_else(|| self.settled(seen, &cycles))
             .or_else(|| self.growing(&cycles))
-            .or_else(|| self.repeating(&cycles))
+            .or_else(|| Self::repeating(&cycles))
             .or_else(|| seen.last.then(|| self.in_the_end(seen, &cycles)))
     }
 
@@ -411,7 +416,7 @@ impl<'a> View<'a> {
         })
     }
 
-    fn repeating(&self, cycles: &[OneCycle]) -> Option<LongRunResult> {
+    fn repeating(cycles: &[OneCycle]) -> Option<LongRunResult> {
         let count = pattern::repeated(cycles)?;
         let pattern = &cycles[cycles.len() - count..];
         // A run that has all but settled repeats patterns of any length.

@@ -48,9 +48,10 @@ pub(super) fn limit_cycle(
         .filter(|m| (SLOW..1.0).contains(m));
     let mut text = format!("It oscillates: {}.", values(cycle));
     if let Some(multiplier) = slow {
-        text += &format!(
-            " It settles slowly: of a disturbance {multiplier:.4} is left after a period."
-        );
+        let left = format!("{multiplier:.4}");
+        text.push_str(" It settles slowly: of a disturbance ");
+        text.push_str(&left);
+        text.push_str(" is left after a period.");
     }
     if stable.is_none() {
         text += " Small disturbances neither die out nor grow.";
