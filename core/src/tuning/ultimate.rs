@@ -187,7 +187,7 @@ const NEAR_ZERO: f64 = 1e-4;
 /// integrators become, which their phase tells.
 fn unstable_at_small_gain(plant: &TransferFunction) -> i32 {
     let poles = plant.poles();
-    let unstable = poles.iter().filter(|p| p.re > 0.0).count() as i32;
+    let unstable = poles.iter().filter(|p| p.re > 0.0).map(|_| 1).sum::<i32>();
     let integrators = poles.iter().filter(|p| p.norm() == 0.0).count();
     if integrators == 0 {
         return unstable;
