@@ -6,6 +6,7 @@ mod support;
 mod at_rest;
 mod blind_bench;
 mod describing_function;
+mod doors;
 mod drifting_records;
 mod drive;
 mod drive_contact;

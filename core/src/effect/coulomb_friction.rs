@@ -5,8 +5,9 @@
 //! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
 //! none it goes to 0 and the contact is rigid.
 
+use super::dry_friction::{DAMPING, LEVEL, SHORT};
 use super::spec::HARD_CROSSINGS;
-use super::{BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::{BodyStart, Effect, EffectId, ParameterSpec, Probe};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -47,26 +48,7 @@ impl Effect for CoulombFriction {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "c",
-                label: "friction level",
-                dimension: Dimension::Force,
-                range: Range::NonNegative,
-            },
-            ParameterSpec {
-                symbol: "s",
-                label: "displacement over which it builds up",
-                dimension: Dimension::Position,
-                range: Range::Short,
-            },
-            ParameterSpec {
-                symbol: "z",
-                label: "damping ratio of the contact",
-                dimension: Dimension::Ratio,
-                range: Range::UnitInterval,
-            },
-        ]
+        &[LEVEL, SHORT, DAMPING]
     }
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {

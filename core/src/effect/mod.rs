@@ -7,6 +7,7 @@ mod cogging;
 mod constant_load;
 mod coulomb_friction;
 mod dead_zone;
+mod dry_friction;
 #[allow(clippy::module_inception, reason = "the room is named after its trait")]
 mod effect;
 mod formula;

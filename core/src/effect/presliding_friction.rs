@@ -3,9 +3,8 @@
 //! The same contact as in Coulomb friction, with a deflection so long that its build-up is seen
 //! sample by sample (Maxwell-slip elements along Dahl's curve).
 
-use super::{
-    BodyStart, Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction,
-};
+use super::dry_friction::{DAMPING, LEVEL, LONG};
+use super::{BodyStart, Effect, EffectId, ParameterSpec, Probe, coulomb_friction};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -76,26 +75,7 @@ impl Effect for PreslidingFriction {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "c",
-                label: "friction level",
-                dimension: Dimension::Force,
-                range: Range::NonNegative,
-            },
-            ParameterSpec {
-                symbol: "s",
-                label: "displacement over which it builds up",
-                dimension: Dimension::Position,
-                range: Range::Long,
-            },
-            ParameterSpec {
-                symbol: "z",
-                label: "damping ratio of the contact",
-                dimension: Dimension::Ratio,
-                range: Range::UnitInterval,
-            },
-        ]
+        &[LEVEL, LONG, DAMPING]
     }
 
     fn contains(&self) -> &'static [EffectId] {

@@ -2,6 +2,7 @@
 //!
 //! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
 
+use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::spec::HARD_CROSSINGS;
 use super::{
     Dimension, Effect, EffectId, ParameterSpec, Probe, Range, coulomb_friction, presliding_friction,
@@ -50,10 +51,8 @@ impl Effect for StribeckFriction {
     fn parameters(&self) -> &'static [ParameterSpec] {
         &[
             ParameterSpec {
-                symbol: "c",
                 label: "friction level in motion",
-                dimension: Dimension::Force,
-                range: Range::NonNegative,
+                ..LEVEL
             },
             ParameterSpec {
                 symbol: "dc",
@@ -67,18 +66,8 @@ impl Effect for StribeckFriction {
                 dimension: Dimension::Speed,
                 range: Range::Positive,
             },
-            ParameterSpec {
-                symbol: "s",
-                label: "displacement over which it builds up",
-                dimension: Dimension::Position,
-                range: Range::Long,
-            },
-            ParameterSpec {
-                symbol: "z",
-                label: "damping ratio of the contact",
-                dimension: Dimension::Ratio,
-                range: Range::UnitInterval,
-            },
+            LONG,
+            DAMPING,
         ]
     }
 

@@ -6,9 +6,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Cycle, MAX_INTERSECTIONS, illinois, stability};
+use super::MAX_INTERSECTIONS;
+use super::cycle::Cycle;
+use super::history::History;
+use super::stability;
 use crate::plant::StateSpace;
 use crate::relay::Relay;
+use crate::root::illinois;
 use crate::simulate::{Change, Engine, Flow, State};
 
 /// An exact limit cycle with one rise and one fall per period.
@@ -51,9 +55,6 @@ const SMALLEST_STEP: f64 = 1.0 / 256.0;
 /// Multipliers this close to 1 do not tell whether a disturbance dies out: several half periods within a delay that is far
 /// longer than all that the plant does just come round again, but for round-off.
 const NEUTRAL: f64 = 1e-12;
-
-/// Periods for which a delay may reach back.
-const MAX_PERIODS_BACK: f64 = 200.0;
 
 /// Switches of the run that looks for an asymmetric cycle where continuation fails.
 const SEARCH_SWITCHES: usize = 400;
@@ -463,40 +464,6 @@ impl Search {
             range,
             start: self.flow.outer(&x),
             multiplier,
-        })
-    }
-}
-
-/// What is on its way to the plant when the relay has just risen.
-pub(super) struct History {
-    /// Acting input.
-    pub input: f64,
-    /// Its changes to come that were decided already, in order.
-    pub pending: Vec<Change>,
-}
-
-impl History {
-    fn new(relay: &Relay, durations: [f64; 2], lag: f64) -> Option<Self> {
-        let period = durations[0] + durations[1];
-        if !(period > 0.0 && lag <= MAX_PERIODS_BACK * period) {
-            return None;
-        }
-        let mut pending = Vec::new();
-        let (mut time, mut high) = (lag, true);
-        // A change at this very instant has come.
-        while time > 1e-14 * period {
-            pending.push(Change {
-                time,
-                channel: 0,
-                value: relay.output(high),
-            });
-            time -= if high { durations[1] } else { durations[0] };
-            high = !high;
-        }
-        pending.reverse();
-        Some(Self {
-            input: relay.output(high),
-            pending,
         })
     }
 }

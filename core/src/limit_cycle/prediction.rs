@@ -6,11 +6,12 @@ use num_complex::Complex;
 
 use super::{
     Cycle, ExactCycle, Existence, Intersection, Outcome, TRUSTED_DISTORTION, continuum,
-    describing_function, exact_cycles, existence, illinois, likely_half_periods, settled_cycle,
+    describing_function, exact_cycles, existence, likely_half_periods, settled_cycle,
     typical_frequency,
 };
 use crate::plant::{PlantError, TransferFunction};
 use crate::relay::{Relay, RelayError};
+use crate::root::illinois;
 
 /// What is predicted for a loop.
 #[derive(Clone, Debug, PartialEq)]

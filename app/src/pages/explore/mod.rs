@@ -54,7 +54,7 @@ struct Finished {
     data: Result<(ExploreData, Vec<Check>), String>,
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     Page::new("explore", "Explore", Explore::default())
 }

@@ -1,7 +1,6 @@
 //! The experiments that are simulated: what one model does, and what the others leave of it.
 
-use super::candidates::Sizes;
-use super::design::LEAST_SAMPLES;
+use super::candidates::{LEAST_SAMPLES, Sizes};
 use super::limits::extent;
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;

@@ -3,6 +3,9 @@
 use crate::diagnosis::{Limits, Program, Sine};
 use crate::measurement::Kind;
 
+/// Samples that are simulated at least; fewer are no experiment.
+pub(super) const LEAST_SAMPLES: f64 = 200.0;
+
 /// What the sizes of a program follow from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
