@@ -2,12 +2,17 @@
 
 mod cycle;
 mod describing_function;
+mod divergence;
 mod exact;
 mod existence;
 mod harmonics;
 mod history;
+mod noisy;
+mod outcome;
+mod pattern;
 mod prediction;
 mod stability;
+mod words;
 
 use std::f64::consts::PI;
 
@@ -18,10 +23,11 @@ pub use cycle::Cycle;
 pub use describing_function::{
     Intersection, MAX_INTERSECTIONS, TRUSTED_DISTORTION, describing_function,
 };
-use exact::settled_cycle;
 pub use exact::{ExactCycle, exact_cycle, exact_cycles, exact_symmetric};
+use exact::{continuum, settled_cycle};
 pub use existence::{Existence, existence};
 pub use harmonics::{Harmonic, harmonics};
+pub use outcome::{LongRun, LongRunResult, Outcome};
 pub use prediction::{PredictError, Prediction, Trust, dominant, predict};
 
 /// Typical angular frequency of a plant, rad/s: the geometric mean of its poles, or of what its

@@ -66,7 +66,7 @@ fn quotient(from: &NyquistPoint, to: Complex<f64>) -> Result<(f64, f64), TuningE
     }
 }
 
-/// The PID controller with `Ti = ratio Td` and `Tf = Td/filter` that moves `from` to `to`, equation (9).
+/// The PID controller with `Ti = ratio Td` and `Tf = Td/filter` that moves `from` to `to`, equation (4).
 ///
 /// # Errors
 /// [`TuningError::OutOfReach`] where the controller cannot turn so far; with the usual `ratio` 4 and

@@ -268,7 +268,7 @@ impl Explore {
     fn numbers_ui(&self, ui: &mut egui::Ui) {
         if let Some((data, _)) = self.data() {
             ui.separator();
-            table::predictions_ui(ui, &self.input.relay, data);
+            table::predictions_ui(ui, &self.input, data);
             table::harmonics_ui(ui, data);
         }
         table::equations_ui(ui);
