@@ -185,6 +185,7 @@ fn of_file(
         kind: arguments.map.is_none().then_some(Kind::Process),
         mapping: arguments.map.clone().unwrap_or_default(),
         torque_constant: None,
+        period: None,
     };
     // A drive is a plant as well: what is no process may be one.
     let measurement = import(&name, &bytes, &options).or_else(|error| {
