@@ -13,14 +13,17 @@ use super::noise::{is_left_by_random_forces, is_noise_with_memory};
 use super::output::Output;
 use super::probes::{Probed, Probes};
 use super::score::{Score, score};
+use super::screen::screen;
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
 use crate::crew::Crew;
-use crate::diagnosis::{ChannelNoise, CriticismError, Parameter, Replay, ReplayChannel};
+use crate::diagnosis::{
+    ChannelNoise, CriticismError, InputVerdict, Parameter, Replay, ReplayChannel, Screening, Subset,
+};
 use crate::effect::{
     self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
-    Rubbing, Scales, SeenGap,
+    Scales, SeenGap,
     baseline::{self, Baseline},
 };
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
@@ -88,6 +91,19 @@ const FAR_HEAVIER: f64 = 4.0;
 /// Factor within which a model keeps a body that the balance of momentum tells.
 const HELD_FACTOR: f64 = 4.0;
 
+/// Inertia and viscous friction that the screen of a drive told.
+fn told_body(screening: &Screening) -> Option<[f64; 2]> {
+    let told = screening.kind == Kind::Drive && screening.input_check.verdict == InputVerdict::Ok;
+    let value = |k: usize| screening.body.get(k).map(|p| p.value);
+    let body = [value(0)?, value(1)?.max(0.0)];
+    (told && body[0] > 0.0).then_some(body)
+}
+
+/// Whether two inertias are not within a factor of each other in which a fit would find from one to the other.
+fn far_apart(a: f64, b: f64) -> bool {
+    a > HELD_FACTOR * b || b > HELD_FACTOR * a
+}
+
 pub(super) struct Session {
     /// What fits are compared on: all of the record, or windows spread over a long one.
     pub data: Data,
@@ -103,10 +119,14 @@ pub(super) struct Session {
     pub scout: Data,
     pub scales: Scales,
     /// The body that moves, where the baseline had run off from it.
-    pub held: Option<Rubbing>,
+    held: Option<[f64; 2]>,
+    /// Inertia and viscous friction of a drive that the screen told.
+    screened_body: Option<[f64; 2]>,
     /// What models that were met leave unexplained.
     probes: Probes,
     pub motion: Motion,
+    /// Subsets of effects that the screen found, the best first.
+    pub screened: Vec<Subset>,
     /// The gap that a drifting test shows.
     gap: Option<SeenGap>,
     pub input_unit: String,
@@ -130,7 +150,10 @@ impl Session {
         let plain = Baseline::plain();
         let guess = guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| data.baseline.unknown());
-        let (inertia, viscous) = data.baseline.body(&guess);
+        let screening = screen(measurement);
+        let screened_body = told_body(&screening);
+        let guessed = || data.baseline.body(&guess).into();
+        let [inertia, viscous] = screened_body.unwrap_or_else(guessed);
         let scales = data.scales(inertia, viscous);
         let knowledge = Knowledge::of(model).with_felt_gap(gap.map(felt_gap));
         hold_back(&mut data, &knowledge, guess, &scales);
@@ -138,6 +161,12 @@ impl Session {
         Ok(Self {
             scales,
             held: None,
+            screened_body,
+            screened: screening
+                .subsets
+                .into_iter()
+                .filter(|subset| !subset.effects.is_empty())
+                .collect(),
             probes: Probes::default(),
             scout: compared.scout(),
             knowledge,
@@ -270,10 +299,15 @@ impl Session {
             return false;
         }
         if self.knowledge.find(None, baseline::INERTIA).is_none() {
-            self.held = self.probed(fit).probe.other_body(fit.values[0]);
+            let other = |body: &[f64; 2]| far_apart(body[0], fit.values[0]);
+            let balanced = || {
+                let other = self.probed(fit).probe.other_body(fit.values[0]);
+                other.map(|found| found.body)
+            };
+            self.held = self.screened_body.filter(other).or_else(balanced);
         }
         let (inertia, viscous) = self.data.baseline.body(&fit.values);
-        if let Some(Rubbing { body, .. }) = self.held {
+        if let Some(body) = self.held {
             self.scales = Scales {
                 inertia_factor: HELD_FACTOR,
                 ..self.whole().scales(body[0], body[1])

@@ -68,21 +68,20 @@ pub fn registry() -> &'static [&'static dyn Effect] {
         &dead_zone::DeadZone,
         &sensor_lag::SensorLag,
         &static_curvature::StaticCurvature,
-    ]
-}
-
-/// Effects that only the screen looks for so far: a model may have them, a diagnosis does not try them.
-fn screened_only() -> &'static [&'static dyn Effect] {
-    &[
         &gravity::Gravity,
         &return_spring::ReturnSpring,
         &hardening_spring::HardeningSpring,
         &load_dependent_friction::LoadDependentFriction,
         &flattening_friction::FlatteningFriction,
-        &directional_friction::DirectionalFriction,
         &nonlinear_loss::NonlinearLoss,
         &outflow::Outflow,
     ]
+}
+
+/// Effects that only the screen looks for: in motion, friction that differs by direction is dry friction with a constant
+/// load, so that a diagnosis which named one of these would have to name both.
+fn screened_only() -> &'static [&'static dyn Effect] {
+    &[&directional_friction::DirectionalFriction]
 }
 
 /// Every effect that the screen looks for, in the order in which equals are listed.

@@ -1,7 +1,7 @@
 //! Finding the best fit of one structure from several starting points.
 
-mod pair;
 mod points;
+mod screened;
 
 use std::collections::VecDeque;
 

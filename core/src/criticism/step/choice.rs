@@ -65,13 +65,14 @@ impl StepJob {
             .or(Some(best))
     }
 
-    /// The model with two more effects, where that leaves far less than `model` and than the best with one.
+    /// The model with what the screen found together, where that leaves far less than `model` and than the best with one
+    /// effect.
     pub(super) fn together(&self, model: &Scored, best: Option<&Scored>) -> Option<&Scored> {
-        let less = |than: &Scored, pair: &&Scored| {
-            helps(&than.score, &pair.score) && fall(&than.score, &pair.score) > HUGE_FALL
+        let less = |than: &Scored, found: &&Scored| {
+            helps(&than.score, &found.score) && fall(&than.score, &found.score) > HUGE_FALL
         };
-        let pair = self.pair.as_ref().filter(|pair| less(model, pair));
-        pair.filter(|pair| best.is_none_or(|best| less(best, pair)))
+        let found = self.screened.as_ref().filter(|found| less(model, found));
+        found.filter(|found| best.is_none_or(|best| less(best, found)))
     }
 
     /// Effects without which the held-back error does not rise; those of the user's model stay.
@@ -175,7 +176,7 @@ impl StepJob {
         seen.into_iter().cloned().collect()
     }
 
-    /// Models with two more effects that may hide each other, then with another effect that would help too, the best first:
+    /// The model with what the screen found together, then those with another effect that would help too, the best first:
     /// where the suggestion may turn out to lead astray.
     pub(in crate::criticism) fn alternatives(&self, count: usize) -> Vec<Scored> {
         let Some(model) = &self.model else {
@@ -192,7 +193,7 @@ impl StepJob {
             .map(|(_, s)| s)
             .collect();
         others.sort_by(|a, b| a.score.error.total_cmp(&b.score.error));
-        let pair = self.pair.iter().filter(|pair| may_hide(model, pair));
-        pair.chain(others).take(count).cloned().collect()
+        let found = self.screened.iter().filter(|found| may_hide(model, found));
+        found.chain(others).take(count).cloned().collect()
     }
 }

@@ -4,6 +4,8 @@ mod choice;
 mod report;
 mod stages;
 
+use std::collections::VecDeque;
+
 use super::judge::{HUGE_FALL, nested};
 use super::next_experiment::{Design, Rival, TRYING};
 use super::race::Race;
@@ -28,12 +30,15 @@ const BETTER: f64 = 0.9999;
 /// Times the cost of a model from which on an effect is needed, if the model without it is not hoped to come lower.
 const NEEDED: f64 = 30.0;
 
+/// Times the cost of the best subset of the screen to which another one must be hoped to come to be followed.
+const HOPED: f64 = 1.03;
+
 /// What a step is doing.
 enum Stage {
     /// Fitting the model itself, effect by effect; `next` is the one to add then.
     Build { search: Search, next: usize },
-    /// Trying two effects that only show together.
-    Pair(Search),
+    /// Trying subsets of effects that the screen found: the first of these is under way.
+    Screened(VecDeque<Search>),
     /// Trying what tells how the record was made, where little is left.
     Record(Race),
     /// Trying every effect on top.
@@ -59,8 +64,8 @@ pub struct StepJob {
     /// The same before its last effect was added.
     before_last: Option<Scored>,
     tried: Vec<(&'static dyn Effect, Scored)>,
-    /// The model with two more effects, tried together.
-    pair: Option<Scored>,
+    /// The best model with effects that the screen found together.
+    screened: Option<Scored>,
     without: Vec<Scored>,
     classes: Vec<Class>,
     /// What could stand in the place of an effect.
@@ -145,7 +150,7 @@ impl StepJob {
             model: None,
             before_last: None,
             tried: Vec::new(),
-            pair: None,
+            screened: None,
             without: Vec::new(),
             classes: Vec::new(),
             contradicted: Vec::new(),
@@ -239,7 +244,16 @@ impl StepJob {
                 || search.iterate(data, scales) && search.optimism() < enough
         };
         let over = match &mut self.stage {
-            Stage::Build { search, .. } | Stage::Pair(search) => !works(search, f64::INFINITY),
+            Stage::Build { search, .. } => !works(search, f64::INFINITY),
+            Stage::Screened(searches) => {
+                let enough = self
+                    .screened
+                    .as_ref()
+                    .map_or(f64::INFINITY, |s| HOPED * s.fit.cost);
+                !searches
+                    .front_mut()
+                    .is_some_and(|search| works(search, enough))
+            }
             Stage::Revisit(search) => !works(search, present),
             Stage::Remove { search, .. } => !works(search, NEEDED * present),
             Stage::Record(race) | Stage::Try(race) | Stage::Swap { race, .. } => {
@@ -305,12 +319,20 @@ impl StepJob {
                         search,
                         next: next + 1,
                     },
-                    None => self.pair_stage(),
+                    None => self.screened_stage(),
                 }
             }
-            Stage::Pair(search) => {
-                self.pair = self.finished(&search);
-                self.try_stage()
+            Stage::Screened(mut searches) => {
+                let found = searches
+                    .pop_front()
+                    .and_then(|search| self.finished(&search));
+                let both = self.screened.take().into_iter().chain(found);
+                self.screened = both.min_by(|a, b| a.score.error.total_cmp(&b.score.error));
+                if searches.is_empty() {
+                    self.try_stage()
+                } else {
+                    Stage::Screened(searches)
+                }
             }
             Stage::Record(race) => {
                 self.tried = self.scored_all(race);
@@ -404,9 +426,8 @@ impl StepJob {
     fn progress(&self) -> (f64, String) {
         let wanted = self.wanted.len().max(1) as f64;
         match &self.stage {
-            Stage::Build { search, .. } | Stage::Pair(search) => {
-                (0.1 * search.scanned(), "Fitting the model".to_owned())
-            }
+            Stage::Build { search, .. } => (0.1 * search.scanned(), "Fitting the model".to_owned()),
+            Stage::Screened(_) => (0.1, "Fitting what the screen found".to_owned()),
             Stage::Record(race) | Stage::Try(race) => {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))

@@ -15,11 +15,12 @@ use crate::effect::Effect;
 const MAX_VISITS: usize = 2;
 
 impl StepJob {
-    /// Two effects together, where the baseline would do what neither does alone.
-    pub(super) fn pair_stage(&mut self) -> Stage {
+    /// The effects that the screen found, together: what shows only so is found without detours.
+    pub(super) fn screened_stage(&mut self) -> Stage {
         let bare = self.model.as_ref().filter(|_| self.wanted.is_empty());
-        let search = bare.and_then(|model| Search::rubbing_under_load(&self.session, &model.fit));
-        search.map_or_else(|| self.try_stage(), Stage::Pair)
+        let searches = bare.map(|model| Search::screened(&self.session, &model.fit));
+        let searches = searches.filter(|searches| !searches.is_empty());
+        searches.map_or_else(|| self.try_stage(), |all| Stage::Screened(all.into()))
     }
 
     /// Where little is left, it may be for how the record was made; if so, no other effect is tried before that is in the
