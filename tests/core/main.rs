@@ -32,6 +32,7 @@ mod real_drive;
 mod report;
 mod rests;
 mod scenario_text;
+mod screen;
 mod sensors;
 mod simulation;
 mod slow_and_short;

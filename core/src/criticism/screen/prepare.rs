@@ -361,12 +361,21 @@ impl Builder<'_> {
             .take(REFINED)
             .map(|t| t.members.clone())
             .collect();
-        let Some(best) = members.first() else { return };
-        let elements = bench.elements(best);
+        let Some(best) = members.first().cloned() else {
+            return;
+        };
+        let elements = bench.elements(&best);
         if let Some(fit) = super::model::Fit::new(&gram, &elements) {
             self.weigh(&elements, &fit.w);
         }
-        for members in &members {
+        // A part of the best may do as well, once its own shapes are as fine: lags make up for a dead time off the grid.
+        let parts = (0..best.len()).map(|out| {
+            let mut part = best.clone();
+            part.remove(out);
+            part
+        });
+        let refined: Vec<Vec<(usize, usize)>> = parts.chain(members.iter().cloned()).collect();
+        for members in &refined {
             self.refine(members);
         }
     }
