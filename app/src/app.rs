@@ -1,20 +1,24 @@
 //! The shell around the pages.
 
+mod carry_out;
 mod give;
 mod keep;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod program;
+pub mod start;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::util::undoer::Undoer;
 
+#[cfg(target_arch = "wasm32")]
 use crate::address;
 use crate::bar::Bar;
-use crate::command::Command;
 use crate::desk::Desk;
 use crate::document::Document;
 #[cfg(target_arch = "wasm32")]
 use crate::edges;
-use crate::files::{Door, MEASUREMENT};
+use crate::files::Door;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
@@ -24,7 +28,7 @@ use crate::save::GivenFile;
 use crate::shortcuts;
 use crate::theme::{self, Look};
 use crate::widgets::{chart_menu, chart_zoom, typed};
-use crate::{lessons, link, purpose_line};
+use crate::{link, purpose_line};
 
 /// Width of a window below which it is taken for a phone's, points.
 const PHONE: f32 = 500.0;
@@ -211,10 +215,12 @@ impl HysteronApp {
         let now = ui.input(|i| i.time);
         self.history.feed_state(now, &present);
         shortcuts::pressed(ui.ctx(), &self.page_ids(), &mut self.desk.commands);
-        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present));
+        let front = self.pages.get(self.front).map(|p| p.view.offer());
+        let offer = front.map(|offer| (offer.hint, offer.tables.names));
+        let (hint, tables) = offer.unwrap_or_default();
+        egui::Panel::top("bar").show(ui, |ui| self.bar_ui(ui, &present, &tables));
         let desk = &mut self.desk;
         desk.study.ui(ui, &mut desk.targets, &mut desk.commands);
-        let hint = self.pages.get(self.front).and_then(|p| p.view.offer().hint);
         if let Some(hint) = hint
             && desk.study.lesson.is_none()
         {
@@ -260,135 +266,6 @@ impl HysteronApp {
             self.fingers.fit = fingers;
             theme::fit_to_fingers(ctx, fingers);
         }
-    }
-
-    fn carry_out(&mut self, ui: &egui::Ui, command: Command) {
-        let ctx = ui.ctx();
-        match command {
-            Command::Undo | Command::Redo => self.travel(ctx, command == Command::Undo),
-            Command::AskForFile => {
-                if let Some((_, door)) = self.go_to_files() {
-                    door.entrance.open_dialog(ctx, MEASUREMENT);
-                }
-            }
-            Command::Reset => {
-                // The link of an untouched page is its name.
-                let before = self.document();
-                let untouched = format!("{};{}", link::VERSION, before.page);
-                // A key does it, which may be hit by mistake.
-                if self.open_link(ctx, &untouched).is_ok() && self.document() != before {
-                    let saying = "This page is as it was at first. Undo brings back what was set.";
-                    self.notice = Some(Notice::done(ctx, saying));
-                }
-            }
-            Command::Lesson(Some(id)) => {
-                // It begins with what its first button shows.
-                let lesson = lessons::find(&id);
-                if let Some(link) = lesson.and_then(|l| l.links().next()) {
-                    let _ = self.open_link(ctx, &format!("{link};lesson={id}"));
-                }
-            }
-            Command::Lesson(None) => self.desk.study.lesson = None,
-            Command::Check => {
-                let state = self.hook_state();
-                self.desk.study.check(&state);
-            }
-            Command::Play => {
-                self.desk.play = true;
-                ctx.request_repaint();
-            }
-            Command::SaveSvg => self.save_svg(ui, &self.document().page, ctx.content_rect()),
-            Command::SavePng => self.save_png(ctx, &self.document().page, ctx.content_rect()),
-            Command::SaveTable(name) => {
-                if let Some(table) = self.tables().into_iter().find(|t| t.name == name) {
-                    self.save_table(ctx, &name.replace(' ', "-"), &table);
-                }
-            }
-            Command::NextLook => self.choose_look(ctx, self.look().next()),
-            Command::SetLook(look) => self.choose_look(ctx, look),
-            Command::Calm(calm) => {
-                self.chosen.calm = true;
-                self.set_calm(ctx, calm);
-            }
-            Command::Speak(language) => {
-                self.chosen.language = true;
-                self.speak(language);
-            }
-            Command::Sheet => self.sheet = !self.sheet,
-            Command::Close => {
-                self.sheet = false;
-                self.notice = None;
-            }
-            Command::CopyLink => {
-                let link = self.link();
-                ctx.copy_text(address::of(&link));
-                let saying = match self.document().files().as_slice() {
-                    [] => "The link to this page, as it is now, is copied.".to_owned(),
-                    [name] => format!(
-                        "The link is copied. The file {name} is not part of it: send it along."
-                    ),
-                    names => format!(
-                        "The link is copied. The files {} are not part of it: send them along.",
-                        names.join(", ")
-                    ),
-                };
-                self.notice = Some(Notice::done(ctx, saying));
-            }
-            Command::CopyOther { link, saying } => {
-                ctx.copy_text(address::whole(&link));
-                self.notice = Some(Notice::done(ctx, saying));
-            }
-            Command::Save(document) => self.save_text(ctx, *document),
-            Command::OpenFile(page, name, bytes) => {
-                self.go(page);
-                self.open(ctx, &name, &bytes);
-            }
-            Command::OpenLink(text) => {
-                // A refusal is on the screen.
-                let _ = self.open_link(ctx, &text);
-            }
-            Command::Go(id) => self.go(id),
-            Command::SetLoop(input) => {
-                self.desk.relay_loop = *input;
-                self.desk.purpose = None;
-            }
-            Command::SetPurpose(purpose) => self.desk.purpose = purpose,
-            Command::Set(page, field, value) => {
-                self.desk.purpose.take_if(|purpose| purpose.page == page);
-                let page = self.pages.iter_mut().find(|p| p.id == page);
-                let refused = page.and_then(|page| {
-                    let mut settings = page.view.settings();
-                    settings[field] = value;
-                    page.view.set(ctx, &settings, &self.desk).err()
-                });
-                if let Some(sentence) = refused {
-                    self.notice = Some(Notice::refused(&sentence));
-                }
-            }
-        }
-    }
-
-    /// Goes back to what was set before the last change, or forth again.
-    fn travel(&mut self, ctx: &egui::Context, back: bool) {
-        let present = self.document();
-        let there = if back {
-            self.history.undo(&present)
-        } else {
-            self.history.redo(&present)
-        };
-        if let Some(document) = there.cloned()
-            && let Err(sentence) = self.apply(ctx, &document)
-        {
-            self.notice = Some(Notice::refused(sentence));
-        }
-        // What opened the experiment is taken back.
-        let page = self.document().page;
-        self.desk.purpose.take_if(|purpose| purpose.page != page);
-    }
-
-    fn choose_look(&mut self, ctx: &egui::Context, look: Look) {
-        self.chosen.look = true;
-        self.set_look(ctx, look);
     }
 
     fn set_look(&mut self, ctx: &egui::Context, look: Look) {
@@ -448,13 +325,11 @@ impl HysteronApp {
         state
     }
 
-    fn bar_ui(&mut self, ui: &mut egui::Ui, present: &Document) {
+    fn bar_ui(&mut self, ui: &mut egui::Ui, present: &Document, tables: &[&'static str]) {
         let pages: Vec<_> = self.pages.iter().map(|p| (p.id, p.title)).collect();
-        let front = self.pages.get(self.front);
-        let tables: Vec<_> = front.map_or_else(Vec::new, |p| p.view.offer().tables.names);
         let bar = Bar {
             pages: &pages,
-            tables: &tables,
+            tables,
             front: self.front,
             undo: [
                 self.history.has_undo(present),

@@ -21,21 +21,18 @@ mod motion;
 mod notice;
 mod page;
 mod pages;
-#[cfg(not(target_arch = "wasm32"))]
-mod program;
 mod purpose;
 mod purpose_line;
 mod recent;
 mod save;
 mod shortcuts;
-mod start;
 mod theme;
 mod widgets;
 mod zoom;
 
 pub use app::HysteronApp;
 #[cfg(not(target_arch = "wasm32"))]
-pub use program::run;
-pub use save::GivenFile;
+pub use app::program::run;
 #[cfg(target_arch = "wasm32")]
-pub use start::run_web;
+pub use app::start::run_web;
+pub use save::GivenFile;

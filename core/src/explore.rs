@@ -1,17 +1,16 @@
 //! Everything about one relay loop, for drawing: prediction beside simulation.
 
-use std::f64::consts::PI;
-
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::limit_cycle::{
-    Cycle, ExactCycle, Harmonic, Intersection, Prediction, Trust, dominant, harmonics, predict,
-    typical_frequency,
+    Cycle, ExactCycle, Harmonic, Intersection, LongRun, Outcome, Prediction, Trust, dominant,
+    harmonics, predict, typical_frequency,
 };
 use crate::plant::{PlantError, StateSpace, TransferFunction, presets};
 use crate::relay::{Relay, RelayError};
-use crate::simulate::{Cut, Noise, Options, SimulateError, Trajectory, run, simulate};
+use crate::simulate::{Noise, Options, SimulateError, Trajectory, run, simulate};
+use crate::tuning::{RelayGain, relay_gain};
 
 /// A relay loop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,10 +78,14 @@ pub struct ExploreData {
     pub intersections: Vec<Intersection>,
     /// The exact cycle to which the loop goes, or the first that there is.
     pub exact: Option<Cycle>,
-    /// The cycle into which the simulation settles; with noise, the mean of its later half.
+    /// What becomes of the loop in the end; `None` where no run is long enough to see it.
+    pub outcome: Option<Outcome>,
+    /// The cycle into which the simulation settles; with noise, the mean of many.
     pub simulated: Option<Cycle>,
     /// Switches of the relay per exact period in the later half of the simulation; 2 without noise.
     pub switches_per_period: Option<f64>,
+    /// Ultimate gain by the relay, equation (9), with what the cycle shows of the plant and the true limits.
+    pub ultimate: Option<RelayGain>,
     /// First harmonics of the output in the exact cycle.
     pub harmonics: Vec<Harmonic>,
     /// How far the describing function can be trusted here.
@@ -145,9 +148,6 @@ const NYQUIST_POINTS: usize = 600;
 const PERIODS: f64 = 14.0;
 const SAMPLES_PER_PERIOD: f64 = 128.0;
 
-/// Swings of the last cycles that may differ by this share and still count as settled.
-const SETTLED: f64 = 1e-3;
-
 /// Harmonics that are shown.
 const HARMONICS: usize = 9;
 
@@ -156,11 +156,6 @@ impl ExploreData {
     pub fn describing(&self) -> Option<&Intersection> {
         dominant(&self.intersections)
     }
-}
-
-/// Ultimate gain by equation (4), `K_u = 4k/(pi a)`; `amplitude` is half of peak to peak.
-pub fn ultimate_gain(relay: &Relay, amplitude: f64) -> f64 {
-    4.0 * relay.gain / (PI * amplitude)
 }
 
 /// Computes everything; the same input gives the same data.
@@ -182,10 +177,21 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
     let exact = main_cycle(&prediction, guess);
     let period = exact.map_or(guess, |c| c.cycle.period);
     let step = period / SAMPLES_PER_PERIOD;
-    let run = trajectory(input, &plant.state_space(), lag, step)?;
-    let simulated = match input.noise {
-        None => settled(&run),
-        Some(_) => mean_cycle(&run),
+    let space = plant.state_space();
+    let run = trajectory(input, &space, lag, step)?;
+    let long_run = LongRun {
+        plant,
+        space: &space,
+        relay,
+        initial: None,
+        push: step,
+        noise: input.noise,
+    }
+    .run(&prediction)?;
+    let simulated = long_run.cycle;
+    let trust = match long_run.outcome {
+        Some(outcome) => prediction.trust_after(plant, relay, outcome),
+        None => prediction.trust.clone(),
     };
     let phase: Vec<[f64; 2]> = run
         .output
@@ -208,10 +214,15 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
         simulated,
         switches_per_period,
         harmonics: exact.map_or_else(Vec::new, |c| harmonics(plant, relay, c, HARMONICS)),
-        text: sentence(simulated, exact, &run, input.noise.is_some()),
+        ultimate: exact
+            .map(|c| c.cycle)
+            .or(simulated)
+            .map(|c| relay_gain(plant, relay, &c)),
+        text: long_run.text,
+        outcome: long_run.outcome,
         stability: stability(exact, &prediction),
         swing: swing(&run.time, &run.output),
-        trust: prediction.trust,
+        trust,
         intersections: prediction.describing_function,
         input: corners(&run.input, end),
         time: run.time,
@@ -264,33 +275,6 @@ fn check_noise(duration: f64, noise: Option<Noise>) -> Result<(), SimulateError>
     })
 }
 
-/// Period and amplitude of the last cycle, if the run has settled into one.
-fn settled(run: &Trajectory) -> Option<Cycle> {
-    let (period, amplitude) = run.settled(SETTLED)?;
-    Some(Cycle {
-        period,
-        amplitude,
-        stable: Some(true),
-    })
-}
-
-/// Mean period and amplitude of the later half of a run. Noise may add switches; the periods are then
-/// shorter, and that is what there is to see.
-fn mean_cycle(run: &Trajectory) -> Option<Cycle> {
-    let rises = &run.rises[run.rises.len() / 2..];
-    let swings = &run.swings[run.swings.len() / 2..];
-    let [first, .., last] = rises else {
-        return None;
-    };
-    let sizes: f64 = swings.iter().map(|s| 0.5 * (s[1] - s[0])).sum();
-    let amplitude = sizes / swings.len() as f64;
-    amplitude.is_finite().then_some(Cycle {
-        period: (last - first) / (rises.len() - 1) as f64,
-        amplitude,
-        stable: None,
-    })
-}
-
 /// Switches per second after `from` s, counted from the first to the last of them, so that the ends of
 /// the run do not matter.
 fn switch_rate(run: &Trajectory, from: f64) -> Option<f64> {
@@ -299,56 +283,6 @@ fn switch_rate(run: &Trajectory, from: f64) -> Option<f64> {
     let last = all().copied().reduce(f64::max)?;
     let rate = (all().count() - 1) as f64 / (last - first);
     rate.is_finite().then_some(rate)
-}
-
-fn sentence(
-    simulated: Option<Cycle>,
-    exact: Option<&ExactCycle>,
-    run: &Trajectory,
-    noisy: bool,
-) -> String {
-    let values = |c: Cycle| {
-        let [period, amplitude] = [c.period, c.amplitude].map(significant);
-        format!("period {period} s, amplitude {amplitude}")
-    };
-    match (simulated, exact) {
-        _ if run.cut == Some(Cut::Chattering) => {
-            "The relay chatters: it switches without end, the output slides along the threshold."
-                .to_owned()
-        }
-        (None, _) if run.cut == Some(Cut::TooManySwitches) => {
-            "The relay switches so often that the run was cut: make it shorter.".to_owned()
-        }
-        _ if run.cut == Some(Cut::TooFast) => {
-            "A part of the plant is far too fast for the rest: the run was cut. Leave that part out."
-                .to_owned()
-        }
-        (Some(c), _) if noisy => format!("It oscillates in the noise: mean {}.", values(c)),
-        (Some(c), _) => format!("It oscillates: {}.", values(c)),
-        (None, _) if !run.sliding.is_empty() => {
-            "The output slides along the threshold: the relay balances it there.".to_owned()
-        }
-        (None, Some(c)) if c.cycle.stable == Some(true) => {
-            format!("It approaches an oscillation: {}.", values(c.cycle))
-        }
-        (None, _) => {
-            "It does not settle into an oscillation: the relay never comes back, or not regularly."
-                .to_owned()
-        }
-    }
-}
-
-/// A value with four significant digits.
-fn significant(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-4..1e5).contains(&size) {
-        return format!("{value:.3e}");
-    }
-    let decimals = (3.0 - libm::floor(libm::log10(size))).max(0.0) as usize;
-    format!("{value:.decimals$}")
 }
 
 fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> String {

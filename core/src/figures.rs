@@ -1,8 +1,9 @@
 //! The relay loop of the paper's Figs. 3, 4 and 5: what they show, and whether it is so.
 
-use crate::explore::{ExploreData, ExploreError, ExploreInput, compute, ultimate_gain};
+use crate::explore::{ExploreData, ExploreError, ExploreInput, compute};
 use crate::relay::Relay;
 use crate::simulate::Noise;
+use crate::tuning::ultimate_gain;
 
 /// A figure of the paper that can be set up and checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,7 +182,7 @@ fn hysteresis_costs(input: &ExploreInput, data: &ExploreData) -> Result<Vec<Chec
     let (Some(old), Some(new)) = (compute(&before)?.exact, data.exact) else {
         return Ok(none());
     };
-    let gain = |amplitude| ultimate_gain(&input.relay, amplitude);
+    let gain = |amplitude| ultimate_gain(input.relay.gain, amplitude);
     let compared = |name, old: f64, new: f64, holds| {
         check(
             format!("{name}: {old:.3} at ε = {HYSTERESIS}, now {new:.3}"),

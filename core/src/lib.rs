@@ -6,29 +6,29 @@
 //!
 //! | module | question |
 //! |---|---|
+//! | [`crew`] | who does the parts of a computation? |
+//! | [`progress`] | how far has a computation come? |
+//! | [`uncertain`] | how sure is a value, in words? |
+//! | [`measurement`] | what was measured? |
 //! | [`relay`] | what does the relay do? |
 //! | [`plant`] | what does it act on? |
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
-//! | [`tuning`] | how do I tune a controller from it? |
+//! | [`tuning`] | how do I tune a controller from it, or from a measured test? |
 //! | [`explore`] | everything about one loop at once |
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |
-//! | [`measurement`] | what was measured? |
-//! | [`backlash`] | how wide is the hidden gap? |
 //! | [`model`] | what does a model say to a measured input? |
-//! | [`progress`] | how far has a computation come? |
-//! | [`crew`] | who does the parts of a computation? |
 //! | [`drive`] | what does a drive with a hidden gap do? |
-//! | [`scenario`] | a loop or a drive in a file |
+//! | [`backlash`] | how wide is the hidden gap? |
+//! | [`rig`] | what would a bench measure, by other physics? |
 //! | [`effect`] | which physics can be added? |
 //! | [`diagnosis`] | what does a finished diagnosis say? |
 //! | [`user_model`] | what does the user know of the model? |
-//! | [`rig`] | what would a bench measure, by other physics? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
-//! | [`diagnosis`] | what was found, as plain data |
-//! | [`mystery`] | which effect is hidden? |
 //! | [`report`] | what was found, on one page |
+//! | [`mystery`] | which effect is hidden? |
+//! | [`scenario`] | a loop or a drive in a file |
 #![warn(missing_docs, clippy::disallowed_methods)]
 
 pub mod backlash;
@@ -52,6 +52,7 @@ pub mod progress;
 pub mod relay;
 pub mod report;
 pub mod rig;
+mod root;
 pub mod scenario;
 mod simplex;
 pub mod simulate;

@@ -284,7 +284,7 @@ pub enum Quantity {
     Period,
     /// Exact amplitude, half of peak to peak, unit of the output.
     Amplitude,
-    /// Ultimate gain as the experiment gives it, equation (4): `4 k/(pi a)`.
+    /// Ultimate gain as the experiment gives it, equation (9): `4 k/(pi a)`.
     UltimateGain,
     /// By how much the describing function's period is off, per cent of the exact one.
     PeriodError,

@@ -30,6 +30,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use crate::drive::{DriveError, DriveFile, DriveInput};
+use crate::limit_cycle::{LongRun, LongRunResult, Prediction};
 use crate::plant::{
     MAX_ORDER, ParseError, PlantError, StateSpace, TransferFunction, ZeroPoleGain, parse,
 };
@@ -232,15 +233,37 @@ impl Scenario {
         self.plant.dead_time + self.relay.delay
     }
 
+    /// What becomes of the loop in the end, however long that takes, from the file's start and in its noise.
+    ///
+    /// # Errors
+    /// What is wrong with the noise.
+    pub fn long_run(&self, prediction: &Prediction) -> Result<LongRunResult, SimulateError> {
+        let run = LongRun {
+            plant: &self.plant,
+            space: &self.space,
+            relay: &self.relay,
+            initial: self.options.initial.as_ref(),
+            push: self.push(),
+            noise: self.options.noise,
+        };
+        run.run(prediction)
+    }
+
+    /// How long an ideal relay pushes from rest before it begins to look at the output, s.
+    fn push(&self) -> f64 {
+        let options = &self.options;
+        options.step.unwrap_or(options.duration / SAMPLES)
+    }
+
     /// Runs the loop as the file says. From rest an ideal relay without any delay would never leave
     /// its threshold; it begins after one step of upward push.
     pub fn run(&self) -> Result<Trajectory, SimulateError> {
         let mut options = self.options.clone();
         let stuck = self.relay.hysteresis == 0.0 && self.lag() == 0.0;
         if stuck && options.initial.is_none() {
-            let step = options.step.unwrap_or(options.duration / SAMPLES);
-            let flow = Flow::single(&self.space, step);
-            let pushed = flow.after(&[0.0; MAX_ORDER], &[self.relay.output(false)], step);
+            let push = self.push();
+            let flow = Flow::single(&self.space, push);
+            let pushed = flow.after(&[0.0; MAX_ORDER], &[self.relay.output(false)], push);
             options.initial = Some(flow.outer(&pushed));
         }
         run(&self.space, &self.relay, self.lag(), &options)

@@ -171,7 +171,7 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     harness.get_by_label("A file of MATLAB does not say what its columns are.");
     assert_eq!(
         missing(&harness),
-        json!(["Time", "Input", "Position or Velocity"])
+        json!(["Time or Sampling period", "Input", "Position or Velocity"])
     );
     assert!(open_it_is_disabled(&harness));
     map_matrix(&mut harness);
@@ -269,6 +269,7 @@ fn a_csv_with_names_of_its_own_is_guessed_and_mapped() {
             "kind": "drive",
             "map": "t=Zeit_ms [ms], u=Strom [A], x1=Encoder [counts, 1000000/rev], v1=Drehzahl [rpm]",
             "torque_constant": "0.05 N m/A",
+            "period": "",
         })
     );
     click(&mut harness, "Open it");
@@ -479,7 +480,7 @@ fn what_is_broken_is_refused_without_a_form() {
         (
             "new.mat",
             b"MATLAB 7.3 MAT-file".to_vec(),
-            "save it with -v7",
+            "save it from MATLAB with -v7",
         ),
         ("short.csv", b"a,b,c\n1,2,3\n".to_vec(), "is not a header"),
     ] {

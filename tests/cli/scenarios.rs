@@ -64,29 +64,35 @@ fn every_scenario_in_the_assets_runs_and_is_predicted() {
 fn fig_3_in_json_as_the_contract_says() {
     let found = limit_cycle("fig-3-third-order-lag.toml");
     assert_eq!(found["schema"], 1);
-    // The reference table's row, and w = sqrt(3), P = -1/8 by hand.
+    // The reference table's row, and by hand: w of equations (5) and (6), and w = sqrt(3), P = -1/8 for the truth.
     for cycle in [&found["exact"][0], &found["simulated"]] {
-        close(&cycle["period"], 3.679_750_670_864_8, 1e-9);
-        close(&cycle["amplitude"], 0.163_061_483_430_071, 1e-9);
+        close(&cycle["period"], 4.787_671_942_045_41, 1e-9);
+        close(&cycle["amplitude"], 0.285_687_386_127_379, 1e-9);
     }
     close(
         &found["exact"][0]["half_periods"][0],
-        0.5 * 3.679_750_670_864_8,
+        0.5 * 4.787_671_942_045_41,
         1e-9,
     );
-    close(
-        &found["describing_function"][0]["omega"],
-        3.0_f64.sqrt(),
-        1e-9,
-    );
+    close(&found["describing_function"][0]["omega"], 1.325_8, 1e-4);
     close(&found["ultimate"]["gain_true"], 8.0, 1e-9);
     close(
         &found["ultimate"]["period_true"],
         2.0 * std::f64::consts::PI / 3.0_f64.sqrt(),
         1e-9,
     );
-    let relay = 4.0 / (std::f64::consts::PI * 0.163_061_483_430_071);
+    let relay = 4.0 / (std::f64::consts::PI * 0.285_687_386_127_379);
     close(&found["ultimate"]["gain_relay"], relay, 1e-9);
+    // What the cycle shows: 1/(jw + 1)^3 at its frequency.
+    let omega = 2.0 * std::f64::consts::PI / 4.787_671_942_045_41;
+    let phase = -3.0 * omega.atan().to_degrees();
+    close(&found["ultimate"]["phase_deg"], phase, 1e-9);
+    close(
+        &found["ultimate"]["gain_shown"],
+        omega.hypot(1.0).powi(3),
+        1e-9,
+    );
+    assert_eq!(found["outcome"], "limit_cycle");
     assert_eq!(found["exists"], true);
     assert_eq!(found["exact"][0]["stable"], true);
 }

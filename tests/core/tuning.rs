@@ -44,10 +44,10 @@ fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-// ---- equation (4)
+// ---- equation (9)
 
 #[test]
-fn equation_4_lag_with_dead_time_relay_and_true_ultimate_point() {
+fn equation_9_lag_with_dead_time_relay_and_true_ultimate_point() {
     for (dead_time, by_relay, exact) in [
         (0.1_f64, 13.380, 16.351),
         (0.5, 3.236, 3.807),
@@ -60,21 +60,26 @@ fn equation_4_lag_with_dead_time_relay_and_true_ultimate_point() {
         let half = (2.0 * dead_time.exp() - 1.0).ln();
         close("period", test.period, 2.0 * half, 1e-10);
         let report = compare(&test, &plant);
-        close("Ku by relay", report.plain.gain, by_relay, 5e-4);
+        close("Ku by relay", report.by_relay.gain, by_relay, 5e-4);
         // Phase crossover: atan w + w D = pi.
         let w = root(0.0, PI / dead_time, |w| w.atan() + w * dead_time - PI);
         let truth = report.truth.unwrap();
         close("true Ku", truth.gain, w.hypot(1.0), 1e-12);
         close("true Ku in the issue", truth.gain, exact, 5e-4);
         close("true Tu", truth.period, 2.0 * PI / w, 1e-12);
-        let expected = report.plain.gain / truth.gain - 1.0;
-        close("error of Ku", report.plain_error.unwrap(), expected, 1e-12);
+        let expected = report.by_relay.gain / truth.gain - 1.0;
+        close(
+            "error of Ku",
+            report.by_relay_error.unwrap(),
+            expected,
+            1e-12,
+        );
         assert!(report.amplitude_convention.contains("half of peak to peak"));
     }
 }
 
 #[test]
-fn equation_4_with_hysteresis_beside_the_plain_formula() {
+fn equation_9_with_hysteresis_beside_the_gain_on_the_real_axis() {
     let plant = TransferFunction::new(&[1.0], &[1.0, 3.0, 3.0, 1.0], 0.0);
     let test = RelayTest::run(&plant, &Relay::default()).unwrap();
     // Period and amplitude from the table of exact limit cycles.
@@ -82,9 +87,9 @@ fn equation_4_with_hysteresis_beside_the_plain_formula() {
     close("amplitude", test.amplitude, a, 1e-10);
     close("period", test.period, 4.787_671_942_045_41, 1e-10);
     let report = compare(&test, &plant);
-    close("plain", report.plain.gain, 4.0 / (PI * a), 1e-9);
-    let corrected = 4.0 / (PI * (a * a - 0.01).sqrt());
-    close("corrected", report.corrected.gain, corrected, 1e-9);
+    close("by the relay", report.by_relay.gain, 4.0 / (PI * a), 1e-9);
+    let on_axis = 4.0 / (PI * (a * a - 0.01).sqrt());
+    close("on the real axis", report.on_real_axis.gain, on_axis, 1e-9);
     let truth = report.truth.unwrap();
     close("true gain", truth.gain, 8.0, 1e-12);
     close(
@@ -94,11 +99,11 @@ fn equation_4_with_hysteresis_beside_the_plain_formula() {
         1e-12,
     );
     // Allowing for the hysteresis brings the gain nearer to the truth.
-    assert!(report.corrected_error.unwrap().abs() < report.plain_error.unwrap().abs());
+    assert!(report.on_real_axis_error.unwrap().abs() < report.by_relay_error.unwrap().abs());
 }
 
 #[test]
-fn equation_4_true_point_through_integrators_dead_time_and_far_poles() {
+fn equation_9_true_point_through_integrators_dead_time_and_far_poles() {
     let check = |num: &[f64], den: &[f64], dead_time: f64, gain: f64, omega: f64| {
         let plant = TransferFunction::new(num, den, dead_time);
         let truth = true_ultimate(&plant).unwrap_or_else(|| panic!("{den:?}: none"));
@@ -286,10 +291,10 @@ fn equation_8_without_an_answer_says_so() {
     );
 }
 
-// ---- equation (9)
+// ---- equation (4)
 
 #[test]
-fn equation_9_controller_moves_m_exactly_to_s() {
+fn equation_4_controller_moves_m_exactly_to_s() {
     let from = NyquistPoint {
         omega: 1.7,
         value: [-0.3, -0.11],
@@ -325,7 +330,7 @@ fn equation_9_controller_moves_m_exactly_to_s() {
 }
 
 #[test]
-fn equation_9_without_filter_is_the_closed_form_of_astrom_and_hagglund_1984() {
+fn equation_4_without_filter_is_the_closed_form_of_astrom_and_hagglund_1984() {
     let (ku, omega, phi, ratio) = (3.0, 2.0, 0.7_f64, 4.0);
     let from = NyquistPoint {
         omega,
@@ -347,7 +352,7 @@ fn equation_9_without_filter_is_the_closed_form_of_astrom_and_hagglund_1984() {
 }
 
 #[test]
-fn equation_9_targets_out_of_reach_are_named_with_the_reach() {
+fn equation_4_targets_out_of_reach_are_named_with_the_reach() {
     let from = NyquistPoint {
         omega: 1.0,
         value: [-0.5, 0.0],

@@ -19,6 +19,7 @@ pub mod mat;
 pub mod parameter;
 pub mod process_cases;
 pub mod proposed;
+pub mod relay_rig;
 pub mod rig;
 pub mod score;
 pub mod servo;

@@ -20,6 +20,8 @@ const HELP: &str = "cargo xtask COMMAND
   web             build the page into dist/
   serve [--port N]  serve dist/ on http://127.0.0.1:N (8080)
   browser-test    drive dist/ in headless Chromium
+  fuzz [--minutes N] [--inputs N] [--seed N]
+                  give every reader inputs that were made wrong
   archives-test   pack what the tests have built, unpack it, and use it
   release         pack the program and the page into target/archives/
 ";
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
             .map_err(|_| format!("'{port}' is not a port; expected a number such as 8080"))
             .and_then(serve::forever),
         ["browser-test"] => browser::test(),
+        ["fuzz", options @ ..] => fuzz(options),
         ["archives-test"] => archives::test(),
         ["release"] => release::build(),
         [] | ["help" | "--help" | "-h"] => {
@@ -52,4 +55,10 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Runs the program that makes wrong inputs; what it says is the result.
+fn fuzz(options: &[&str]) -> Result<(), String> {
+    let run = ["run", "--quiet", "-p", "hysteron-fuzz", "--"];
+    run::run("cargo", &[&run[..], options].concat())
 }

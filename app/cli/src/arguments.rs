@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use hysteron_core::diagnosis::Limits;
-use hysteron_core::measurement::{self, Mapping, TorqueConstant};
+use hysteron_core::measurement::{self, Mapping, Period, TorqueConstant};
 
 use crate::output::Format;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file; many files: one
-    /// result each
+    /// CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], JSON, a log of names with values, or a
+    /// MATLAB file; many files: one result each
     #[arg(value_name = "FILE.csv", required = true)]
     pub files: Vec<PathBuf>,
     /// Kind of system; guessed from the columns if not given
@@ -25,6 +25,9 @@ pub struct Arguments {
     /// multiples of it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub torque_constant: Option<AsWritten<TorqueConstant>>,
+    /// The time from one sample to the next where the file has no times, such as 4s, 0.5ms or 100Hz
+    #[arg(long, value_name = "TIME")]
+    pub period: Option<AsWritten<Period>>,
     /// For a person or for a program; of many files one block or one line of JSON each
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
@@ -62,6 +65,7 @@ impl Arguments {
             kind: None,
             map: None,
             torque_constant: None,
+            period: None,
             format: Format::Text,
             model: None,
             effect: Vec::new(),
@@ -116,6 +120,7 @@ fn limits(text: &str) -> Result<String, String> {
     }
     let mut any = Limits {
         input: 1.0,
+        side: 0,
         duration: 1.0,
         step: 1.0,
         speed: None,

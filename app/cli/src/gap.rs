@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use hysteron_core::backlash::{BacklashMap, GapEstimate, backlash_map, estimate_gap};
-use hysteron_core::measurement::{ImportOptions, Mapping, Quantity, TorqueConstant};
+use hysteron_core::measurement::{ImportOptions, Mapping, Period, Quantity, TorqueConstant};
 use serde_json::json;
 
 use crate::output::Format;
@@ -27,6 +27,9 @@ pub struct Arguments {
     /// What a current, voltage or command as input becomes, such as "0.05 N m/A"; the gap does not depend on it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     torque_constant: Option<TorqueConstant>,
+    /// The time from one sample to the next where the file has no times, such as 0.5ms or 2kHz
+    #[arg(long, value_name = "TIME")]
+    period: Option<Period>,
     /// For a person or for a program
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -38,6 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         kind: None,
         mapping: arguments.map.clone().unwrap_or_default(),
         torque_constant: arguments.torque_constant,
+        period: arguments.period,
     };
     let (measurement, _) = read(&arguments.file, &options)?;
     let name = &measurement.name;

@@ -16,6 +16,7 @@ mod read;
 mod screen;
 mod simulate;
 mod text;
+mod tune;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -41,6 +42,8 @@ pub enum Command {
     Gap(gap::Arguments),
     /// Say in a second what could explain a record, by regression and without a simulation.
     Screen(screen::Arguments),
+    /// From a measured relay test, or the log of an auto-tuner, to gains: what it shows, models, and why it stalls.
+    Tune(tune::Arguments),
 }
 
 impl Command {
@@ -52,6 +55,7 @@ impl Command {
             Self::LimitCycle(arguments) => finish(limit_cycle::run(arguments)),
             Self::Gap(arguments) => finish(gap::run(arguments)),
             Self::Screen(arguments) => finish(screen::run(arguments)),
+            Self::Tune(arguments) => finish(tune::run(arguments)),
         }
     }
 }

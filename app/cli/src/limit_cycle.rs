@@ -1,13 +1,11 @@
 //! `hysteron limit-cycle SCENARIO.toml`
 
-use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use hysteron_core::limit_cycle::{Prediction, describing_function, dominant, predict};
-use hysteron_core::relay::Relay;
+use hysteron_core::limit_cycle::{Cycle, ExactCycle, LongRunResult, Prediction, Trust, predict};
 use hysteron_core::scenario::{AnyScenario, Scenario};
-use hysteron_core::simulate::Options;
+use hysteron_core::tuning::{RelayGain, StabilityLimits, relay_gain, stability_limits};
 use serde_json::json;
 
 use crate::limit_cycle_drive::DriveReport;
@@ -17,11 +15,8 @@ use crate::simulate;
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
 
-/// Periods that are simulated, so that the loop has time to settle.
-const PERIODS: f64 = 200.0;
-
-/// Share by which the last two cycles may differ and still count as settled.
-const SETTLED: f64 = 1e-6;
+/// Unstable cycles of a kind that are listed one by one; a dead time has infinitely many.
+const LISTED: usize = 3;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -33,16 +28,13 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Period and amplitude.
-type Pair = Option<(f64, f64)>;
-
 struct Report {
     prediction: Prediction,
-    simulated: Pair,
-    /// By equation (4) from amplitude and period of the cycle.
-    ultimate_relay: Pair,
-    /// Where the plant's own phase is -180 degrees.
-    ultimate_true: Pair,
+    long_run: LongRunResult,
+    trust: Trust,
+    /// Of the cycle in the end, or else of the first exact one.
+    ultimate: Option<RelayGain>,
+    limits: StabilityLimits,
 }
 
 /// The report, or one line that says what is wrong with the input.
@@ -67,52 +59,37 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
 }
 
 fn report(scenario: &Scenario) -> Result<Report, String> {
-    let prediction = predict(&scenario.plant, &scenario.relay).map_err(|e| e.to_string())?;
-    let simulated = simulated(scenario, &prediction)?;
-    let exact = prediction
-        .exact
-        .iter()
-        .find(|c| c.cycle.stable == Some(true));
-    let cycle = exact
-        .map(|c| (c.cycle.period, c.cycle.amplitude))
-        .or(simulated);
-    let ideal = Relay {
-        gain: 1.0,
-        hysteresis: 0.0,
-        ..Relay::default()
+    let (plant, relay) = (&scenario.plant, &scenario.relay);
+    let prediction = predict(plant, relay).map_err(|e| e.to_string())?;
+    let long_run = scenario.long_run(&prediction).map_err(|e| e.to_string())?;
+    let trust = match long_run.outcome {
+        Some(outcome) => prediction.trust_after(plant, relay, outcome),
+        None => prediction.trust.clone(),
     };
-    let crossover = describing_function(&scenario.plant, &ideal);
+    let stable = |c: &&ExactCycle| c.cycle.stable == Some(true);
+    let exact = prediction.exact.iter().find(stable).map(|c| c.cycle);
     Ok(Report {
-        simulated,
-        ultimate_relay: cycle.map(|(period, a)| (4.0 * scenario.relay.gain / (PI * a), period)),
-        ultimate_true: dominant(&crossover)
-            .map(|i| (1.0 / i.point[0].hypot(i.point[1]), i.cycle.period)),
+        ultimate: exact
+            .or(long_run.cycle)
+            .map(|c| relay_gain(plant, relay, &c)),
+        limits: stability_limits(plant),
         prediction,
+        long_run,
+        trust,
     })
 }
 
-/// A run that is long enough to settle, from the state in the file.
-fn simulated(scenario: &Scenario, prediction: &Prediction) -> Result<Pair, String> {
-    let period = prediction
-        .exact
-        .iter()
-        .map(|c| c.cycle.period)
-        .chain(
-            prediction
-                .describing_function
-                .iter()
-                .map(|i| i.cycle.period),
-        )
-        .fold(0.0, f64::max);
-    let duration = scenario.options.duration.max(PERIODS * period);
-    let mut longer = scenario.clone();
-    longer.options = Options {
-        duration,
-        step: None,
-        ..scenario.options.clone()
-    };
-    let result = longer.run();
-    Ok(result.map_err(|e| e.to_string())?.settled(SETTLED))
+impl Report {
+    /// Whether there is an oscillation that lasts.
+    fn exists(&self) -> bool {
+        let stable = |c: &ExactCycle| c.cycle.stable == Some(true);
+        self.long_run.cycle.is_some() || self.prediction.exact.iter().any(stable)
+    }
+
+    /// Outcome and how far the describing function holds.
+    fn sentences(&self) -> String {
+        format!("{} {}", self.long_run.text, self.trust.text)
+    }
 }
 
 fn json(report: &Report) -> serde_json::Value {
@@ -133,69 +110,99 @@ fn json(report: &Report) -> serde_json::Value {
                    "range": c.range, "stable": c.cycle.stable, "multiplier": c.multiplier})
         })
         .collect();
-    let pair = |pair: Pair, part: fn((f64, f64)) -> f64| pair.map(part);
+    let run = &report.long_run;
+    let scatter = |i: usize| run.scatter.map(|s| s[i]);
     json!({
         "schema": SCHEMA,
+        "outcome": run.outcome,
         "describing_function": describing,
         "exact": exact,
-        "simulated": report.simulated.map(|(period, amplitude)| json!({"period": period, "amplitude": amplitude})),
-        "ultimate": {
-            "gain_relay": pair(report.ultimate_relay, |u| u.0),
-            "gain_true": pair(report.ultimate_true, |u| u.0),
-            "period_relay": pair(report.ultimate_relay, |u| u.1),
-            "period_true": pair(report.ultimate_true, |u| u.1),
-        },
-        "exists": !p.exact.is_empty() || report.simulated.is_some(),
-        "text": p.text,
+        "continuum": p.continuum.as_ref().map(|cycles| {
+            cycles.iter().map(|c| json!({"period": c.period, "amplitude": c.amplitude})).collect::<Vec<_>>()
+        }),
+        "simulated": run.cycle.map(|c| json!({
+            "period": c.period, "amplitude": c.amplitude, "stable": c.stable,
+            "std_dev_period": scatter(0), "std_dev_amplitude": scatter(1),
+        })),
+        "ultimate": ultimate_json(report),
+        "exists": report.exists(),
+        "text": report.sentences(),
+    })
+}
+
+fn ultimate_json(report: &Report) -> serde_json::Value {
+    let relay = report.ultimate.as_ref();
+    let StabilityLimits { lower, upper } = report.limits;
+    let finite = |period: f64| Some(period).filter(|p| p.is_finite());
+    json!({
+        "gain_relay": relay.map(|u| u.by_relay.gain),
+        "period_relay": relay.map(|u| u.by_relay.period),
+        "phase_deg": relay.map(|u| u.shown.phase_deg),
+        "gain_shown": relay.map(|u| 1.0 / u.shown.magnitude),
+        "gain_true": upper.map(|u| u.gain),
+        "period_true": upper.and_then(|u| finite(u.period)),
+        "gain_lower": lower.map(|u| u.gain),
+        "period_lower": lower.and_then(|u| finite(u.period)),
     })
 }
 
 fn text(report: &Report) -> String {
     let p = &report.prediction;
-    let mut out = format!("{}\n\n", p.text);
-    let row = |out: &mut String, name: &str, period: f64, amplitude: f64, stable: Option<bool>| {
-        let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
-        let _ = writeln!(
-            out,
-            "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
-        );
-    };
+    let mut out = format!("{}\n\n", report.sentences());
     let _ = writeln!(
         out,
         "{:<22} {:>16} {:>16}   stable",
         "", "period [s]", "amplitude"
     );
-    for i in &p.describing_function {
-        row(
-            &mut out,
-            "describing function",
-            i.cycle.period,
-            i.cycle.amplitude,
-            i.cycle.stable,
-        );
-    }
-    for c in &p.exact {
-        row(
-            &mut out,
-            "exact",
-            c.cycle.period,
-            c.cycle.amplitude,
-            c.cycle.stable,
-        );
-    }
-    if let Some((period, amplitude)) = report.simulated {
-        row(&mut out, "simulated", period, amplitude, Some(true));
+    let describing: Vec<Cycle> = p.describing_function.iter().map(|i| i.cycle).collect();
+    rows(&mut out, "describing function", &describing);
+    let exact: Vec<Cycle> = p.exact.iter().map(|c| c.cycle).collect();
+    rows(&mut out, "exact", &exact);
+    rows(
+        &mut out,
+        "one of a continuum",
+        p.continuum.as_deref().unwrap_or_default(),
+    );
+    if let Some(cycle) = report.long_run.cycle {
+        row(&mut out, "simulated", &cycle);
     }
     out.push_str("Amplitude: half of peak to peak.\n");
-    let mut ultimate = |name: &str, pair: Pair| {
-        if let Some((gain, period)) = pair {
-            let _ = writeln!(out, "{name}: {gain:.6} at a period of {period:.6} s");
-        }
-    };
-    ultimate(
-        "Ultimate gain by the relay, 4k/(pi a)",
-        report.ultimate_relay,
-    );
-    ultimate("Ultimate gain of the plant", report.ultimate_true);
+    let ultimate = report.ultimate.as_ref().map(|u| u.text.as_str());
+    let limits = report.limits.text();
+    let _ = writeln!(out, "{}", ultimate.unwrap_or(limits.trim_start()));
     out
+}
+
+fn row(out: &mut String, name: &str, cycle: &Cycle) {
+    let stable = cycle
+        .stable
+        .map_or("not known", |s| if s { "yes" } else { "no" });
+    let (period, amplitude) = (cycle.period, cycle.amplitude);
+    let _ = writeln!(
+        out,
+        "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
+    );
+}
+
+/// All cycles of a kind, but for a long family of unstable ones, of which the longest and the shortest stand for all.
+fn rows(out: &mut String, name: &str, cycles: &[Cycle]) {
+    let mut sorted: Vec<&Cycle> = cycles.iter().collect();
+    sorted.sort_by(|a, b| b.period.total_cmp(&a.period));
+    let (family, single): (Vec<&Cycle>, Vec<&Cycle>) =
+        sorted.into_iter().partition(|c| c.stable == Some(false));
+    for cycle in single {
+        row(out, name, cycle);
+    }
+    let (listed, folded) = family.split_at(family.len().min(LISTED));
+    for cycle in listed {
+        row(out, name, cycle);
+    }
+    if let Some(last) = folded.last() {
+        let _ = writeln!(
+            out,
+            "{name:<22} {} more of this family down to a period of {:.9} s: all unstable",
+            folded.len(),
+            last.period
+        );
+    }
 }

@@ -103,6 +103,7 @@ pub fn one(file: &Path, setup: &Setup, show: impl FnMut(f64, &str)) -> Result<Re
             .as_ref()
             .map_or_else(Mapping::default, |m| m.value.clone()),
         torque_constant: arguments.torque_constant.as_ref().map(|c| c.value),
+        period: arguments.period.as_ref().map(|p| p.value),
     };
     let (measurement, bytes) = read(file, &options)?;
     of(&measurement, (file, &bytes), setup, show)
@@ -187,6 +188,10 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
         (
             "--torque-constant",
             arguments.torque_constant.as_ref().map(|m| m.text.as_str()),
+        ),
+        (
+            "--period",
+            arguments.period.as_ref().map(|m| m.text.as_str()),
         ),
         ("--limits", arguments.limits.as_deref()),
     ];

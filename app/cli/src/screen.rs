@@ -7,7 +7,7 @@ use std::time::Instant;
 use hysteron_core::criticism::screen;
 use hysteron_core::diagnosis::{Parameter, Screening, Subset};
 use hysteron_core::effect::name_of;
-use hysteron_core::measurement::{ImportOptions, Mapping, TorqueConstant};
+use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
 use hysteron_core::uncertain::{shown_unit, with_error};
 
 use crate::arguments::Kind;
@@ -28,6 +28,9 @@ pub struct Arguments {
     /// What a current, voltage or command as input becomes, such as "0.05 N m/A"
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     torque_constant: Option<TorqueConstant>,
+    /// Sampling period of a file without a time column, such as 4s or 250Hz
+    #[arg(long, value_name = "PERIOD")]
+    period: Option<Period>,
     /// For a person or for a program
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -39,6 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         kind: arguments.kind.map(Into::into),
         mapping: arguments.map.clone().unwrap_or_default(),
         torque_constant: arguments.torque_constant,
+        period: arguments.period,
     };
     let (measurement, _) = read(&arguments.file, &options)?;
     let started = Instant::now();

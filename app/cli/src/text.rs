@@ -35,6 +35,9 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     for note in notes {
         bullet(&mut out, note);
     }
+    for noise in &diagnosis.noise {
+        bullet(&mut out, &noise.words());
+    }
     for (i, step) in diagnosis.steps.iter().enumerate() {
         let before = i.checked_sub(1).and_then(|k| diagnosis.steps.get(k));
         let is_last = i + 1 == diagnosis.steps.len();
@@ -84,6 +87,10 @@ fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: 
             short(floor)
         ),
     );
+    if step.left > 0.0 {
+        let missed = format!("The model misses {} % of the motion.", percent(step.left));
+        paragraph(out, "  ", &missed);
+    }
     // Of the last model all are said: the body is what it was found to be with all effects.
     let fresh = |p: &&Parameter| match before {
         None => true,
@@ -278,6 +285,18 @@ fn bar(share: f64) -> String {
 }
 
 /// Three significant digits, no exponent within the usual range.
+/// A share in per cent, two digits that count.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent >= 10.0 {
+        format!("{percent:.0}")
+    } else if percent >= 1.0 {
+        format!("{percent:.1}")
+    } else {
+        format!("{percent:.2}")
+    }
+}
+
 fn short(value: f64) -> String {
     match value.abs() {
         a if !a.is_finite() => "unknown".to_owned(),

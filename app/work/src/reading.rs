@@ -1,7 +1,7 @@
 //! How a file is read that does not say itself what its columns are: as the options of the command line say it, so that it
 //! can be kept, and read again elsewhere.
 
-use hysteron_core::measurement::{ImportOptions, Kind, Mapping, MappingError};
+use hysteron_core::measurement::{ImportOptions, Kind, Mapping, MappingError, PeriodError};
 use serde::{Deserialize, Serialize};
 
 /// What a file does not say; nothing where it says everything.
@@ -14,6 +14,8 @@ pub struct Reading {
     pub map: String,
     /// As behind `--torque-constant`.
     pub torque_constant: String,
+    /// As behind `--period`.
+    pub period: String,
 }
 
 impl Reading {
@@ -30,10 +32,15 @@ impl Reading {
             "" => None,
             constant => Some(constant.parse().map_err(|e: MappingError| e.to_string())?),
         };
+        let period = match self.period.as_str() {
+            "" => None,
+            period => Some(period.parse().map_err(|e: PeriodError| e.to_string())?),
+        };
         Ok(ImportOptions {
             kind: self.kind,
             mapping,
             torque_constant,
+            period,
         })
     }
 
@@ -43,6 +50,7 @@ impl Reading {
             ("--kind", self.kind.map_or("", Kind::name)),
             ("--map", self.map.as_str()),
             ("--torque-constant", self.torque_constant.as_str()),
+            ("--period", self.period.as_str()),
         ];
         all.into_iter().filter(|(_, value)| !value.is_empty())
     }
@@ -61,15 +69,18 @@ mod tests {
             kind: Some(Kind::Drive),
             map: "t=time [ms], u=-current [A], v1=-".to_owned(),
             torque_constant: "0.05 N m/A".to_owned(),
+            period: "4s".to_owned(),
         };
         let options = reading.options().expect("options");
         assert_eq!(Ok(&options.mapping), reading.map.parse().as_ref());
+        assert!(options.period.is_some_and(|p| p.seconds() == 4.0));
         assert!(options.torque_constant.is_some_and(|c| c.value() == 0.05));
         let arguments: Vec<_> = reading.arguments().collect();
         let expected = [
             ("--kind", "drive"),
             ("--map", "t=time [ms], u=-current [A], v1=-"),
             ("--torque-constant", "0.05 N m/A"),
+            ("--period", "4s"),
         ];
         assert_eq!(arguments, expected);
         let wrong = Reading {

@@ -63,8 +63,8 @@ fn bytes_of(content: &Content) -> Cow<'_, [u8]> {
     }
 }
 
-/// Columns that a measurement has at least: time, input, output.
-const FEWEST: usize = 3;
+/// Columns that a measurement has at least: input and output, and a period if no column has the times.
+const FEWEST: usize = 2;
 
 /// Why a file is not read.
 enum Refused {
@@ -95,7 +95,13 @@ impl fmt::Display for Refused {
 impl ReadTask {
     fn read(&self, bytes: &[u8]) -> Result<Measurement, Refused> {
         let options = self.reading.options().map_err(Refused::Reading)?;
-        import(&self.file, bytes, &options).map_err(Refused::File)
+        // What the command line would say goes on about options.
+        import(&self.file, bytes, &options).map_err(|error| {
+            Refused::File(ImportError {
+                advice: None,
+                ..error
+            })
+        })
     }
 
     /// Asks for the columns of a file that was refused, if that can help.

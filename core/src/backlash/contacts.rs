@@ -2,6 +2,7 @@
 
 use super::cycles::Cycles;
 use super::drift::Drift;
+use super::estimate::FEWEST_CONTACTS;
 use super::free_motor::FreeMotor;
 use super::gap::Side;
 use super::record::{DIFFERENCE, Record};
@@ -137,16 +138,22 @@ pub(super) fn touches(
     touches.sort_by(|a, b| a.begin.total_cmp(&b.begin));
     loop {
         weigh(&flat, cycles, motor.noise, &mut touches);
+        for touch in &mut touches {
+            let (from, to) = (touch.begin.max(1.0) - 1.0, touch.begin + touch.length + 1.0);
+            let unsure = motor.unsure(from as usize, to.ceil() as usize);
+            touch.jump_noise = libm::hypot(touch.jump_noise, unsure);
+        }
         let doubtful = doubtful(&touches, cycles);
         if !doubtful.contains(&true) {
             for k in 1..touches.len() {
                 let pause = touches[k].begin - touches[k - 1].begin - touches[k - 1].length;
                 touches[k].free = pause > FREE * cycles.length;
             }
+            // A few touches that are none show nothing of what acts all through the cycle.
             return if is_sharp(&flat, &touches, cycles) {
                 (touches, false)
             } else {
-                (Vec::new(), true)
+                (Vec::new(), touches.len() >= FEWEST_CONTACTS)
             };
         }
         drop_marked(&mut touches, &doubtful);

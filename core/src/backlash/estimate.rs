@@ -2,7 +2,7 @@
 
 use crate::measurement::Measurement;
 use crate::model::{SeenContact, SeenLoad, Sharpness};
-use crate::order::{drop_marked, median, range};
+use crate::order::{drop_marked, median, quantile, range};
 
 use super::contacts::{Touch, touches};
 use super::cycles::Cycles;
@@ -37,7 +37,7 @@ const GOOD_TRAVERSES: usize = 3;
 const STRAY: f64 = 0.5;
 
 /// Contacts with one side only from which engagement is believed.
-const FEWEST_CONTACTS: usize = 3;
+pub(super) const FEWEST_CONTACTS: usize = 3;
 
 /// Crossings of the gap within so many cycles, from how many on the load rattles, and the relative error
 /// that this leaves; seen with independent rigs.
@@ -211,13 +211,15 @@ fn two_sided(
         viscous: fit.play.slowing.viscous,
         dry: fit.play.slowing.dry,
     });
-    estimate.quality = if error <= GOOD * gap && estimate.traverses.len() >= GOOD_TRAVERSES {
-        Quality::Good
-    } else if error <= FAIR * gap && estimate.traverses.len() > 1 {
-        Quality::Fair
-    } else {
-        Quality::Poor
-    };
+    let scatter = scatter(&estimate.traverses, gap);
+    estimate.quality =
+        if error <= GOOD * gap && estimate.traverses.len() >= GOOD_TRAVERSES && scatter <= STATED {
+            Quality::Good
+        } else if error <= FAIR * gap && estimate.traverses.len() > 1 {
+            Quality::Fair
+        } else {
+            Quality::Poor
+        };
     state(estimate, gap, error);
     seen_load(events, &fit, place_error)
 }
@@ -267,6 +269,15 @@ fn disagreement(traverses: &[Traverse], gap: f64) -> f64 {
         .map(|t| ((t.gap - gap).abs() - t.std_error.min(AGREE * gap)) / gap)
         .collect();
     median(&mut off)
+}
+
+/// Relative deviation from the gap within which nine in ten traverses lie.
+fn scatter(traverses: &[Traverse], gap: f64) -> f64 {
+    let mut off: Vec<f64> = traverses
+        .iter()
+        .map(|t| (t.gap / gap - 1.0).abs())
+        .collect();
+    quantile(&mut off, 0.9)
 }
 
 /// Whether the load rattles: it flies to and fro so fast that the motor hardly moves meanwhile, so that

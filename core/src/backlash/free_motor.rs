@@ -5,12 +5,16 @@ use nalgebra::{DMatrix, DVector};
 use super::cycles::Cycles;
 use super::drift::Drift;
 use super::record::{DIFFERENCE, Record};
-use crate::order::median;
+use super::switches::Switches;
+use crate::order::{median, quantile, range};
 
 /// How late the input may act, s; delay and lag of the drive lie within.
 const LATE: f64 = 2e-3;
 /// Bounds of the same in samples.
 const LAGS: (usize, usize) = (FRICTION_LAGS, 14);
+
+/// Times the median change anywhere that the median one at a switch may be unexplained if the torque is as written.
+const AT_SWITCHES: f64 = 3.0;
 
 /// Rounds of reweighting; the weights settle within a few.
 const ROUNDS: usize = 8;
@@ -42,6 +46,8 @@ pub(super) struct FreeMotor {
     pub noise: f64,
     /// Acceleration by the relay's gain, rad/s^2 or m/s^2.
     pub acceleration: f64,
+    /// Standard deviation of each sample's change by switches in it, rad/s or m/s; empty where all are known.
+    unsure: Vec<f64>,
 }
 
 impl FreeMotor {
@@ -50,8 +56,66 @@ impl FreeMotor {
     /// least squares with Tukey's biweight takes them out (Beaton and Tukey 1974, Technometrics 16).
     /// Where most cycles push the load they would pass for the motor's own, so that it is then fitted
     /// to the cycles that are free by their drift. `None` where that has no answer.
+    ///
+    /// The torque of a sample is taken as it was written, or with its switches placed inside the samples by the velocity:
+    /// as the record shows it, by what either leaves unexplained where the relay switches.
     pub fn new(record: &Record, cycles: &Cycles) -> Option<Self> {
-        let rows = Rows::new(record, cycles)?;
+        let written = Self::with_input(record, cycles, &record.input)?;
+        let switches = Switches::new(record, 2.0 * cycles.gain);
+        if !record.has_velocity || !written.fails_at(&switches.at) {
+            return Some(written);
+        }
+        let input = switches.mean_input(record);
+        let placed = Self::with_input(record, cycles, &input.mean)
+            .map(|p| p.unsure_of(&input.spread, cycles, record.step));
+        Some(
+            placed
+                .filter(|p| p.left_at(&switches.at) < written.left_at(&switches.at))
+                .unwrap_or(written),
+        )
+    }
+
+    /// The same, not sure of the torque in some samples.
+    fn unsure_of(self, spread: &[f64], cycles: &Cycles, step: f64) -> Self {
+        let per_torque = self.acceleration * step / cycles.gain;
+        Self {
+            // Placed switches leave more than the sensor's noise, from which a contact must stand out.
+            noise: self.noise.max(calm(&self.unexplained, cycles)),
+            unsure: spread.iter().map(|s| s * per_torque).collect(),
+            ..self
+        }
+    }
+
+    /// Standard deviation of the unexplained change of velocity from sample `from` to `to` by switches that could not be
+    /// placed, rad/s or m/s.
+    pub fn unsure(&self, from: usize, to: usize) -> f64 {
+        let part = self
+            .unsure
+            .get(from..to.min(self.unsure.len()))
+            .unwrap_or_default();
+        part.iter().map(|s| s * s).sum::<f64>().sqrt()
+    }
+
+    /// Whether more is unexplained where the relay switches than elsewhere.
+    fn fails_at(&self, switches: &[usize]) -> bool {
+        let mut all: Vec<f64> = self
+            .unexplained
+            .windows(2)
+            .map(|w| (w[1] - w[0]).abs())
+            .collect();
+        self.left_at(switches) > AT_SWITCHES * median(&mut all)
+    }
+
+    /// Median of what is unexplained in these samples.
+    fn left_at(&self, switches: &[usize]) -> f64 {
+        let change =
+            |i: &usize| Some((self.unexplained.get(i + 1)? - self.unexplained.get(*i)?).abs());
+        let mut changes: Vec<f64> = switches.iter().filter_map(change).collect();
+        median(&mut changes)
+    }
+
+    fn with_input(record: &Record, cycles: &Cycles, input: &[f64]) -> Option<Self> {
+        let rows = Rows::new(record, cycles, input)?;
         let mut weights = vec![1.0; rows.target.len()];
         let mut motor = rows.fit(record, cycles, &weights)?;
         for _ in 0..REFITS {
@@ -90,7 +154,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn new(record: &Record, cycles: &Cycles) -> Option<Self> {
+    fn new(record: &Record, cycles: &Cycles, input: &[f64]) -> Option<Self> {
         let lags = ((LATE / record.step).ceil() as usize).clamp(LAGS.0, LAGS.1);
         // A central difference of the position sees the input of the next steps as well.
         let lead = if record.has_velocity { 0 } else { DIFFERENCE };
@@ -111,12 +175,12 @@ impl Rows {
         let mut target = Vec::with_capacity(rows);
         for i in first..end {
             let v = 0.5 * (record.velocity[i] + record.velocity[i + 1]) / speed;
-            matrix.extend((0..inputs).map(|lag| record.input[i + lead - lag] / gain));
+            matrix.extend((0..inputs).map(|lag| input[i + lead - lag] / gain));
             matrix.extend((0..FRICTION_LAGS).map(|lag| sign[i - lag]));
             // Presliding lasts the shorter the harder the motor is driven through the reversal.
             matrix.extend(
                 (0..REVERSAL_LAGS)
-                    .map(|lag| (sign[i - lag] - sign[i - lag - 1]) * record.input[i].abs() / gain),
+                    .map(|lag| (sign[i - lag] - sign[i - lag - 1]) * input[i].abs() / gain),
             );
             matrix.extend([v, libm::tanh(v / BEND), 1.0]);
             target.push(record.velocity[i + 1] - record.velocity[i]);
@@ -170,6 +234,7 @@ impl Rows {
         unexplained[self.first + left.len() + 1..].fill(sum);
         let total: f64 = solution.iter().take(self.inputs).sum();
         Some(FreeMotor {
+            unsure: Vec::new(),
             noise: noise(record, &unexplained, cycles),
             unexplained,
             acceleration: (total / record.step).abs(),
@@ -211,6 +276,31 @@ fn noise(record: &Record, unexplained: &[f64], cycles: &Cycles) -> f64 {
     };
     [1, 3, far].into_iter().map(level).fold(0.0, f64::max)
 }
+
+/// What the calmer cycles show from the least to the largest unexplained velocity, as the standard deviation of a noise that
+/// would.
+fn calm(unexplained: &[f64], cycles: &Cycles) -> f64 {
+    let mut ranges: Vec<f64> = cycles
+        .starts
+        .windows(2)
+        .map(|w| {
+            let (low, high) = range(&unexplained[w[0]..=w[1]]);
+            high - low
+        })
+        .collect();
+    quantile(&mut ranges, CALM) / normal_range(cycles.length)
+}
+
+/// Share of the cycles that are calm: fewer are free in hardly any record.
+const CALM: f64 = 0.25;
+
+/// Expected range of so many standard normal values, to some per cent (Tippett 1925 has the table).
+fn normal_range(count: f64) -> f64 {
+    2.0 * (2.0 * libm::log(count.max(2.0))).sqrt() * TIPPETT
+}
+
+/// What the asymptotic range is too large by for 10 to 100 values.
+const TIPPETT: f64 = 0.78;
 
 /// Weighted least squares.
 fn solve(matrix: &[f64], target: &[f64], weights: &[f64], width: usize) -> Option<DVector<f64>> {

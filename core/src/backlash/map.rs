@@ -18,6 +18,10 @@ const PUSHED: f64 = 0.25;
 /// dry friction slows the load with a force against its motion as well, but near the other branch.
 const OUTER: f64 = 0.3;
 
+/// Second difference of the load's position, as share of the motor's travel, below which it does not move: an encoder of
+/// 30 bits over the travel resolves no less, and what a computed load does there is round-off.
+const RESOLVED: f64 = 1e-9;
+
 /// Half window of the second difference, samples; the least in which the largest acceleration stands out
 /// by `CLEAR` from what the noise makes of it.
 const WINDOWS: std::ops::RangeInclusive<usize> = 2..=16;
@@ -92,6 +96,10 @@ pub fn backlash_map(measurement: &Measurement) -> Result<BacklashMap, MapError> 
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let (window, accelerations) = accelerations(&points);
     let largest = accelerations.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
+    let (least, most) = range(&points.iter().map(|p| p[0]).collect::<Vec<_>>());
+    if largest < RESOLVED * (most - least) {
+        return Ok(untouched(points, motor.unit.clone()));
+    }
     let branch = |sign: f64| {
         let pushed: Vec<[f64; 2]> = accelerations
             .iter()
@@ -111,6 +119,18 @@ pub fn backlash_map(measurement: &Measurement) -> Result<BacklashMap, MapError> 
         unit: motor.unit.clone(),
         points,
     })
+}
+
+/// The map of a load that did not move.
+fn untouched(points: Vec<[f64; 2]>, unit: String) -> BacklashMap {
+    BacklashMap {
+        points,
+        positive: None,
+        negative: None,
+        gap: None,
+        asymmetry: None,
+        unit,
+    }
 }
 
 /// Second differences of the load's position (rad or m in the window squared), and the half window.

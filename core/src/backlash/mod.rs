@@ -30,6 +30,7 @@ mod gap;
 mod likelihood;
 mod map;
 mod record;
+mod switches;
 mod verdict;
 
 pub use change_points::{Segment, pelt};

@@ -5,6 +5,9 @@ use super::gap::{GapEstimate, Quality};
 /// Traverses up to which all of them are spoken for; of more, nine in ten.
 const FEW: usize = 10;
 
+/// Relative deviation of a traverse from the gap up to which it agrees with it.
+const AGREES: f64 = 0.1;
+
 /// One or two sentences about `estimate`; `flips`: whether the asymmetry of the relay changed its sign.
 pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
     let (scale, unit) = estimate.written_in();
@@ -80,6 +83,10 @@ fn agreement(estimate: &GapEstimate) -> String {
     match off.len() {
         0 => "by the travel between contacts at both sides".to_owned(),
         1 => "one traverse; a longer test would check it".to_owned(),
+        n if off[(n * 9 / 10).min(n - 1)] > AGREES => {
+            let n = if n <= FEW { word(n) } else { n.to_string() };
+            format!("{n} traverses scatter about it by up to {}", percent(last))
+        }
         n if n <= FEW => format!("{} traverses agree within {}", word(n), percent(last)),
         n => format!(
             "nine in ten of {n} traverses agree within {}",

@@ -28,10 +28,14 @@ const ABOUT: f64 = 0.5;
 
 /// Whether nothing moved before the input came on with the record.
 pub(super) fn begins_at_rest(kind: Kind, input: &[f64], outputs: &[Output]) -> bool {
-    let mut moving = outputs.iter().filter(|o| o.is_velocity);
-    let at_zero = moving.all(|o| o.values[0].abs() < AT_REST * o.noise);
     let came_on = || outputs.iter().any(|y| began_late(input, y));
-    at_zero || kind == Kind::Process && came_on()
+    begins_at_zero(outputs) || kind == Kind::Process && came_on()
+}
+
+/// Whether a velocity, or the output of a process, is 0 at first.
+pub(super) fn begins_at_zero(outputs: &[Output]) -> bool {
+    let mut moving = outputs.iter().filter(|o| o.is_velocity);
+    moving.all(|o| o.values[0].abs() < AT_REST * o.noise)
 }
 
 /// Whether an output lay still at first, wherever that was, and went its way later though the input stayed about as it was:

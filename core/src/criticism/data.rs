@@ -3,17 +3,17 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::before::begins_at_rest;
+use super::before::{begins_at_rest, begins_at_zero};
 use super::cut::{self, Block, MIN_WINDOW};
 use super::fit::Motion;
-use super::limited::limited;
 use super::noise::{Noise, noise_beside};
 use super::output::Output;
+use super::record::limited;
 use super::window::drive_window;
 use crate::crew::Crew;
 use crate::diagnosis::CriticismError;
 use crate::effect::Scales;
-use crate::effect::baseline::GUESS_FACTOR;
+use crate::effect::baseline::{Baseline, GUESS_FACTOR};
 use crate::measurement::{Channel, Kind, Measurement};
 use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start, smoothed};
 
@@ -53,6 +53,8 @@ pub(super) struct Data {
     /// Pieces of motion that replays of it and of its parts took.
     moves: Arc<AtomicU64>,
     pub kind: Kind,
+    /// What it is explained with at first.
+    pub baseline: Baseline,
     pub excitation: Excitation,
     pub input: Vec<f64>,
     pub time: Vec<f64>,
@@ -154,6 +156,12 @@ impl Data {
             crew: Crew::default(),
             moves: Arc::default(),
             kind: measurement.kind,
+            baseline: match measurement.kind {
+                Kind::Drive => Baseline::Drive,
+                Kind::Process => Baseline::Lag {
+                    from_ambient: begins_at_zero(&outputs),
+                },
+            },
             excitation: Excitation::new(
                 &measurement.time,
                 input,

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::data::Data;
+use crate::effect::baseline::Baseline;
 use crate::measurement::Kind;
 
 /// Chunk lengths, in samples, over which velocity differences are regressed; the first whose
@@ -69,7 +70,10 @@ pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
     if data.kind == Kind::Drive && b <= 0.0 {
         b = (say / saa).abs();
     }
-    if lambda <= 0.0 {
+    let integrates = data.baseline == Baseline::Integrator;
+    if integrates {
+        b = say / saa;
+    } else if lambda <= 0.0 {
         lambda = match data.kind {
             Kind::Drive => 0.0,
             Kind::Process => 10.0 / duration,
@@ -83,8 +87,20 @@ pub(super) fn guess(data: &Data, w: &[f64]) -> Option<Vec<f64>> {
     if !b.is_finite() || b == 0.0 {
         return None;
     }
-    Some(match data.kind {
-        Kind::Drive => vec![1.0 / b, lambda / b],
-        Kind::Process => vec![b / lambda, 1.0 / lambda],
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    Some(match data.baseline {
+        Baseline::Drive => vec![1.0 / b, lambda / b],
+        Baseline::Integrator => vec![b],
+        Baseline::Lag { from_ambient } => {
+            let gain = b / lambda;
+            // What the output is in the mean beside what the input gives; the ends weigh less the longer the record.
+            let ambient = if from_ambient {
+                0.0
+            } else {
+                let change = (v[n - 1] - v[0]) / (lambda * duration);
+                mean(&v) - gain * mean(w) + change
+            };
+            vec![gain, 1.0 / lambda, ambient]
+        }
     })
 }

@@ -102,6 +102,7 @@ impl DiagnosisJob {
                 kind: measurement.kind,
                 samples: measurement.len(),
                 noise_floor: NOISE_FLOOR,
+                noise: Vec::new(),
                 steps: Vec::new(),
                 verdict: crate::diagnosis::Verdict {
                     missing: Vec::new(),
@@ -189,6 +190,7 @@ impl DiagnosisJob {
             self.unfinished = None;
         }
         self.diagnosis.noise_floor = report.noise_floor;
+        self.diagnosis.noise.clone_from(&report.noise);
         self.last = Some(report);
         match (verdict, next) {
             (_, Some(model)) if !ended && !self.falls_short(&session, &model) => {
@@ -351,6 +353,7 @@ fn without_curves(report: &StepReport) -> StepReport {
         verdict: report.verdict.clone(),
         needless: report.needless.clone(),
         missing: report.missing.clone(),
+        noise: report.noise.clone(),
         ..*report
     }
 }

@@ -9,7 +9,6 @@ use super::select::{
 };
 use super::session::Scored;
 use crate::effect::Effect;
-use crate::measurement::Kind;
 
 /// Whether two effects are the same or one contains the other.
 pub(super) fn nested(a: &dyn Effect, b: &dyn Effect) -> bool {
@@ -48,10 +47,7 @@ const SAME_BODY: f64 = 0.2;
 /// Whether two models agree on the body, which the user knows roughly: with two levels of input a huge
 /// dead zone looks like a small load, on a motor half as heavy.
 pub(super) fn same_body(a: &Scored, b: &Scored) -> bool {
-    let essential = match a.fit.structure.kind {
-        Kind::Drive => 1,
-        Kind::Process => 2,
-    };
+    let essential = a.fit.structure.baseline.essential();
     let mut pairs = a.fit.values.iter().zip(&b.fit.values).take(essential);
     pairs.all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
 }

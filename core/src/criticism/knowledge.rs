@@ -106,14 +106,6 @@ impl Structure {
             .collect()
     }
 
-    /// Whether each value is never changed.
-    pub fn fixed(&self) -> Vec<bool> {
-        self.known()
-            .iter()
-            .map(|k| k.is_some_and(|k| k.status == Status::Fixed))
-            .collect()
-    }
-
     /// Values that the fit changes.
     pub fn free_count(&self) -> usize {
         self.fixed().iter().filter(|f| !**f).count()
@@ -153,6 +145,7 @@ impl Structure {
                 *value = known.value;
             }
         }
+        self.hold(values);
     }
 }
 

@@ -39,7 +39,7 @@ mod tests {
         let effects: Vec<&'static dyn Effect> = ["input_delay", "coulomb_friction"]
             .map(|id| session.find(EffectId::new(id)).unwrap())
             .into();
-        let structure = Structure::new(data.kind, effects, session.knowledge.clone());
+        let structure = Structure::new(data.baseline, effects, session.knowledge.clone());
         let values = vec![8.8e-4, 0.012, 6.02e-4, 0.045, 6e-6, 0.02];
         let mut stuck = Fit::new(data, structure, values, data.guessed_starts(), scales);
         while !stuck.done {

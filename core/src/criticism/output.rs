@@ -2,10 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::glitches::mend;
-use super::held::{bridged, fresh};
-use super::limited::limited;
 use super::noise::Noise;
+use super::record::{bridged, fresh, limited, mend};
 use crate::measurement::{Channel, Quantity};
 
 /// An output with its noise.
@@ -16,6 +14,8 @@ pub(super) struct Output {
     pub noise: f64,
     /// The noise is that of counting alone.
     pub counted: bool,
+    /// Step of the lattice on which its values lie; 0 where none is seen.
+    pub step: f64,
     /// Samples at which nothing was measured, readings that a channel held and glitches of several values: the values there
     /// lie between those around and are compared with no model. Empty where every sample tells.
     pub silent: Vec<bool>,
@@ -59,6 +59,7 @@ impl Output {
             is_velocity: channel.quantity != Quantity::Position,
             noise: noise.level,
             counted: noise.counted,
+            step: noise.step,
             values,
             silent,
         };
@@ -118,6 +119,7 @@ mod tests {
             values: vec![0.0; 8],
             noise: 1.0,
             counted: false,
+            step: 0.0,
             silent: [0, 1, 0, 1, 1, 0, 0, 1].map(|s| s == 1).to_vec(),
             limited: 0,
         };

@@ -9,18 +9,19 @@ use super::fit::Fit;
 use super::guess::guess;
 use super::knowledge::{self, Knowledge};
 use super::locate::locate;
-use super::memory::is_noise_with_memory;
+use super::noise::{is_left_by_random_forces, is_noise_with_memory};
+use super::output::Output;
 use super::probes::{Probed, Probes};
-use super::pushes::is_left_by_random_forces;
 use super::score::{Score, score};
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
 use crate::crew::Crew;
-use crate::diagnosis::{CriticismError, Parameter, Replay, ReplayChannel};
+use crate::diagnosis::{ChannelNoise, CriticismError, Parameter, Replay, ReplayChannel};
 use crate::effect::{
     self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
-    Rubbing, Scales, SeenGap, baseline,
+    Rubbing, Scales, SeenGap,
+    baseline::{self, Baseline},
 };
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
 use crate::user_model::{Status, UserModel};
@@ -126,10 +127,10 @@ impl Session {
         if let Some(seen) = seen {
             data = data.with_seen_load(seen);
         }
-        let plain = baseline::model(data.kind, &[1.0, 1.0]);
+        let plain = Baseline::plain();
         let guess = guess(&data, &data.excitation.effective_input(&plain))
-            .unwrap_or_else(|| vec![1.0, 1.0]);
-        let (inertia, viscous) = baseline::body(data.kind, &guess);
+            .unwrap_or_else(|| data.baseline.unknown());
+        let (inertia, viscous) = data.baseline.body(&guess);
         let scales = data.scales(inertia, viscous);
         let knowledge = Knowledge::of(model).with_felt_gap(gap.map(felt_gap));
         hold_back(&mut data, &knowledge, guess, &scales);
@@ -176,13 +177,18 @@ impl Session {
     }
 
     /// Effects that may be in a model: those of the library and the user's own.
-    pub fn library(&self) -> impl Iterator<Item = &'static dyn Effect> {
+    fn known(&self) -> impl Iterator<Item = &'static dyn Effect> {
         effect::for_kind(self.kind()).chain(self.own.iter().copied())
     }
 
-    /// One of them.
+    /// Those that say something which the baseline does not.
+    pub fn library(&self) -> impl Iterator<Item = &'static dyn Effect> {
+        self.known().filter(|e| !self.data.baseline.has(e.id()))
+    }
+
+    /// One that may be in a model.
     pub fn find(&self, id: EffectId) -> Option<&'static dyn Effect> {
-        self.library().find(|e| e.id() == id)
+        self.known().find(|e| e.id() == id)
     }
 
     /// What `fit` leaves unexplained, as a force.
@@ -225,6 +231,33 @@ impl Session {
         })
     }
 
+    /// Takes a process whose output stays where the input leaves it for what it is, by its last model; true if that is to be
+    /// fitted again. An earlier one may miss a dead time, and find the process slower than it is.
+    pub fn settle_baseline(&mut self, scored: &Scored) -> bool {
+        let fit = &scored.fit;
+        let (symbols, duration) = (fit.structure.symbols(), self.scales.duration);
+        let known = symbols
+            .iter()
+            .any(|(o, s)| self.knowledge.find(*o, s).is_some());
+        let errors = scored.standard_errors();
+        let may_integrate = fit
+            .structure
+            .baseline
+            .may_integrate(&fit.values, &errors, duration);
+        if known || !may_integrate {
+            return false;
+        }
+        let parts = [
+            Some(&mut self.data),
+            Some(&mut self.scout),
+            self.full.as_mut(),
+        ];
+        for data in parts.into_iter().flatten() {
+            data.baseline = Baseline::Integrator;
+        }
+        true
+    }
+
     /// Settles sizes by the fitted baseline; true if its body is held, so that it is to be fitted again.
     ///
     /// A body that rests for most of the record seems held by its own weight, nothing shows in the answers of that, and no
@@ -239,7 +272,7 @@ impl Session {
         if self.knowledge.find(None, baseline::INERTIA).is_none() {
             self.held = self.probed(fit).probe.other_body(fit.values[0]);
         }
-        let (inertia, viscous) = baseline::body(self.kind(), &fit.values);
+        let (inertia, viscous) = self.data.baseline.body(&fit.values);
         if let Some(Rubbing { body, .. }) = self.held {
             self.scales = Scales {
                 inertia_factor: HELD_FACTOR,
@@ -365,7 +398,13 @@ impl Session {
         let errors = scored.standard_errors();
         let known = fit.structure.known();
         let status = |j: usize| known[j].map_or(Status::Free, |k| k.status);
-        let mut parameters: Vec<Parameter> = baseline::parameters(self.kind())
+        // One that the record itself holds is known as well as where the output rests at first.
+        let held = fit.structure.held().map(|(place, _)| place);
+        let rest = self.data.outputs.first().map_or(0.0, |o| o.noise);
+        let mut parameters: Vec<Parameter> = fit
+            .structure
+            .baseline
+            .parameters()
             .iter()
             .enumerate()
             .map(|(j, p)| Parameter {
@@ -373,9 +412,13 @@ impl Session {
                 name: p.symbol.to_owned(),
                 label: p.label.to_owned(),
                 value: fit.values[j],
-                std_error: errors[j].min(p.dimension.map_or(f64::INFINITY, |dimension| {
-                    UNTOLD * fit.values[j].abs().max(self.scales.of(dimension))
-                })),
+                std_error: if held == Some(j) {
+                    rest
+                } else {
+                    errors[j].min(p.dimension.map_or(f64::INFINITY, |dimension| {
+                        UNTOLD * fit.values[j].abs().max(self.scales.of(dimension))
+                    }))
+                },
                 status: status(j),
                 unit: self.unit_of(p.dimension),
             })
@@ -449,6 +492,21 @@ impl Session {
     /// The residual over every axis.
     pub fn atlas(&self, fit: &Fit) -> Vec<crate::diagnosis::Profile> {
         atlas(self.whole(), &fit.motion, self.output_unit())
+    }
+
+    /// The noise of each measured channel.
+    pub fn channel_noise(&self) -> Vec<ChannelNoise> {
+        let outputs = self.outputs.iter().zip(&self.whole().outputs);
+        let noise = |((quantity, name, unit), output): (&(Quantity, String, String), &Output)| {
+            ChannelNoise {
+                channel: name.clone(),
+                quantity: *quantity,
+                value: output.noise,
+                unit: unit.clone(),
+                step: Some(output.step).filter(|step| *step > 0.0),
+            }
+        };
+        outputs.map(noise).collect()
     }
 
     /// Curves for the plots.

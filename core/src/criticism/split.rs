@@ -47,7 +47,7 @@ pub(super) fn hold_back(
     if data.kind == Kind::Process || data.excitation.sees_load() {
         return;
     }
-    let structure = Structure::new(data.kind, Vec::new(), knowledge.clone());
+    let structure = Structure::new(data.baseline, Vec::new(), knowledge.clone());
     structure.begin(&mut values, 0);
     let mut fit = fitted(data, &structure, &values, scales);
     for _ in 0..CUTS {
@@ -149,12 +149,12 @@ fn is_odd(rank: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use crate::effect::baseline::Baseline;
     use std::fmt::Write as _;
 
     use super::*;
     use crate::criticism::guess::guess;
     use crate::criticism::session::Session;
-    use crate::effect::baseline;
     use crate::measurement::import_csv;
     use crate::rig::{DriveRig, Excitation, Stranger};
     use crate::user_model::UserModel;
@@ -173,7 +173,7 @@ mod tests {
         }
         .measure();
         let mut data = Data::new(&measurement).unwrap();
-        let plain = baseline::model(data.kind, &[1.0, 1.0]);
+        let plain = Baseline::plain();
         let guess = guess(&data, &data.excitation.effective_input(&plain)).unwrap();
         let scales = data.scales(guess[0], guess[1]);
         let knowledge = Knowledge::of(&UserModel::blank(data.kind));

@@ -1,10 +1,10 @@
 //! A model structure: which baseline, which effects, and how a vector of values becomes a model.
 
 use super::knowledge::Knowledge;
-use crate::effect::{Effect, EffectId, Scales, baseline};
-use crate::measurement::Kind;
+use crate::effect::baseline::Baseline;
+use crate::effect::{Effect, EffectId, Scales};
 use crate::model::{LoadBegin, Model};
-use crate::user_model::Status;
+use crate::user_model::{Known, Status};
 
 /// Share of a parameter, or of its typical size, by which it is moved for a sensitivity: the motion is exact, so that
 /// the difference is the derivative to some six digits.
@@ -19,7 +19,7 @@ const STEP_FACTOR: f64 = 4.0;
 /// Baseline and effects; the order of the values is baseline first, then effect by effect.
 #[derive(Clone)]
 pub(super) struct Structure {
-    pub kind: Kind,
+    pub baseline: Baseline,
     pub effects: Vec<&'static dyn Effect>,
     pub knowledge: Knowledge,
     /// Where a load behind a gap begins in the windows.
@@ -27,9 +27,13 @@ pub(super) struct Structure {
 }
 
 impl Structure {
-    pub fn new(kind: Kind, effects: Vec<&'static dyn Effect>, knowledge: Knowledge) -> Self {
+    pub fn new(
+        baseline: Baseline,
+        effects: Vec<&'static dyn Effect>,
+        knowledge: Knowledge,
+    ) -> Self {
         Self {
-            kind,
+            baseline,
             effects,
             knowledge,
             load_begin: LoadBegin::Followed,
@@ -69,6 +73,16 @@ impl Structure {
         next
     }
 
+    /// The same of a process that integrates, with its values.
+    pub fn integrating(&self, values: &[f64]) -> (Self, Vec<f64>) {
+        let mut next = self.clone();
+        next.baseline = Baseline::Integrator;
+        let inertia = self.baseline.body(values).0;
+        let mut own = vec![1.0 / inertia];
+        own.extend(&values[self.baseline_len()..]);
+        (next, own)
+    }
+
     /// The effects, in their order.
     pub fn ids(&self) -> Vec<EffectId> {
         self.effects.iter().map(|e| e.id()).collect()
@@ -76,7 +90,7 @@ impl Structure {
 
     /// Number of values of the baseline.
     pub fn baseline_len(&self) -> usize {
-        baseline::parameters(self.kind).len()
+        self.baseline.parameters().len()
     }
 
     /// Range of the values of the effect at `index`.
@@ -91,7 +105,7 @@ impl Structure {
 
     /// Owner (`None` for the baseline) and symbol of each value.
     pub fn symbols(&self) -> Vec<(Option<EffectId>, &'static str)> {
-        let baseline = baseline::parameters(self.kind).iter();
+        let baseline = self.baseline.parameters().iter();
         let mut symbols: Vec<_> = baseline.map(|p| (None, p.symbol)).collect();
         for effect in &self.effects {
             let own = effect.parameters().iter();
@@ -102,7 +116,7 @@ impl Structure {
 
     /// The model with these values.
     pub fn model(&self, values: &[f64]) -> Model {
-        let mut model = baseline::model(self.kind, values);
+        let mut model = self.baseline.model(values);
         for (index, effect) in self.effects.iter().enumerate() {
             effect.apply(&values[self.range(index)], &mut model);
         }
@@ -120,14 +134,14 @@ impl Structure {
             let range = self.range(index);
             let (body, own) = values.split_at_mut(self.baseline_len());
             let own = &mut own[range.start - body.len()..range.end - body.len()];
-            swapped |= effect.order(self.kind, body, own);
+            swapped |= effect.order(self.baseline.kind(), body, own);
         }
         swapped
     }
 
     /// Moves the values into their ranges.
     pub fn clamp(&self, values: &mut [f64], scales: &Scales) {
-        baseline::clamp(self.kind, values, scales);
+        self.baseline.clamp(values, scales);
         for (index, effect) in self.effects.iter().enumerate() {
             let range = self.range(index);
             for (value, spec) in values[range].iter_mut().zip(effect.parameters()) {
@@ -139,15 +153,35 @@ impl Structure {
                 *value = known.value;
             }
         }
+        self.hold(values);
+    }
+
+    /// Puts what the baseline holds in its place.
+    pub fn hold(&self, values: &mut [f64]) {
+        if let Some((place, value)) = self.held() {
+            values[place] = value;
+        }
+    }
+
+    /// The place of the baseline that is never changed, and its value, where the user says nothing of it.
+    pub fn held(&self) -> Option<(usize, f64)> {
+        let held = self.baseline.fixed(&self.effects)?;
+        let symbol = self.baseline.parameters()[held.0].symbol;
+        self.knowledge.find(None, symbol).is_none().then_some(held)
+    }
+
+    /// Whether each value is never changed.
+    pub fn fixed(&self) -> Vec<bool> {
+        let held = self.held().map(|(place, _)| place);
+        let fixed = |k: Option<&Known>| k.is_some_and(|k| k.status == Status::Fixed);
+        let known = self.known().into_iter().enumerate();
+        known.map(|(j, k)| fixed(k) || held == Some(j)).collect()
     }
 
     /// Keeps sizes within a factor of `present`: the motion goes with their inverse or logarithm, so that
     /// a linear step from a value far too large would overshoot below 0.
     pub fn limit_step(&self, values: &mut [f64], present: &[f64]) {
-        let j = match self.kind {
-            Kind::Drive => 0,
-            Kind::Process => 1,
-        };
+        let j = self.baseline.size();
         let limit = |value: &mut f64, present: f64| {
             let (a, b) = (present / STEP_FACTOR, present * STEP_FACTOR);
             *value = value.max(a.min(b)).min(a.max(b));
@@ -164,7 +198,9 @@ impl Structure {
 
     /// Steps for finite differences, one per value, pointing into the ranges.
     pub fn difference_steps(&self, values: &[f64], scales: &Scales) -> Vec<f64> {
-        let mut sizes: Vec<f64> = baseline::parameters(self.kind)
+        let mut sizes: Vec<f64> = self
+            .baseline
+            .parameters()
             .iter()
             .zip(values)
             .map(|(p, v)| {

@@ -8,7 +8,10 @@ use crate::measurement::{Motion, Quantity};
 impl Session {
     /// Checks the units that the user's model says, its effects being among `effects`.
     pub fn check_units(&self, effects: &[&'static dyn Effect]) -> Result<(), CriticismError> {
-        let baseline = baseline::parameters(self.kind())
+        let baseline = self
+            .data
+            .baseline
+            .parameters()
             .iter()
             .map(|p| (None, p.symbol, self.unit_of(p.dimension)));
         let own = effects.iter().flat_map(|e| {

@@ -8,16 +8,15 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
+use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
-use crate::uncertain::{shown_unit, with_error, written_like};
+use crate::uncertain::{shown_unit, with_error};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
 
 /// What a model leaves that explains all there is.
 const ALL_NOISE: &str = " is measurement noise.";
-
-const LOAD: EffectId = EffectId::new("constant_load");
 
 /// The verdict on a final model: `wanted` are its effects, each with whether it only tells how the record was made,
 /// `classes` what could replace each.
@@ -175,24 +174,24 @@ pub(super) fn add_rest(
     }
 }
 
-/// Says of a process where its constant load lets the output rest: in the file it may be the warmth of a room.
-pub(super) fn add_resting_place(verdict: &mut Verdict, parameters: &[Parameter], unit: &str) {
-    let alone = |class: &Vec<EffectId>| class[..] == [LOAD];
-    if !verdict.missing.iter().any(alone) {
-        return;
+/// Says what would tell apart what a drive that turns one way only leaves alike.
+pub(super) fn add_both_ways(verdict: &mut Verdict) {
+    verdict.text.push_str(" The drive turns one way only.");
+    verdict.next_experiment = Some(BOTH_WAYS.to_owned());
+}
+
+/// Says that a process integrates, and how fast its output moves.
+pub(super) fn add_integrating(verdict: &mut Verdict, parameters: &[Parameter]) {
+    let rate = parameters
+        .iter()
+        .find(|p| p.effect.is_none() && p.name == RATE);
+    if let Some(rate) = rate {
+        let _ = write!(
+            verdict.text,
+            " The process integrates, so that its output stays where the input leaves it: K/T is {}.",
+            with_error(rate.value, rate.std_error, &rate.unit)
+        );
     }
-    let find = |name: &str| parameters.iter().find(|p| p.name == name);
-    let (Some(gain), Some(load)) = (find("K"), find("F0").filter(|p| p.effect == Some(LOAD)))
-    else {
-        return;
-    };
-    let rest = gain.value * load.value;
-    let error = (gain.value * load.std_error).abs();
-    let _ = write!(
-        verdict.text,
-        " Without input the output would come to rest at {}: the load may be its surroundings.",
-        written_like(rest, (rest, error), unit)
-    );
 }
 
 /// Says how many values were left out.
@@ -303,6 +302,10 @@ pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperime
 /// For effects that act alike in one experiment.
 const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than two levels, such as a \
     staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
+
+/// For what is one constant while a drive turns one way.
+const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the motion, a \
+    dead zone with the input, and a constant load never.";
 
 /// The verdict where a diagnosis was stopped before it settled.
 pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 pub struct Limits {
     /// Largest input in either direction, in its unit.
     pub input: f64,
+    /// Whether the input goes one way only, from 0 to that size (1) or to its negative (-1), as a heater does; 0: both ways.
+    #[serde(default)]
+    pub side: i8,
     /// Longest record, s.
     pub duration: f64,
     /// Sampling time, s.
@@ -44,6 +47,7 @@ impl Limits {
                 .filter(|v| v.is_finite() && *v > 0.0);
             match (name, number) {
                 ("input", Some(v)) => self.input = v,
+                ("side", None) if value == "both" => self.side = 0,
                 ("duration", Some(v)) => self.duration = v,
                 ("step", Some(v)) => self.step = v,
                 ("speed", Some(v)) => self.speed = Some(v),
@@ -57,12 +61,20 @@ impl Limits {
                 _ => {
                     return Err(error(
                         part,
-                        "one of input, duration, step, speed, travel with its value in SI units",
+                        "one of input, duration, step, speed, travel with its value in SI units, or side=both",
                     ));
                 }
             }
         }
         Ok(())
+    }
+
+    /// A level between the lowest and the highest input, from -1 to 1.
+    pub(crate) fn level(&self, share: f64) -> f64 {
+        match self.side {
+            0 => share * self.input,
+            side => f64::from(side) * self.input * 0.5 * (share + 1.0),
+        }
     }
 
     /// Whether every value can be.

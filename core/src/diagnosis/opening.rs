@@ -46,11 +46,14 @@ impl NextExperiment {
         // (1 + a) k (1 + A) and (1 - a) k (1 - A) are the levels of one relay.
         let actuator = model.or_none("gain_asymmetry", "a");
         let together = 1.0 + actuator * asymmetry;
+        // An ambient acts like the input that would hold the output there.
+        let ambient = model.value(None, "ambient").zip(model.value(None, "K"));
+        let ambient = ambient.map_or(0.0, |(ambient, gain)| ambient / gain);
         let relay = Relay {
             gain: gain * together,
             hysteresis,
             asymmetry: (actuator + asymmetry) / together,
-            bias: model.or_none("constant_load", "F0"),
+            bias: model.or_none("constant_load", "F0") + ambient,
             // A sampled relay acts half of its sampling time late in the mean.
             delay: 0.5 * self.step,
         };
@@ -84,7 +87,10 @@ impl NextExperiment {
         }
         let (gain, mut denominator) = match model.value(None, "J1") {
             Some(inertia) => (1.0, vec![inertia, model.value(None, "d1")?]),
-            None => (model.value(None, "K")?, vec![model.value(None, "T")?, 1.0]),
+            None => match model.value(None, "K/T") {
+                Some(rate) => (rate, vec![1.0, 0.0]),
+                None => (model.value(None, "K")?, vec![model.value(None, "T")?, 1.0]),
+            },
         };
         for (effect, symbol) in [
             ("second_lag", "T2"),
@@ -156,6 +162,7 @@ mod tests {
             travel: 0.0,
             limits: Limits {
                 input: 1.0,
+                side: 0,
                 duration: 300.0,
                 step: 0.2,
                 speed: None,

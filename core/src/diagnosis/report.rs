@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fingerprint::Fingerprint;
 use super::missing::MissingPart;
+use super::noise::ChannelNoise;
 use super::profile::Profile;
 use super::replay::Replay;
 use super::step::Step;
@@ -22,6 +23,9 @@ pub struct Diagnosis {
     pub samples: usize,
     /// Error of a perfect model, in the unit of [`Step::error`].
     pub noise_floor: f64,
+    /// The unit of the errors: the noise of each measured channel.
+    #[serde(default)]
+    pub noise: Vec<ChannelNoise>,
     /// From the baseline to the last model.
     pub steps: Vec<Step>,
     /// What is missing.
@@ -37,6 +41,9 @@ pub struct StepReport {
     pub step: Step,
     /// Error of a perfect model.
     pub noise_floor: f64,
+    /// The unit of the errors: the noise of each measured channel.
+    #[serde(default)]
+    pub noise: Vec<ChannelNoise>,
     /// Curves for the plots.
     pub replay: Replay,
     /// The residual over every axis.

@@ -56,6 +56,10 @@ pub struct Step {
     pub error: f64,
     /// The same on the data used for the fit.
     pub error_fit: f64,
+    /// Share of the motion that the model misses on held-back data, noise included: root mean square of the residuals over
+    /// that of the motion.
+    #[serde(default)]
+    pub left: f64,
     /// Every parameter of the model.
     pub parameters: Vec<Parameter>,
     /// Where it fails, strongest first.

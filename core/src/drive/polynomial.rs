@@ -1,5 +1,7 @@
 //! Short polynomials on `[0, 1]`, lowest power first, and the first time at which one rises above zero.
 
+use crate::root::newton;
+
 /// Terms of a polynomial: the Taylor series of a step whose rates reach [`super::flow::REACH`] fall to
 /// round-off within them.
 pub(super) const TERMS: usize = 18;
@@ -121,40 +123,21 @@ fn search(c: &[f64], depth: u32) -> Option<f64> {
     search(left, depth + 1).map(|s| 0.5 + 0.5 * s)
 }
 
-/// Most steps of Newton's method; bisection takes over where they leave the bracket.
-const MAX_NEWTON: u32 = 80;
-
 /// The zero of a polynomial that is not above 0 at 0 and above it at 1.
 fn root(c: &[f64]) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut s = {
-        let sum: f64 = c.iter().sum();
-        c[0] / (c[0] - sum)
-    };
-    for _ in 0..MAX_NEWTON {
-        let (mut f, mut slope) = (0.0, 0.0);
-        for c in c.iter().rev() {
-            slope = slope * s + f;
-            f = f * s + c;
-        }
-        if f == 0.0 {
-            return s;
-        }
-        if f > 0.0 {
-            high = s;
-        } else {
-            low = s;
-        }
-        let mut next = s - f / slope;
-        if !(next > low && next < high) {
-            next = 0.5 * (low + high);
-        }
-        if (next - s).abs() <= 2.0 * f64::EPSILON * next {
-            return next;
-        }
-        s = next;
-    }
-    s
+    let sum: f64 = c.iter().sum();
+    let start = c[0] / (c[0] - sum);
+    newton(
+        [0.0, 1.0],
+        start,
+        false,
+        |s| 2.0 * f64::EPSILON * s,
+        |s| {
+            c.iter()
+                .rev()
+                .fold((0.0, 0.0), |(f, slope), c| (f * s + c, slope * s + f))
+        },
+    )
 }
 
 #[cfg(test)]

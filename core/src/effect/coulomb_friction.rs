@@ -6,8 +6,9 @@
 //! none it goes to 0 and the contact is rigid.
 
 use super::atom::not_negative;
+use super::dry_friction::{DAMPING, LEVEL, SHORT};
 use super::spec::HARD_CROSSINGS;
-use super::{Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Atom, BodyStart, Effect, EffectId, ParameterSpec, Part, Probe};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -48,26 +49,7 @@ impl Effect for CoulombFriction {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "c",
-                label: "friction level",
-                dimension: Dimension::Force,
-                range: Range::NonNegative,
-            },
-            ParameterSpec {
-                symbol: "s",
-                label: "displacement over which it builds up",
-                dimension: Dimension::Position,
-                range: Range::Short,
-            },
-            ParameterSpec {
-                symbol: "z",
-                label: "damping ratio of the contact",
-                dimension: Dimension::Ratio,
-                range: Range::UnitInterval,
-            },
-        ]
+        &[LEVEL, SHORT, DAMPING]
     }
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {

@@ -10,6 +10,7 @@ mod coulomb_friction;
 mod dead_zone;
 mod directional_friction;
 mod driven_load;
+mod dry_friction;
 #[allow(clippy::module_inception, reason = "the room is named after its trait")]
 mod effect;
 mod flattening_friction;

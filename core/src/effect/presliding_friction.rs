@@ -4,9 +4,9 @@
 //! sample by sample (Maxwell-slip elements along Dahl's curve).
 
 use super::atom::{geometric, not_negative};
+use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::{
-    Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series,
-    coulomb_friction,
+    Atom, BodyStart, Effect, EffectId, ParameterSpec, Part, Probe, Series, coulomb_friction,
 };
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -83,26 +83,7 @@ impl Effect for PreslidingFriction {
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
-        &[
-            ParameterSpec {
-                symbol: "c",
-                label: "friction level",
-                dimension: Dimension::Force,
-                range: Range::NonNegative,
-            },
-            ParameterSpec {
-                symbol: "s",
-                label: "displacement over which it builds up",
-                dimension: Dimension::Position,
-                range: Range::Long,
-            },
-            ParameterSpec {
-                symbol: "z",
-                label: "damping ratio of the contact",
-                dimension: Dimension::Ratio,
-                range: Range::UnitInterval,
-            },
-        ]
+        &[LEVEL, LONG, DAMPING]
     }
 
     fn contains(&self) -> &'static [EffectId] {

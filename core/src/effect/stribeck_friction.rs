@@ -3,6 +3,7 @@
 //! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
 
 use super::atom::not_negative;
+use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::spec::HARD_CROSSINGS;
 use super::{
     Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, coulomb_friction,
@@ -52,10 +53,8 @@ impl Effect for StribeckFriction {
     fn parameters(&self) -> &'static [ParameterSpec] {
         &[
             ParameterSpec {
-                symbol: "c",
                 label: "friction level in motion",
-                dimension: Dimension::Force,
-                range: Range::NonNegative,
+                ..LEVEL
             },
             ParameterSpec {
                 symbol: "dc",
@@ -69,18 +68,8 @@ impl Effect for StribeckFriction {
                 dimension: Dimension::Speed,
                 range: Range::Positive,
             },
-            ParameterSpec {
-                symbol: "s",
-                label: "displacement over which it builds up",
-                dimension: Dimension::Position,
-                range: Range::Long,
-            },
-            ParameterSpec {
-                symbol: "z",
-                label: "damping ratio of the contact",
-                dimension: Dimension::Ratio,
-                range: Range::UnitInterval,
-            },
+            LONG,
+            DAMPING,
         ]
     }
 

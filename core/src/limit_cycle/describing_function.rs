@@ -6,9 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, illinois};
+use super::cycle::Cycle;
 use crate::plant::{TransferFunction, ZeroPoleGain};
 use crate::relay::Relay;
+use crate::root::illinois;
 
 /// An intersection of the Nyquist curve with `-1/N(a)`: a solution of `N(a) P(jw) + 1 = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

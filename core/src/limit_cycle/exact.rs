@@ -6,9 +6,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Cycle, illinois, stability};
+use super::MAX_INTERSECTIONS;
+use super::cycle::Cycle;
+use super::history::History;
+use super::stability;
 use crate::plant::StateSpace;
 use crate::relay::Relay;
+use crate::root::illinois;
 use crate::simulate::{Change, Engine, Flow, State};
 
 /// An exact limit cycle with one rise and one fall per period.
@@ -33,6 +37,9 @@ const SCAN_RATIO: f64 = 1.02;
 /// Scanned half periods reach from the guess divided to the guess multiplied by this.
 const SCAN_REACH: f64 = 5.0;
 
+/// Step of the scan as share of the distance of neighbouring cycles of a long delay.
+const FAMILY_STEP: f64 = 0.25;
+
 /// Share of the period to which the replay must meet the switches that were assumed.
 const REPLAY: f64 = 1e-7;
 
@@ -48,9 +55,6 @@ const SMALLEST_STEP: f64 = 1.0 / 256.0;
 /// Multipliers this close to 1 do not tell whether a disturbance dies out: several half periods within a delay that is far
 /// longer than all that the plant does just come round again, but for round-off.
 const NEUTRAL: f64 = 1e-12;
-
-/// Periods for which a delay may reach back.
-const MAX_PERIODS_BACK: f64 = 200.0;
 
 /// Switches of the run that looks for an asymmetric cycle where continuation fails.
 const SEARCH_SWITCHES: usize = 400;
@@ -79,6 +83,7 @@ pub fn exact_cycles(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) -> 
         .roots(&even)
         .into_iter()
         .filter_map(|h| search.finish(&even, [h, h], search.start(&even, h)?))
+        .filter(|c| c.cycle.stable != Some(false) || c.durations[0] >= search.least_of_family())
         .collect();
     if relay.is_symmetric() {
         return symmetric;
@@ -92,6 +97,48 @@ pub fn exact_cycles(plant: &StateSpace, relay: &Relay, lag: f64, guess: f64) -> 
     }
     found.dedup_by(|a, b| (a.cycle.period / b.cycle.period - 1.0).abs() < REPLAY);
     found
+}
+
+/// Half periods of which [`continuum`] looks at the balance, as multiples of the guess.
+const TRIED: [f64; 7] = [0.2, 0.4, 0.7, 1.0, 1.6, 2.5, 5.0];
+
+/// Balance, as share of the swing, that is none but round-off.
+const BALANCED: f64 = 1e-10;
+
+/// Cycles of a loop in which every half period balances, so that each start has its own cycle: examples at half, once
+/// and twice the half period `guess` in s. `None` for any other loop.
+///
+/// `1/s^2` under an ideal relay is one: period `4 sqrt(2a/k)` at any amplitude `a`.
+pub(super) fn continuum(
+    plant: &StateSpace,
+    relay: &Relay,
+    lag: f64,
+    guess: f64,
+) -> Option<Vec<Cycle>> {
+    let search = Search::new(plant, relay, lag, guess)?;
+    if !relay.is_symmetric() {
+        return None;
+    }
+    let balances = |h: f64| {
+        let Some(x) = search.start(relay, h) else {
+            return false;
+        };
+        let middle = search.after(relay, [h, h], &x, 0.5 * h);
+        let swing = middle.map_or(0.0, |m| search.flow.output(&m, 0).abs());
+        search.balance(relay, h).abs() <= BALANCED * swing
+    };
+    if !TRIED.iter().all(|share| balances(share * guess)) {
+        return None;
+    }
+    let example = |share: f64| {
+        let h = share * guess;
+        let cycle = search.finish(relay, [h, h], search.start(relay, h)?)?.cycle;
+        Some(Cycle {
+            stable: None,
+            ..cycle
+        })
+    };
+    Some([0.5, 1.0, 2.0].into_iter().filter_map(example).collect())
 }
 
 /// The exact limit cycle into which a simulation from rest settles, if it does; `guess` in s is the half period by
@@ -193,16 +240,33 @@ impl Search {
 
     /// Half periods that balance, near ones of the guess in both directions.
     fn roots(&self, relay: &Relay) -> Vec<f64> {
-        let count = (libm::log(SCAN_REACH) / libm::log(SCAN_RATIO)).ceil() as i32;
-        let at = |i: i32| self.guess * SCAN_RATIO.powi(i);
         let mut found = Vec::new();
-        let mut low = (at(-count), self.balance(relay, at(-count)));
-        for i in 1 - count..=count {
-            let high = (at(i), self.balance(relay, at(i)));
+        let mut low = {
+            let h = self.guess / SCAN_REACH;
+            (h, self.balance(relay, h))
+        };
+        while low.0 < self.guess * SCAN_REACH {
+            let h = low.0 + self.scan_step(low.0);
+            let high = (h, self.balance(relay, h));
             found.extend(self.root(relay, low, high));
             low = high;
         }
         found
+    }
+
+    /// Step of the scan from the half period `h`: a delay has cycles about `h^2/delay` apart, of which none may be missed.
+    fn scan_step(&self, h: f64) -> f64 {
+        let step = (SCAN_RATIO - 1.0) * h;
+        if h < self.least_of_family() {
+            step
+        } else {
+            step.min(FAMILY_STEP * h * h / self.lag)
+        }
+    }
+
+    /// Half period of the shortest unstable cycle of a dead time that is reported, s: there are infinitely many.
+    fn least_of_family(&self) -> f64 {
+        self.lag / (2 * MAX_INTERSECTIONS) as f64
     }
 
     /// The root between two half periods, if the balance changes sign there without a jump.
@@ -400,40 +464,6 @@ impl Search {
             range,
             start: self.flow.outer(&x),
             multiplier,
-        })
-    }
-}
-
-/// What is on its way to the plant when the relay has just risen.
-pub(super) struct History {
-    /// Acting input.
-    pub input: f64,
-    /// Its changes to come that were decided already, in order.
-    pub pending: Vec<Change>,
-}
-
-impl History {
-    fn new(relay: &Relay, durations: [f64; 2], lag: f64) -> Option<Self> {
-        let period = durations[0] + durations[1];
-        if !(period > 0.0 && lag <= MAX_PERIODS_BACK * period) {
-            return None;
-        }
-        let mut pending = Vec::new();
-        let (mut time, mut high) = (lag, true);
-        // A change at this very instant has come.
-        while time > 1e-14 * period {
-            pending.push(Change {
-                time,
-                channel: 0,
-                value: relay.output(high),
-            });
-            time -= if high { durations[1] } else { durations[0] };
-            high = !high;
-        }
-        pending.reverse();
-        Some(Self {
-            input: relay.output(high),
-            pending,
         })
     }
 }

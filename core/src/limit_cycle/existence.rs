@@ -3,6 +3,10 @@
 use crate::plant::TransferFunction;
 use crate::relay::Relay;
 
+/// A pole counts as on the imaginary axis below this share of the largest: what the roots of a polynomial with a double
+/// root are good to.
+pub(super) const ON_AXIS: f64 = 1e-7;
+
 /// Where the output would go if the relay stopped switching, and what that means.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Existence {
@@ -19,8 +23,10 @@ pub fn existence(plant: &TransferFunction, relay: &Relay) -> Option<Existence> {
     if plant.validate().is_err() || relay.validate().is_err() {
         return None;
     }
-    let unstable = |p: &num_complex::Complex<f64>| p.re > 0.0 || (p.re == 0.0 && p.im != 0.0);
-    if plant.poles().iter().any(unstable) {
+    let poles = plant.poles();
+    let axis = ON_AXIS * poles.iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let unstable = |p: &num_complex::Complex<f64>| p.re > axis || (p.re > -axis && p.im != 0.0);
+    if poles.iter().any(unstable) {
         return None;
     }
     let gain = plant.dc_gain();

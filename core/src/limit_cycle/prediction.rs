@@ -1,13 +1,17 @@
 //! Everything that can be said about the oscillation of a loop without simulating it.
 
+use std::f64::consts::PI;
+
 use num_complex::Complex;
 
 use super::{
-    ExactCycle, Existence, Intersection, TRUSTED_DISTORTION, describing_function, exact_cycles,
-    existence, likely_half_periods, settled_cycle,
+    Cycle, ExactCycle, Existence, Intersection, Outcome, TRUSTED_DISTORTION, continuum,
+    describing_function, exact_cycles, existence, likely_half_periods, settled_cycle,
+    typical_frequency,
 };
 use crate::plant::{PlantError, TransferFunction};
 use crate::relay::{Relay, RelayError};
+use crate::root::illinois;
 
 /// What is predicted for a loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,10 +22,10 @@ pub struct Prediction {
     pub exact: Vec<ExactCycle>,
     /// Whether the relay must keep switching; `None` for an unstable plant.
     pub existence: Option<Existence>,
+    /// Cycles of the loop, for example, if every half period is one; `exact` is empty then.
+    pub continuum: Option<Vec<Cycle>>,
     /// How far the describing function can be trusted here.
     pub trust: Trust,
-    /// The answer in words.
-    pub text: String,
 }
 
 /// How far the describing function can be trusted.
@@ -68,6 +72,9 @@ const TRUSTED_ERROR: f64 = 0.05;
 /// Guesses closer than this ratio share a scan, which reaches a factor of five to either side.
 const SAME_SCAN: f64 = 4.0;
 
+/// Ratio of their periods up to which an exact cycle is what the describing function predicts.
+const SAME_KIND: f64 = 2.0;
+
 /// Cycles whose periods differ by less are the same.
 const SAME_CYCLE: f64 = 1e-6;
 
@@ -81,17 +88,29 @@ pub fn predict(plant: &TransferFunction, relay: &Relay) -> Result<Prediction, Pr
         return Err(PredictError::LongDelay { lag, most });
     }
     let describing = describing_function(plant, relay);
-    let exact = all_exact(plant, relay, &describing);
     let existence = existence(plant, relay);
-    let trust = trust(&describing, &exact, existence.as_ref());
-    let text = text(&exact, existence.as_ref(), &trust);
-    Ok(Prediction {
+    let guess = PI / typical_frequency(plant) + lag;
+    let continuum = continuum(&plant.state_space(), relay, lag, guess);
+    let exact = match continuum {
+        Some(_) => Vec::new(),
+        None => all_exact(plant, relay, &describing),
+    };
+    let mut prediction = Prediction {
         describing_function: describing,
         exact,
         existence,
-        trust,
-        text,
-    })
+        continuum,
+        trust: Trust::default(),
+    };
+    prediction.trust = trust(&prediction, plant, relay, None);
+    Ok(prediction)
+}
+
+impl Prediction {
+    /// How far the describing function can be trusted, now that the loop's outcome is known.
+    pub fn trust_after(&self, plant: &TransferFunction, relay: &Relay, outcome: Outcome) -> Trust {
+        trust(self, plant, relay, Some(outcome))
+    }
 }
 
 /// The slowest time constant of a plant, s, but for what it integrates.
@@ -141,42 +160,57 @@ fn all_exact(
 }
 
 fn trust(
-    describing: &[Intersection],
-    exact: &[ExactCycle],
-    existence: Option<&Existence>,
+    prediction: &Prediction,
+    plant: &TransferFunction,
+    relay: &Relay,
+    outcome: Option<Outcome>,
 ) -> Trust {
-    let Some(main) = dominant(describing) else {
-        let text = match exact.first() {
-            Some(c) => format!(
+    let untrusted = |text: String| Trust {
+        text,
+        ..Trust::default()
+    };
+    if let Some(cycle) = prediction.continuum.iter().flatten().next() {
+        return trust_of_continuum(plant, relay, cycle);
+    }
+    let exact = &prediction.exact;
+    let keeps_switching = match outcome {
+        Some(outcome) => !matches!(
+            outcome,
+            Outcome::Rest | Outcome::Sliding | Outcome::Unbounded | Outcome::Chatter
+        ),
+        None => prediction.existence.is_some_and(|e| e.holds),
+    };
+    let Some(main) = dominant(&prediction.describing_function) else {
+        return match exact.first() {
+            Some(c) => untrusted(format!(
                 "The describing function sees no oscillation; exactly there is one of period {:.4} s: do not trust it here.",
                 c.cycle.period
+            )),
+            None if keeps_switching => untrusted(
+                "The describing function sees no oscillation, though the relay keeps switching: do not trust it here."
+                    .to_owned(),
             ),
-            None if existence.is_some_and(|e| e.holds) => {
-                "The describing function sees no oscillation, though the relay cannot come to rest: do not trust it here."
-                    .to_owned()
-            }
-            None => "The describing function sees no oscillation, and there is none.".to_owned(),
-        };
-        return Trust {
-            reliable: exact.is_empty() && existence.is_none_or(|e| !e.holds),
-            text,
-            ..Trust::default()
+            None => Trust {
+                reliable: true,
+                ..untrusted("The describing function sees no oscillation, and there is none.".to_owned())
+            },
         };
     };
     let (period, amplitude) = (main.cycle.period, main.cycle.amplitude);
     let distance = |c: &&ExactCycle| libm::log(c.cycle.period / period).abs();
     let nearest = exact
         .iter()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .filter(|c| distance(c) < libm::log(SAME_KIND));
+    let kind = match main.cycle.stable {
+        Some(false) => "an unstable cycle",
+        _ => "a cycle",
+    };
     let Some(nearest) = nearest else {
-        return Trust {
-            reliable: false,
-            text: format!(
-                "The describing function predicts a period of {period:.4} s, but there is no exact cycle with two \
-                 switches a period near it: do not trust it here."
-            ),
-            ..Trust::default()
-        };
+        return untrusted(format!(
+            "The describing function predicts {kind} of period {period:.4} s, but there is no exact cycle with two \
+             switches a period near it: do not trust it here."
+        ));
     };
     let errors = [
         period / nearest.cycle.period - 1.0,
@@ -211,40 +245,33 @@ fn trust(
     }
 }
 
-fn text(exact: &[ExactCycle], existence: Option<&Existence>, trust: &Trust) -> String {
-    let cycle = exact
-        .iter()
-        .find(|c| c.cycle.stable == Some(true))
-        .or(exact.first());
-    let first = match (cycle, existence) {
-        (Some(c), _) => {
-            let stable = match c.cycle.stable {
-                Some(true) => "stable",
-                Some(false) => "unstable: the smallest disturbance leads away from it",
-                None => "its stability is not known",
-            };
-            format!(
-                "It can oscillate with period {:.4} s and amplitude {:.4} ({stable}).",
-                c.cycle.period, c.cycle.amplitude
-            )
-        }
-        (None, Some(e)) if e.holds => {
-            "The relay cannot come to rest, but no cycle with two switches a period was found: it slides, or \
-             moves in a longer pattern."
-                .to_owned()
-        }
-        (None, Some(e)) => format!(
-            "No oscillation: with the relay held, the output goes to {:.4} or {:.4}, which is not beyond both \
-             thresholds.",
-            e.equilibria[0], e.equilibria[1]
+/// Beside one exact cycle of a continuum: the describing function at its amplitude, `4k |P(jw)|/pi = a`.
+fn trust_of_continuum(plant: &TransferFunction, relay: &Relay, cycle: &Cycle) -> Trust {
+    let exact = 2.0 * PI / cycle.period;
+    let off = |omega: f64| 4.0 * relay.gain / PI * plant.response(omega).norm() - cycle.amplitude;
+    let [low, high] = [exact / SAME_KIND, exact * SAME_KIND];
+    if (off(low) < 0.0) == (off(high) < 0.0) {
+        return Trust {
+            text: "The describing function sees no continuum here: do not trust it.".to_owned(),
+            ..Trust::default()
+        };
+    }
+    let omega = illinois((low, off(low)), (high, off(high)), off);
+    let error = exact / omega - 1.0;
+    let good = error.abs() <= TRUSTED_ERROR;
+    let verdict = if good {
+        "is good"
+    } else {
+        "should not be trusted"
+    };
+    Trust {
+        reliable: good,
+        period_error: Some(error),
+        amplitude_error: None,
+        text: format!(
+            "The describing function {verdict} here: it sees a continuum as well, and at the same amplitude its period is off \
+             by {:+.1} %.",
+            100.0 * error
         ),
-        (None, None) => "No cycle with two switches a period was found.".to_owned(),
-    };
-    let rest = match (cycle, existence) {
-        (Some(_), Some(e)) if !e.holds => {
-            " It can also come to rest: the relay's push does not reach beyond both thresholds."
-        }
-        _ => "",
-    };
-    format!("{first}{rest} {}", trust.text)
+    }
 }

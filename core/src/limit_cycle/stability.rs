@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use super::exact::History;
+use super::history::History;
 use crate::relay::Relay;
 use crate::simulate::{Flow, State};
 

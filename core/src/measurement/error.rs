@@ -4,16 +4,40 @@ use super::unit::ACCEPTED;
 
 /// Why a file cannot be imported. Shown as one line: file, line, column, what was expected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}: {problem}", place(*.line, .column.as_deref()))]
+#[error("{file}{}: {problem}{}", place(*.line, .column.as_deref()), advised(.advice.as_deref()))]
 pub struct ImportError {
     /// Name of the file.
-    pub file: String,
+    pub file: Box<str>,
     /// Line, from 1; `None` where the file as a whole is wrong.
     pub line: Option<usize>,
     /// The column, as `3 (x1)`.
-    pub column: Option<String>,
+    pub column: Option<Box<str>>,
     /// What is wrong and what would be right.
     pub problem: Problem,
+    /// Options of the command line with which the file is read, as far as its columns go.
+    pub advice: Option<Box<str>>,
+}
+
+impl ImportError {
+    /// An error at this place, without advice.
+    pub(super) fn new(
+        file: &str,
+        line: Option<usize>,
+        column: Option<String>,
+        problem: Problem,
+    ) -> Self {
+        Self {
+            file: file.into(),
+            line,
+            column: column.map(Into::into),
+            problem,
+            advice: None,
+        }
+    }
+}
+
+fn advised(advice: Option<&str>) -> String {
+    advice.map_or_else(String::new, |advice| format!("; to read it: {advice}"))
 }
 
 fn place(line: Option<usize>, column: Option<&str>) -> String {
@@ -41,7 +65,6 @@ impl Problem {
                 | Self::Date { .. }
                 | Self::NeedlessTorqueConstant { .. }
                 | Self::NotMapped { .. }
-                | Self::NoUnitInMat { .. }
                 | Self::Lengths { .. }
                 | Self::Twice { .. }
                 | Self::Mixed { .. }
@@ -78,16 +101,10 @@ pub enum Problem {
         wanted: &'static str,
         hint: &'static str,
     },
+    #[error("no column '{wanted}', and it is not clear which is meant: {found}")]
+    Unclear { wanted: &'static str, found: String },
     #[error(
-        "no column '{wanted}', and it is not clear which is meant: {found}; say it in a mapping, such as {example}"
-    )]
-    Unclear {
-        wanted: &'static str,
-        found: String,
-        example: Box<str>,
-    },
-    #[error(
-        "the column '{name}' has dates or times of day, such as '{text}', which are not read; write the time as a number of seconds since the begin: t [s]"
+        "the column '{name}' has dates or times of day that are not understood, such as '{text}'; expected 2025-01-31T09:27:03.5, 31.01.2025 09:27:03 or 09:27:03.5, or a number of seconds: t [s]"
     )]
     Date { name: String, text: String },
     #[error("no column '{wanted}' to map; the file has {found}")]
@@ -97,23 +114,27 @@ pub enum Problem {
     )]
     NeedlessTorqueConstant { unit: String, given: &'static str },
     #[error(
-        "a MAT-file does not say which variable is what; map them, such as t=time [s], u=current [A], x1=angle [rad]; it has {found}"
+        "a file of MATLAB does not say which variable is what; map them, such as t=time [s], u=current [A], x1=angle [rad]; it has {found}"
     )]
     NotMapped { found: String },
-    #[error("no unit; a MAT-file has none, so say it in the mapping, such as {name} [s]")]
-    NoUnitInMat { name: String },
     #[error("{found} values, but '{other}' has {expected}; all must have the same number")]
     Lengths {
         found: usize,
         other: String,
         expected: usize,
     },
+    #[error("there are no numbers in the file; expected times, an input and an output")]
+    NoNumbers,
+    #[error("the file begins as JSON does, but is none: {what}")]
+    Json { what: String },
+    #[error(
+        "the HDF5 file is damaged, or has what is not read here: {what}; save it from MATLAB with -v7"
+    )]
+    Hdf5Damaged { what: String },
     #[error("what begins at byte {byte} of the MAT-file is damaged; expected {expected} in it")]
     MatDamaged { byte: usize, expected: &'static str },
-    #[error("the MAT-file unpacks to more than {mebibytes} MiB; save only the variables needed")]
+    #[error("the file unpacks to more than {mebibytes} MiB; save only the variables needed")]
     MatTooLarge { mebibytes: usize },
-    #[error("a file in HDF5, as MATLAB's save -v7.3 writes it; save it with -v7")]
-    Hdf5,
     #[error("a MAT-file of level 4, as MATLAB's save -v4 writes it; save it with -v7")]
     Mat4,
     #[error("the column '{name}' stands there twice; each may come once")]

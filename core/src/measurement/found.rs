@@ -31,6 +31,8 @@ pub struct Numbers {
     pub first: Vec<f64>,
     /// The least and the largest of those that are finite.
     pub range: Option<[f64; 2]>,
+    /// Whether they were dates or times of day, which count in s from the first.
+    pub dates: bool,
     /// Whether one of them is not larger than the one before.
     turns: bool,
     last: Option<f64>,

@@ -1,9 +1,10 @@
 //! What the columns of a file most likely are: by their units, by what their names resemble, and by the order of their
 //! values. A form that someone looks over gets the likeliest; where nobody is asked, only what can be no other is taken.
 
+use super::clock::unit_from_1970;
 use super::error::Problem;
 use super::found::FoundColumn;
-use super::header::{Field, Role, shorten};
+use super::header::{Field, Role, listed, shorten};
 use super::mapping::ImportOptions;
 use super::unit::{COUNTS, is_bare_counts, parse, usual_units};
 use super::{Kind, Quantity};
@@ -28,8 +29,10 @@ struct Resembling {
 const RESEMBLING: [Resembling; 5] = [
     Resembling {
         role: Role::Time,
-        parts: &["time", "zeit", "tiempo", "second", "sekunde"],
-        words: &["t", "sec"],
+        parts: &[
+            "time", "zeit", "tiempo", "second", "sekunde", "elapsed", "uhr",
+        ],
+        words: &["t", "sec", "date", "datum", "millis", "micros", "clock"],
     },
     Resembling {
         role: Role::Measured(Quantity::Velocity),
@@ -55,19 +58,52 @@ const RESEMBLING: [Resembling; 5] = [
     Resembling {
         role: Role::Measured(Quantity::Input),
         parts: &[
-            "torque", "moment", "force", "kraft", "current", "strom", "volt", "spannung",
-            "command", "stell", "input", "eingang", "power", "leistung", "pwm", "duty", "heater",
-            "heiz", "valve", "ventil", "pump",
+            "torque",
+            "moment",
+            "force",
+            "kraft",
+            "current",
+            "strom",
+            "volt",
+            "spannung",
+            "command",
+            "stell",
+            "input",
+            "eingang",
+            "power",
+            "leistung",
+            "pwm",
+            "duty",
+            "heater",
+            "heiz",
+            "valve",
+            "ventil",
+            "pump",
+            "control",
+            "manipulated",
+            "actuat",
+            "throttle",
+            "drossel",
+            "burner",
+            "brenner",
+            "cooler",
+            "kühler",
+            "kuehler",
+            "ansteuer",
+            "tastgrad",
         ],
-        words: &["u", "i", "iq", "m", "f", "tau", "q1", "q2"],
+        words: &[
+            "u", "i", "iq", "m", "f", "tau", "q1", "q2", "u1", "uin", "ctrl", "cmd", "mv", "co",
+        ],
     },
     Resembling {
         role: Role::Measured(Quantity::Output),
         parts: &[
             "output", "ausgang", "temp", "press", "druck", "level", "stand", "flow", "fluss",
-            "istwert", "pegel",
+            "istwert", "pegel", "niveau", "regelgr", "humid", "feuchte", "concentr", "konzentr",
+            "response", "antwort",
         ],
-        words: &["y", "t1", "t2"],
+        words: &["y", "t1", "t2", "y1", "yout", "pv", "out"],
     },
 ];
 
@@ -94,7 +130,36 @@ const WANTED: [&str; 10] = [
     "fehler",
 ];
 
+/// Names of a column that has the sampling period and not the times.
+const PERIOD: [&str; 10] = [
+    "ts",
+    "dt",
+    "delta_t",
+    "deltat",
+    "period",
+    "sampling",
+    "sample time",
+    "sample period",
+    "abtastzeit",
+    "abtastintervall",
+];
+
+/// Whether a column of this name may have the sampling period.
+pub(super) fn is_period(name: &str) -> bool {
+    let name = name.to_lowercase().replace('_', " ");
+    let sampled = [
+        "sampling time",
+        "sampling period",
+        "sampling interval",
+        "sample interval",
+    ];
+    PERIOD.contains(&name.trim())
+        || sampled.iter().any(|part| name.contains(part))
+        || name.trim() == "delta t"
+}
+
 /// How much a column looks like a role by its unit and by its name; both add up.
+const DATES: u32 = 50;
 const BY_UNIT: u32 = 20;
 const BY_NAME: u32 = 10;
 
@@ -132,6 +197,10 @@ impl Resembling {
         if column.known_as == Some(self.role) {
             return 100;
         }
+        // Dates are times, and nothing else.
+        if column.numbers.dates {
+            return if self.role == Role::Time { DATES } else { 0 };
+        }
         let unit = column.unit.as_deref().filter(|u| parse(u).is_some());
         let output = self.role == Role::Measured(Quantity::Output);
         let fits = if output {
@@ -145,9 +214,13 @@ impl Resembling {
         };
         let name = column.name.to_lowercase();
         let has = |parts: &[&str]| parts.iter().any(|p| name.contains(p));
-        let named = has(self.parts) || words(&name).any(|w| self.words.contains(&w));
+        let named = self.resembles(&column.name);
         let measured = output || self.moves();
-        if (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS)) {
+        let other_time = self.role != Role::Time
+            && column.numbers.increase()
+            && RESEMBLING[0].resembles(&column.name);
+        if other_time || (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS))
+        {
             return 0;
         }
         // The output of a process may have any unit, which then says nothing.
@@ -157,6 +230,13 @@ impl Resembling {
             _ if other => 0,
             fits => BY_UNIT * u32::from(fits.is_some()) + BY_NAME * u32::from(named),
         }
+    }
+
+    /// Whether a name resembles its names.
+    fn resembles(&self, name: &str) -> bool {
+        let lower = name.to_lowercase();
+        let is_word = |word: &str| self.words.contains(&word.to_lowercase().as_str());
+        self.parts.iter().any(|part| lower.contains(part)) || words(name).any(is_word)
     }
 
     /// Whether it is what moves.
@@ -198,8 +278,10 @@ fn lacking(fields: &[Field], options: &ImportOptions) -> Vec<Role> {
     let first = [Role::Time, Role::Measured(Input)];
     let first = first.into_iter().filter(|role| !has(*role));
     let outputs = outputs.iter().map(|q| Role::Measured(*q));
-    // What the mapping speaks of is settled by it.
-    let settled = |role: &Role| options.mapping.entries.iter().any(|e| e.role == *role);
+    // What the mapping speaks of is settled by it, and times by a period.
+    let settled = |role: &Role| {
+        options.mapping.speaks_of(*role) || (*role == Role::Time && options.period.is_some())
+    };
     first.chain(outputs).filter(|role| !settled(role)).collect()
 }
 
@@ -221,7 +303,7 @@ pub(super) fn fill(
         free.filter(|i| resembling.may_be(&columns[*i])).collect()
     };
     let wanted = RESEMBLING.iter().filter(|r| lacking.contains(&r.role));
-    let found: Vec<(&Resembling, Vec<usize>)> = wanted
+    let mut found: Vec<(&Resembling, Vec<usize>)> = wanted
         .map(|r| (r, candidates(r)))
         .filter(|(_, candidates)| !candidates.is_empty())
         .collect();
@@ -229,18 +311,13 @@ pub(super) fn fill(
         let mut all: Vec<usize> = of.iter().flat_map(|(_, c)| c.iter().copied()).collect();
         all.sort_unstable();
         all.dedup();
-        let names: Vec<&str> = all.iter().map(|i| columns[*i].address.as_str()).collect();
-        let example = of.last().and_then(|(r, c)| {
-            let address = &columns[*c.first()?].address;
-            Some(format!("{}={}", r.role.name(), shorten(address)))
-        });
+        let names = all.iter().map(|i| columns[*i].address.as_str());
         Problem::Unclear {
             wanted: match of {
                 [(only, _)] => only.role.name(),
                 _ => "x1' / 'y",
             },
-            found: names.join(", ").chars().take(200).collect(),
-            example: example.unwrap_or_default().into(),
+            found: listed(names),
         }
     };
     // A drive or a process?
@@ -249,7 +326,27 @@ pub(super) fn fill(
     if outputs.iter().any(output) && outputs.len() > 1 {
         return Err(unclear(&outputs));
     }
+    let resolved =
+        lacking.iter().all(|role| !is_output(*role)) || outputs.iter().any(|f| f.1.len() == 1);
+    let left = lacking
+        .contains(&INPUT)
+        .then(|| only_left(&columns, &free, &found))
+        .flatten()
+        .filter(|_| resolved);
+    if let Some(left) = left {
+        found.retain(|f| f.0.role != INPUT);
+        found.extend(
+            RESEMBLING
+                .iter()
+                .filter(|r| r.role == INPUT)
+                .map(|r| (r, vec![left])),
+        );
+    }
     for one in &found {
+        // What nothing else is left for needs no likeness.
+        if left.is_some() && one.0.role == INPUT {
+            continue;
+        }
         let something_else = |i: &usize| {
             let mut others = RESEMBLING.iter().filter(|r| r.role != one.0.role);
             others.any(|r| r.may_be(&columns[*i]))
@@ -273,6 +370,36 @@ pub(super) fn fill(
     Ok(notes)
 }
 
+const INPUT: Role = Role::Measured(Quantity::Input);
+
+fn is_output(role: Role) -> bool {
+    use Quantity::{Output, Position, Velocity};
+    matches!(role, Role::Measured(Output | Position | Velocity))
+}
+
+/// The only column that can still be the input when time and outputs have theirs: one that goes up and down, and was not
+/// only wanted.
+fn only_left(
+    columns: &[FoundColumn],
+    free: &[usize],
+    found: &[(&Resembling, Vec<usize>)],
+) -> Option<usize> {
+    let taken = |i: usize| {
+        found
+            .iter()
+            .any(|(r, all)| r.role != INPUT && all.contains(&i))
+    };
+    let moves = |i: usize| {
+        let (name, numbers) = (columns[i].name.to_lowercase(), &columns[i].numbers);
+        let varies = numbers
+            .range
+            .is_some_and(|[least, largest]| least < largest);
+        varies && !numbers.increase() && !numbers.dates && !WANTED.iter().any(|w| name.contains(w))
+    };
+    let mut left = free.iter().copied().filter(|i| !taken(*i) && moves(*i));
+    left.next().filter(|_| left.next().is_none())
+}
+
 /// A role in a sentence.
 fn said(role: Role) -> &'static str {
     match role {
@@ -284,10 +411,26 @@ fn said(role: Role) -> &'static str {
     }
 }
 
-/// The words of a name, such as `motor` and `pos` in `motor_pos`.
+/// Whether a name resembles those of this role.
+pub(super) fn resembles(role: Role, name: &str) -> bool {
+    RESEMBLING
+        .iter()
+        .any(|r| r.role == role && r.resembles(name))
+}
+
+/// The words of a name, such as `motor` and `pos` in `motor_pos`, or `u` and `Est` in `uEst`.
 fn words(name: &str) -> impl DoubleEndedIterator<Item = &str> {
-    name.split(|c: char| !c.is_alphanumeric() && c != '/')
-        .filter(|w| !w.is_empty())
+    let parts = name.split(|c: char| !c.is_alphanumeric() && c != '/');
+    parts.filter(|w| !w.is_empty()).flat_map(|part| {
+        // The first small letter before a capital one ends a word.
+        let pairs = part.char_indices().zip(part.char_indices().skip(1));
+        let ends = |((_, one), (_, next)): &((usize, char), (usize, char))| {
+            one.is_lowercase() && next.is_uppercase()
+        };
+        let end = pairs.filter(ends).map(|(_, (at, _))| at).next();
+        let (first, rest) = part.split_at(end.unwrap_or(part.len()));
+        [first, rest].into_iter().filter(|w| !w.is_empty())
+    })
 }
 
 impl FoundColumn {
@@ -295,6 +438,16 @@ impl FoundColumn {
     pub fn unit_as(&self, role: Role, kind: Kind) -> Option<String> {
         if kind == Kind::Process && role != Role::Time {
             return Some(self.unit.clone().unwrap_or_else(|| "1".to_owned()));
+        }
+        let first = self.numbers.first.first().copied().unwrap_or_default();
+        if role == Role::Time && self.numbers.dates {
+            return Some("s".to_owned());
+        }
+        if role == Role::Time
+            && self.unit.is_none()
+            && let Some(unit) = unit_from_1970(first)
+        {
+            return Some(unit.to_owned());
         }
         let usual = usual_units(role);
         let counted = |unit: &str| usual.contains(&COUNTS) && is_bare_counts(unit);

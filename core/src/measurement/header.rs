@@ -3,6 +3,7 @@
 pub(super) use super::column::{Role, role, shorten};
 use super::error::Problem;
 use super::mapping::{ImportOptions, Mapping};
+use super::period::Period;
 use super::unit::{self, ACCEPTED, Measures};
 use super::{Kind, Quantity};
 
@@ -12,27 +13,24 @@ pub(super) struct Field {
     pub name: String,
     pub unit: Option<String>,
     pub role: Option<Role>,
+    /// Another name that stands in the file; empty where it has none.
+    pub also: String,
     /// -1 where its direction is the other one, else 1.
     pub sign: f64,
 }
 
 impl Field {
-    /// A column that is known by its name.
+    /// A column that is known by its name. What cannot be shown of it is left out.
     pub fn named(name: String, unit: Option<String>) -> Self {
+        let shown = |text: String| -> String { text.chars().filter(|c| !c.is_control()).collect() };
+        let name = shown(name);
         let role = role(&name);
         Self {
             name,
-            unit: unit.filter(|u| !u.is_empty()),
+            unit: unit.map(shown).filter(|u| !u.is_empty()),
             role,
+            also: String::new(),
             sign: 1.0,
-        }
-    }
-
-    /// A column whose name means nothing: a workspace of MATLAB has many a variable called x or v.
-    pub fn unknown(name: &str) -> Self {
-        Self {
-            role: None,
-            ..Self::named(name.to_owned(), None)
         }
     }
 }
@@ -66,6 +64,8 @@ pub(super) struct Header {
     /// What had to be assumed, for the user.
     pub notes: Vec<String>,
     pub width: usize,
+    /// The time from sample to sample, where no column has the times.
+    pub period: Option<Period>,
     /// Whether the time has no unit and is taken as seconds.
     pub assumes_seconds: bool,
 }
@@ -97,18 +97,43 @@ const LONGEST_ASSUMED: f64 = 10.0;
 /// A problem and the column (from 1, with its name) that it concerns.
 pub(super) type Located = (Option<(usize, String)>, Problem);
 
-/// Splits `x1 [rad]` into name and unit; parentheses serve as well.
-pub(super) fn name_and_unit(field: &str) -> (String, Option<String>) {
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some(start) = field.find(open)
-            && let Some(end) = field.rfind(close)
-            && end > start
-        {
-            let unit = field[start + open.len_utf8()..end].trim().to_owned();
-            return (field[..start].trim().to_owned(), Some(unit));
-        }
+/// Names in one line of a sentence, as many as fit.
+pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    names
+        .join(", ")
+        .chars()
+        .filter(|c| !c.is_control())
+        .take(200)
+        .collect()
+}
+
+/// The place of what stands in brackets in a name, without them.
+fn bracketed(field: &str) -> Option<(usize, usize)> {
+    let marks = [('[', ']'), ('(', ')')].into_iter();
+    let mut found =
+        marks.filter_map(|(open, close)| Some((field.find(open)?, field.rfind(close)?)));
+    found
+        .find(|(start, end)| start < end)
+        .map(|(start, end)| (start + 1, end))
+}
+
+/// Whether a name has a number in parentheses, as in `pos (5)`, and no plain number: that is `(1)`.
+pub(super) fn has_number(field: &str) -> bool {
+    let number =
+        bracketed(field).and_then(|(start, end)| field[start..end].trim().parse::<u32>().ok());
+    number.is_some_and(|number| number != 1)
+}
+
+/// Splits `x1 [rad]` into name and unit; parentheses serve as well. Where columns are `numbered`, a number in brackets
+/// belongs to the name.
+pub(super) fn name_and_unit(field: &str, numbered: bool) -> (String, Option<String>) {
+    let unit = bracketed(field).map(|(start, end)| (&field[..start - 1], field[start..end].trim()));
+    let unit = unit.filter(|(_, unit)| !numbered || unit.parse::<u32>().is_err());
+    match unit {
+        Some((name, unit)) => (name.trim().to_owned(), Some(unit.to_owned())),
+        None => (field.trim().to_owned(), None),
     }
-    (field.trim().to_owned(), None)
 }
 
 /// What a mapping calls a column that has no name of its own, before its place from 1.
@@ -130,7 +155,8 @@ pub(super) fn addresses(fields: &[Field]) -> Vec<String> {
 
 /// The column of this name or at this place.
 fn addressed(fields: &[Field], source: &str) -> Option<usize> {
-    let named = fields.iter().position(|f| f.name == source);
+    let called = |name: fn(&Field) -> &String| fields.iter().position(|f| name(f) == source);
+    let named = called(|f| &f.name).or_else(|| called(|f| &f.also));
     let place = || {
         source
             .strip_prefix(PLACE)?
@@ -155,7 +181,7 @@ pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem
         let Some(i) = addressed(fields, source) else {
             return Err(Problem::NoSuchColumn {
                 wanted: shorten(source),
-                found: addresses(fields).join(", ").chars().take(200).collect(),
+                found: listed(addresses(fields).iter().map(String::as_str)),
             });
         };
         if let Some(field) = fields.get_mut(i) {
@@ -189,7 +215,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
             Kind::Drive
         },
     );
-    present(&roles, kind)?;
+    present(&roles, kind, options.period.is_some())?;
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
     let mut plain = Vec::new();
@@ -200,9 +226,12 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
             unit,
             role,
             sign,
+            ..
         } = field;
         let here = || Some((index + 1, name.clone()));
-        let Some(role) = role.filter(|r| belongs(*r, kind)) else {
+        // A period that is given counts, whatever times there are.
+        let counts = |r: &Role| belongs(*r, kind) && (*r != Role::Time || options.period.is_none());
+        let Some(role) = role.filter(counts) else {
             if options.mapping.is_empty() {
                 ignored.push(shorten(&name));
             }
@@ -243,6 +272,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
         ignored,
         notes: Vec::new(),
         width,
+        period: options.period,
         assumes_seconds: clock.is_some(),
     };
     if let Some(clock) = clock {
@@ -405,12 +435,15 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
 }
 
 /// Checks that what a measurement needs is there.
-fn present(roles: &[Option<Role>], kind: Kind) -> Result<(), Located> {
+fn present(roles: &[Option<Role>], kind: Kind, timed: bool) -> Result<(), Located> {
     let has = |role: Role| roles.contains(&Some(role));
     let measured = |q: Quantity| has(Role::Measured(q));
     let missing = |wanted, hint| Err((None, Problem::NoColumn { wanted, hint }));
-    if !has(Role::Time) {
-        return missing("t", "add the time, such as t [s]");
+    if !has(Role::Time) && !timed {
+        return missing(
+            "t",
+            "add the time, such as t [s], or say the sampling period",
+        );
     }
     if !measured(Quantity::Input) {
         return missing(

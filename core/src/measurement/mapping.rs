@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use super::column::{Role, shorten};
+use super::period::Period;
 use super::split::split_header;
 use super::unit::{self, Measures};
 
@@ -15,6 +16,8 @@ pub struct ImportOptions {
     pub mapping: Mapping,
     /// What a current, voltage or command as input of a drive becomes; see [`TorqueConstant`].
     pub torque_constant: Option<TorqueConstant>,
+    /// The time from one sample to the next, where the file has no times, or others than these.
+    pub period: Option<Period>,
 }
 
 /// Which column is what, as in `t=time [ms], u=-current [A], x1=enc [counts:4096]`.
@@ -32,6 +35,11 @@ impl Mapping {
     /// Whether it says nothing.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
+    }
+
+    /// Whether it says which column this is, or that none is.
+    pub(super) fn speaks_of(&self, role: Role) -> bool {
+        self.entries.iter().any(|entry| entry.role == role)
     }
 
     /// Whether a column of this name is the one meant where it stands in a mapping.

@@ -4,30 +4,39 @@
 //! Time is strictly increasing and every value is finite: [`import_csv`]
 //! refuses anything else, so that no later module has to check again.
 
+mod advice;
+mod cell;
+mod clock;
 mod column;
 mod csv;
 mod error;
 mod found;
 mod guess;
+mod hdf5;
 mod header;
+mod json;
 mod kind;
+mod log;
 mod mapping;
 mod mat;
-
+mod matlab_objects;
+mod period;
 mod rates;
 mod record;
+mod series;
 mod size;
 mod split;
 mod table;
+mod text;
 mod unit;
 
 pub use column::Role;
-pub use csv::import_csv;
 pub use error::{ImportError, Problem};
 pub use found::FoundColumn;
 pub use guess::{Guess, guess};
 pub use kind::{Kind, Motion, Quantity};
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
+pub use period::{Period, PeriodError};
 pub use record::{Channel, MIN_SAMPLES, Measurement};
-pub use table::{columns, import};
+pub use table::{columns, import, import_csv};
 pub use unit::{COUNTS, needs_torque_constant, usual_units};

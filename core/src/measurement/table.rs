@@ -1,139 +1,115 @@
-//! Files of any format that is known, and columns of numbers that come without text.
+//! Files of any format that is known.
 
-use super::csv::{assemble, import_text, survey};
+use super::advice::advise;
+use super::csv::import_text;
 use super::error::{ImportError, Problem};
-use super::found::{FoundColumn, Numbers, addressed};
-use super::header::{Field, Header, Role, map, understand};
+use super::found::FoundColumn;
 use super::mapping::ImportOptions;
-use super::mat::{self, Format, Series};
-use super::size::wrong_size;
-use super::{MIN_SAMPLES, Measurement, header::shorten};
+use super::mat::{self, Format};
+use super::series::Table;
+use super::{Kind, MIN_SAMPLES, Measurement};
+use super::{found, hdf5, json, log, text};
 
-/// Reads a measurement: CSV (see [`import_csv`](super::import_csv)) or a MATLAB file of level 5
-/// (`save -v6` or `-v7`), by what the file is and not by its name.
+/// Reads a measurement, by what the file is and not by its name: a text with columns, JSON (an array or lines of
+/// objects, or an object of arrays), lines of names with values (`t: 0.01 u: 3`), or a file of MATLAB (`save -v6`, `-v7`
+/// and, as HDF5, `-v7.3`).
+///
+/// The header of a text names the columns with units in brackets: `t [s],u [N m],x1 [rad],v1 [rad/s]` for a
+/// drive, `t [s],u [1],y [1]` for a process. They are divided by comma, semicolon, tab or, where none of
+/// these is there, blanks; with semicolon and tab a decimal comma is understood. What a device says about itself above the
+/// header is passed over. Lines that start with `#` are comments, of which the last one before the numbers is the header
+/// where the file has no other and it names as many columns as there are. Units may stand in a row of their own below the
+/// names. Times are numbers, dates (ISO 8601) or counts from 1970; words such as `True` and `off` are 1 and 0.
+///
+/// Everything but the signals of a process is converted to SI units; encoder counts state their resolution in the
+/// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). The kind is told by the columns if it is not given. What no
+/// column is called is taken from the only one whose name resembles it, with a warning, and the input from the only one
+/// that is left. Other columns are ignored with a warning.
 ///
 /// A MATLAB file has names but no units, so it needs a mapping, such as
 /// `t=time [s], u=log.current [A], x1=enc [counts:4096]`. Variables in structures are addressed as in
-/// MATLAB (`log.signals(2).values`), columns of matrices as `data(:,2)`.
+/// MATLAB (`log.signals(2).values`, `speed.Data` of a timeseries), columns of matrices as `data(:,2)`.
 ///
 /// # Errors
-/// One line that names file and place and says what was expected.
+/// One line that names file and place and says what was expected, and with which options the file is read where it is
+/// only not clear what is what.
 pub fn import(
     name: &str,
     bytes: &[u8],
     options: &ImportOptions,
 ) -> Result<Measurement, ImportError> {
-    let fail = |(column, problem)| ImportError {
-        file: name.to_owned(),
-        line: None,
-        column,
-        problem,
+    read(name, bytes, options).map_err(|error| {
+        let columns = || all_columns(bytes).ok();
+        let refused = |options: &ImportOptions| read(name, bytes, options).err().map(|e| e.problem);
+        advise(error, options, columns, refused)
+    })
+}
+
+/// Reads a measurement as [`import`] does that says itself what its columns are.
+///
+/// # Errors
+/// As [`import`].
+pub fn import_csv(
+    name: &str,
+    bytes: &[u8],
+    kind: Option<Kind>,
+) -> Result<Measurement, ImportError> {
+    let options = ImportOptions {
+        kind,
+        ..ImportOptions::default()
+    };
+    import(name, bytes, &options)
+}
+
+/// Reads a measurement; an error has no advice yet.
+fn read(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Measurement, ImportError> {
+    match table(bytes).map_err(|(line, p)| ImportError::new(name, line, None, p))? {
+        Some(table) => table.import(name, options),
+        None => import_text(name, bytes, options),
+    }
+}
+
+/// The series of a file; `None` of a text with columns, which is read row by row.
+fn table(bytes: &[u8]) -> Result<Option<Table>, text::Located> {
+    let whole = |problem| (None, problem);
+    let of_matlab = |series| Table {
+        series,
+        named: false,
     };
     match mat::format_of(bytes) {
-        Format::Other => import_text(name, bytes, options),
-        Format::Hdf5 => Err(fail((None, Problem::Hdf5))),
-        Format::Mat4 => Err(fail((None, Problem::Mat4))),
-        Format::Mat5 => import_mat(name, bytes, options).map_err(fail),
+        Format::Hdf5 => Ok(Some(of_matlab(hdf5::read(bytes).map_err(whole)?))),
+        Format::Mat4 => Err(whole(Problem::Mat4)),
+        Format::Mat5 => Ok(Some(of_matlab(mat::read(bytes).map_err(whole)?))),
+        Format::Other => {
+            // A log may begin with a bracket, as JSON does.
+            let series = match json::read(bytes) {
+                Ok(Some(series)) => Some(series),
+                Ok(None) => log::read(bytes),
+                Err(no_json) => Some(log::read(bytes).ok_or(no_json)?),
+            };
+            Ok(series.map(|series| Table {
+                series,
+                named: true,
+            }))
+        }
     }
 }
 
-/// A problem and the column that it concerns.
-type Located = (Option<String>, Problem);
-
-fn import_mat(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Measurement, Located> {
-    let whole = |problem| (None, problem);
-    let series = mat::read(bytes).map_err(whole)?;
-    let mut fields: Vec<Field> = series.iter().map(|s| Field::unknown(&s.name)).collect();
-    if options.mapping.is_empty() {
-        let names: Vec<&str> = series.iter().map(|s| s.name.as_str()).collect();
-        let found = if names.is_empty() {
-            "no numbers".to_owned()
-        } else {
-            names.join(", ").chars().take(200).collect()
-        };
-        return Err(whole(Problem::NotMapped { found }));
-    }
-    map(&mut fields, &options.mapping).map_err(whole)?;
-    let bare = |f: &&Field| f.role.is_some() && f.unit.is_none();
-    if let Some(field) = fields.iter().find(bare) {
-        let name = shorten(&field.name);
-        return Err((Some(name.clone()), Problem::NoUnitInMat { name }));
-    }
-    let header = understand(fields, options).map_err(|(column, p)| (column.map(|(_, n)| n), p))?;
-    let values = in_si(&header, series)?;
-    assemble(name, &header, values).map_err(whole)
-}
-
-/// The columns of a CSV or MATLAB file that are long enough to be a channel of a measurement.
+/// The columns of a file that are long enough to be a channel of a measurement.
 ///
 /// # Errors
 /// One line that says why the file has none, where it is damaged or of another format.
 pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError> {
-    let fail = |(line, problem)| ImportError {
-        file: name.to_owned(),
-        line,
-        column: None,
-        problem,
-    };
-    let seen = match mat::format_of(bytes) {
-        Format::Other => survey(bytes, Numbers::default(), Numbers::take).map_err(fail)?,
-        Format::Hdf5 => return Err(fail((None, Problem::Hdf5))),
-        Format::Mat4 => return Err(fail((None, Problem::Mat4))),
-        Format::Mat5 => survey_mat(bytes).map_err(|problem| fail((None, problem)))?,
-    };
-    let mut found = addressed(seen);
+    let found = all_columns(bytes);
+    let mut found = found.map_err(|(line, p)| ImportError::new(name, line, None, p))?;
     found.retain(|column| column.numbers.count >= MIN_SAMPLES);
     Ok(found)
 }
 
-fn survey_mat(bytes: &[u8]) -> Result<Vec<(Field, Numbers)>, Problem> {
-    let seen = |series: mat::Series| {
-        let mut numbers = Numbers::default();
-        series.values.iter().for_each(|v| numbers.take(*v));
-        (Field::unknown(&series.name), numbers)
-    };
-    Ok(mat::read(bytes)?.into_iter().map(seen).collect())
-}
-
-/// The columns of a header in SI units, checked as the rows of a text are.
-fn in_si(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Located> {
-    let mut all: Vec<Vec<f64>> = Vec::new();
-    for column in &header.columns {
-        let mut values = series
-            .get_mut(column.index)
-            .map(|s| std::mem::take(&mut s.values))
-            .unwrap_or_default();
-        if let (Some(first), Some(other)) = (all.first(), header.columns.first())
-            && first.len() != values.len()
-        {
-            let problem = Problem::Lengths {
-                found: values.len(),
-                other: shorten(&other.name),
-                expected: first.len(),
-            };
-            return Err((Some(shorten(&column.name)), problem));
-        }
-        let here = |i: usize| Some(format!("{}, sample {}", shorten(&column.name), i + 1));
-        for (i, value) in values.iter_mut().enumerate() {
-            let text = *value;
-            *value *= column.factor;
-            if !value.is_finite() {
-                let text = format!("{text}");
-                return Err((here(i), Problem::NotFinite { text }));
-            }
-        }
-        let pairs = || values.iter().zip(values.iter().skip(1));
-        if column.role == Role::Time
-            && let Some((i, (before, now))) = pairs().enumerate().find(|(_, (a, b))| b <= a)
-        {
-            let (before, now) = (format!("{before}"), format!("{now}"));
-            return Err((here(i + 1), Problem::TimeOrder { before, now }));
-        }
-        if let Some(i) = wrong_size(column.role, &values) {
-            let text = format!("{:e}", values[i] / column.factor);
-            return Err((here(i), Problem::Size { text }));
-        }
-        all.push(values);
-    }
-    Ok(all)
+/// The columns of a file, however short they are.
+fn all_columns(bytes: &[u8]) -> Result<Vec<FoundColumn>, text::Located> {
+    Ok(match table(bytes)? {
+        Some(table) => table.columns(),
+        None => found::addressed(text::survey(bytes)?),
+    })
 }

@@ -45,7 +45,7 @@ impl Measures {
 }
 
 /// What is accepted, for messages.
-pub(super) const ACCEPTED: &str = "time s, ms, us, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage V, mV; command %, PWM, counts, 1; angle rad, mrad, deg, rev; \
+pub(super) const ACCEPTED: &str = "time s, ms, us, ns, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage V, mV; command %, PWM, counts, 1; angle rad, mrad, deg, rev; \
     length m, mm, um; velocity rad/s, deg/s, rpm, m/s, mm/s; counts with their resolution, such as [counts, 4096/rev] \
     or [counts, 0.001 mm]";
 
@@ -152,6 +152,7 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "s" | "sec" | "secs" | "second" | "seconds" | "sekunde" | "sekunden" => (Time, 1.0),
         "ms" | "msec" | "millis" | "millisec" | "millisecond" | "milliseconds" => (Time, 1e-3),
         "us" | "usec" | "micros" | "microsec" | "microsecond" | "microseconds" => (Time, 1e-6),
+        "ns" | "nsec" | "nanoseconds" => (Time, 1e-9),
         "min" | "mins" | "minute" | "minutes" | "minuten" => (Time, 60.0),
         "h" | "hour" | "hours" => (Time, 3600.0),
         "nm" | "n.m" | "n-m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),

@@ -313,7 +313,8 @@ impl Acting {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::engine::{Engine, State};
+    use crate::model::engine::Engine;
+    use crate::model::state::State;
     use crate::model::{DryFriction, Model, runge_kutta};
 
     /// The contact of a body that rubs, whose friction builds up over this displacement, and its free flow.

@@ -7,8 +7,8 @@
 //! while they touch, it is told by the gap. A Kalman filter (1960) joins both.
 
 use super::flow::Motion;
+use super::followed::Followed;
 use super::friction::Mode;
-use super::load::Followed;
 use super::seen_load::{LoadState, Surprise, root};
 use super::{Instant, Load, Model, Slowing};
 use crate::order::quantile;

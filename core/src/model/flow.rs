@@ -9,6 +9,7 @@
 //! measurements are sampled at equal distances.
 
 use super::short;
+use crate::root::falsi;
 
 /// Coefficients of the solution after a duration `h`.
 #[derive(Clone, Copy, Debug)]
@@ -232,7 +233,7 @@ impl Flow {
     /// Time after which the velocity passes through zero, if it does before `until`, where it is `end`.
     pub fn stops(&self, m: Motion, w: f64, q: f64, until: f64, end: f64) -> f64 {
         if self.mu.is_some() {
-            return root(until, m.v, end, |t| self.after(m, w, q, t).v);
+            return falsi(until, m.v, end, |t| self.after(m, w, q, t).v);
         }
         // v exp(-lambda t) + a (1 - exp(-lambda t)) / lambda = 0
         let a = self.b * (w + q);
@@ -345,7 +346,7 @@ impl Spring {
     /// Time after which the velocity passes through zero, if it does before `until`, where it is `end`.
     pub fn stops(&self, m: Motion, w: f64, q: f64, until: f64, end: f64) -> f64 {
         if self.mu.is_some() {
-            return root(until, m.v, end, |t| self.after(m, w, q, t).v);
+            return falsi(until, m.v, end, |t| self.after(m, w, q, t).v);
         }
         // v cos(omega t) = (alpha v + kappa y) sin(omega t) / omega
         let alpha = 0.5 * self.lambda;
@@ -367,32 +368,6 @@ impl Spring {
 
 /// Radians below which a sine is its angle to round-off.
 const STRAIGHT: f64 = 1e-8;
-
-/// Root of `f` between 0 and `h`, where `f(0)` and `f(h)` have different signs.
-///
-/// Regula falsi with the Illinois rule, safeguarded by bisection; stops at `1e-13 h`.
-pub(crate) fn root(h: f64, f0: f64, fh: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (mut a, mut fa, mut b, mut fb) = (0.0, f0, h, fh);
-    for i in 0..80 {
-        if fb == 0.0 || (b - a).abs() <= 1e-13 * h {
-            return b;
-        }
-        let falsi = b - fb * (b - a) / (fb - fa);
-        let c = if i % 8 == 7 || !falsi.is_finite() {
-            0.5 * (a + b)
-        } else {
-            falsi
-        };
-        let fc = f(c);
-        if (fc < 0.0) == (fb < 0.0) {
-            fa *= 0.5;
-        } else {
-            (a, fa) = (b, fb);
-        }
-        (b, fb) = (c, fc);
-    }
-    b
-}
 
 #[cfg(test)]
 mod tests {
@@ -427,11 +402,5 @@ mod tests {
             assert!((exact.v - reference.v).abs() < tolerance, "{lambda} {mu}");
             assert!((exact.z - reference.z).abs() < tolerance, "{lambda} {mu}");
         }
-    }
-
-    #[test]
-    fn root_finds_a_crossing_to_round_off() {
-        let f = |t: f64| (t - 0.3).mul_add(1.0, (t - 0.3).powi(3));
-        assert!((root(1.0, f(0.0), f(1.0), f) - 0.3).abs() < 1e-12);
     }
 }

@@ -1,6 +1,7 @@
 //! Rigid dry friction: sticking and slipping as modes of one body, found by exact flows.
 
-use super::flow::{Flow, Motion, root};
+use super::flow::{Flow, Motion};
+use crate::root::falsi;
 
 /// Changes of mode in one interval of held input after which the body is taken to stick: a run never
 /// hangs on infinitely many of them.
@@ -154,7 +155,7 @@ fn body_event(
     {
         // Behind a lag the velocity may dip below zero in between.
         let slope = |t: f64| flow.acceleration(flow.after(start, w, q, t), q);
-        let turn = root(left, slope(0.0), slope(left), slope);
+        let turn = falsi(left, slope(0.0), slope(left), slope);
         let lowest = velocity_at(flow, turn);
         (lowest * sign < 0.0).then_some((turn, lowest))
     } else {

@@ -5,10 +5,11 @@
 //! would be off by a part of such a jump, and after some contacts the whole motion would.
 
 use super::Load;
-use super::engine::State;
-use super::flow::{Flow, root};
+use super::flow::Flow;
 use super::friction::{Mode, Rubbing, slide};
 use super::joint::{Forces, Joined, Joint};
+use super::state::State;
+use crate::root::falsi;
 
 /// Events in one interval after which the rest is left to small steps.
 const MAX_EVENTS: usize = 24;
@@ -114,7 +115,7 @@ impl Impacts<'_> {
             let beyond = |s: &State| side * s.twist - gap;
             let from = beyond(&start);
             if from < 0.0 {
-                let used = root(time, from, beyond(&there), |t| {
+                let used = falsi(time, from, beyond(&there), |t| {
                     beyond(&self.flown(&start, t))
                 });
                 *state = self.flown(&start, used);
@@ -123,7 +124,7 @@ impl Impacts<'_> {
             }
             // They had parted while the contact was still pressed, and push each other again before it had sprung back.
             let force = |s: &State| side * self.unlimited(s, side);
-            let used = root(time, force(&start).min(0.0), force(&there), |t| {
+            let used = falsi(time, force(&start).min(0.0), force(&there), |t| {
                 force(&self.flown(&start, t))
             });
             *state = self.flown(&start, used);
@@ -219,7 +220,7 @@ impl Impacts<'_> {
             let now = margins(time);
             let ended = (0..now.len()).filter(|k| now[*k] <= 0.0 && last[*k] > 0.0);
             let times = ended.map(|k| {
-                let within = root(time - before, last[k], now[k], |t| margins(before + t)[k]);
+                let within = falsi(time - before, last[k], now[k], |t| margins(before + t)[k]);
                 (before + within, k)
             });
             event = times.min_by(|a, b| a.0.total_cmp(&b.0));

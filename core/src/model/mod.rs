@@ -14,6 +14,7 @@ mod engine;
 mod felt_load;
 mod flight;
 mod flow;
+mod followed;
 mod friction;
 mod impacts;
 mod joint;
@@ -24,19 +25,22 @@ pub(crate) mod runge_kutta;
 mod seen_load;
 mod short;
 mod smoothed;
+mod state;
 mod swing;
 
 pub use closed_loop::{Run, run_controlled};
 pub(crate) use contact::dahl;
-pub use engine::{Engine, State};
+pub use engine::Engine;
 pub(crate) use felt_load::slope;
 pub(crate) use flight::Slowing;
 pub(crate) use flow::free_body;
-pub use load::{Coupling, FollowedNoise, Load, load_torque};
+pub use followed::{FollowedNoise, load_torque};
+pub use load::{Coupling, Load};
 pub(crate) use replay::LoadBegin;
 pub use replay::{Excitation, FollowedLoad, Sensor, Start};
 pub(crate) use seen_load::{LoadState, Play, SeenContact, SeenLoad, Sharpness};
 pub(crate) use smoothed::smoothed;
+pub use state::State;
 
 /// Static map of the input or the output, applied sample by sample.
 pub type StaticMap = Box<dyn Fn(f64) -> f64 + Send + Sync>;

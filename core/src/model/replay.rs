@@ -2,7 +2,7 @@
 
 use super::bristle::{Bristle, Steady};
 use super::felt_load::Felt;
-use super::load::{Followed, FollowedNoise, Follower};
+use super::followed::{Followed, FollowedNoise, Follower};
 use super::seen_load::{SeenLoad, Sight, Tracker};
 use super::{Engine, Load, Model, State};
 

@@ -6,8 +6,8 @@
 
 use nalgebra::{DMatrix, SMatrix};
 
-use super::Load;
 use super::flow::Motion;
+use super::load::Load;
 use crate::exponential::exponential;
 
 /// Radians of a contact with play in one interval up to which its ends tell whether the contact lasts.

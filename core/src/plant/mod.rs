@@ -3,6 +3,7 @@
 //! A plant is a [`TransferFunction`], a [`StateSpace`] or a [`ZeroPoleGain`], each of which converts
 //! into the others, or a [`Multivariable`] with as many inputs as outputs.
 
+mod conversion;
 mod parse;
 mod presets;
 mod roots;

@@ -12,6 +12,7 @@ mod svg;
 
 use std::fmt::Write as _;
 
+use crate::diagnosis::ChannelNoise;
 use crate::measurement::Kind;
 use html::{escape, figure, legend, section, short};
 pub use input::{Provenance, ReportInput};
@@ -88,6 +89,16 @@ fn answer(out: &mut String, input: &ReportInput) {
         short(step.error),
         short(input.last.noise_floor),
     );
+    let missed = (input.last.step.left > 0.0).then(|| {
+        format!(
+            "The model misses {} % of the motion.",
+            short(100.0 * input.last.step.left)
+        )
+    });
+    let noise = input.last.noise.iter().map(ChannelNoise::words);
+    for fact in missed.into_iter().chain(noise) {
+        let _ = writeln!(out, "<p class=\"facts\">{}</p>", escape(&fact));
+    }
     if let Some(next) = input.verdict.and_then(|v| v.next_experiment.as_ref()) {
         let _ = writeln!(
             out,

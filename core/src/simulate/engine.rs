@@ -155,6 +155,11 @@ impl<'a> Engine<'a> {
         self.channels.get(i).map(|c| &c.out)
     }
 
+    /// Since when an output has been sliding, s.
+    pub fn slides_since(&self) -> Option<f64> {
+        self.slides
+    }
+
     /// Smallest and largest output of relay `i` since its last rise or since [`Engine::watch`].
     pub fn swing(&self, i: usize) -> Option<[f64; 2]> {
         self.channels.get(i).and_then(|c| c.swing)

@@ -21,7 +21,7 @@ pub use trajectory::{Cut, Trajectory};
 
 use crate::plant::{MAX_ORDER, Multivariable, PlantError, StateSpace};
 use crate::relay::{Relay, RelayError};
-use sliding::Sliding;
+pub(crate) use sliding::Sliding;
 
 /// Switches after which a run ends, as chattering or as too long, unless the caller says otherwise.
 pub const MAX_SWITCHES: usize = 20_000;

@@ -4,6 +4,8 @@
 //! fixed length carries it to round-off if the step is short enough; [`is_resolved`] tells. Roots are
 //! isolated by bounds on whole intervals, never by looking at samples: no pair of crossings is missed.
 
+use crate::root::newton;
+
 /// Terms of a series; degree 17 resolves steps of some four time constants.
 pub(crate) const TERMS: usize = 18;
 
@@ -217,45 +219,20 @@ impl Roots {
     }
 }
 
-/// Largest number of Newton steps; bisection takes over where they leave the bracket.
-const MAX_NEWTON: usize = 80;
-
 /// The root of `m`, with derivative `d`, between `low` and `high` where the values differ in sign.
-pub(crate) fn root(
-    m: &Series,
-    d: &Series,
-    mut low: f64,
-    mut high: f64,
-    f_low: f64,
-    f_high: f64,
-) -> f64 {
-    let falling = f_low > 0.0;
-    let mut z = low - f_low * (high - low) / (f_high - f_low);
-    if !(z > low && z < high) {
-        z = 0.5 * (low + high);
+pub(crate) fn root(m: &Series, d: &Series, low: f64, high: f64, f_low: f64, f_high: f64) -> f64 {
+    let mut start = low - f_low * (high - low) / (f_high - f_low);
+    if !(start > low && start < high) {
+        start = 0.5 * (low + high);
     }
-    for _ in 0..MAX_NEWTON {
-        let (f, slope) = value_and_slope(m, d, z);
-        if f == 0.0 {
-            return z;
-        }
-        if (f > 0.0) == falling {
-            low = z;
-        } else {
-            high = z;
-        }
-        let step = f / slope;
-        let mut next = z - step;
-        if !(next > low && next < high) {
-            next = 0.5 * (low + high);
-        }
-        // Round-off of z is that of the interval [-1, 1].
-        if (next - z).abs() <= 2.0 * f64::EPSILON {
-            return next;
-        }
-        z = next;
-    }
-    z
+    // Round-off of z is that of the interval [-1, 1].
+    newton(
+        [low, high],
+        start,
+        f_low > 0.0,
+        |_| 2.0 * f64::EPSILON,
+        |z| value_and_slope(m, d, z),
+    )
 }
 
 /// First instant in `[low, high]` at which `m - level` (powers) comes from 0 or below to above 0;

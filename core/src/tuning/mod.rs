@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `experiment` | the relay test and its measurements |
-//! | `ultimate` | (4): ultimate gain and period, and the true ones |
+//! | `ultimate` | (9): ultimate gain and period, and the true ones |
 //! | `phase_margin` | (7): relay for a required phase margin |
 //! | `adaptation` | (8): gain adaptation as an experiment |
 //! | `moving_point` | (9): controller that moves `M` to `S` |
@@ -12,6 +12,7 @@
 //! | `controller` | the PID controller and its forms |
 //! | `closed_loop`, `margins` | the loop with the controller |
 //! | `report` | all of it at once |
+//! | [`measured`] | from a measured test instead of a simulated one |
 //!
 //! **Amplitude** is half of peak to peak everywhere.
 //!
@@ -30,6 +31,7 @@ mod error;
 mod experiment;
 mod linear;
 mod margins;
+pub mod measured;
 mod moving_point;
 mod phase_margin;
 mod report;
@@ -51,6 +53,7 @@ pub use report::{
 };
 pub use rules::{Identified, RULES, Rule, Wish, rule};
 pub use ultimate::{
-    AMPLITUDE_CONVENTION, Crossing, Ultimate, UltimateReport, compare, crossings, true_ultimate,
-    ultimate_gain, ultimate_gain_with_hysteresis,
+    AMPLITUDE_CONVENTION, Crossing, RelayGain, ShownPoint, StabilityLimits, Ultimate,
+    UltimateReport, compare, crossings, gain_on_real_axis, relay_gain, stability_limits,
+    true_ultimate, ultimate_gain,
 };

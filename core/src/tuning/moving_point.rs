@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::controller::Pid;
 use super::error::TuningError;
-use super::scan::bisect;
+use super::scan::crossing;
 
 /// A known point of the plant's Nyquist curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,7 +66,7 @@ fn quotient(from: &NyquistPoint, to: Complex<f64>) -> Result<(f64, f64), TuningE
     }
 }
 
-/// The PID controller with `Ti = ratio Td` and `Tf = Td/filter` that moves `from` to `to`, equation (9).
+/// The PID controller with `Ti = ratio Td` and `Tf = Td/filter` that moves `from` to `to`, equation (4).
 ///
 /// # Errors
 /// [`TuningError::OutOfReach`] where the controller cannot turn so far; with the usual `ratio` 4 and
@@ -93,7 +93,7 @@ pub fn pid(
     while angle(low) > turn && low > 1e-12 {
         low *= 0.5;
     }
-    let x = bisect(low, top, false, |x| angle(x) - turn);
+    let x = crossing(low, top, false, |x| angle(x) - turn);
     let derivative = x / from.omega;
     Ok(Pid::with_derivative(
         size / c(x).norm(),

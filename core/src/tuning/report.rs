@@ -172,7 +172,7 @@ pub struct Step {
 pub struct TuningReport {
     /// The symmetric relay test.
     pub test: RelayTest,
-    /// Ultimate gain and period, equation (4).
+    /// Ultimate gain and period, equation (9).
     pub ultimate: UltimateReport,
     /// All crossings of the negative real axis by the true Nyquist curve.
     pub crossings: Vec<Crossing>,
@@ -226,7 +226,7 @@ pub fn tune(input: &TuningInput) -> Result<TuningReport, TuningError> {
     let phase_margin = phase_margin(input, &plant, &test);
     let asymmetric = asymmetric(&plant, &relay, &test);
     let identified = Identified {
-        ultimate: ultimate.corrected,
+        ultimate: ultimate.by_relay,
         point: point.point,
         model: asymmetric
             .as_ref()
@@ -335,7 +335,7 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
         "Relay instead of the controller",
         format!(
             "It oscillates with period {:.4} s and amplitude {:.4} (half of peak to peak): Ku = {:.4}.",
-            test.period, test.amplitude, report.ultimate.corrected.gain
+            test.period, test.amplitude, report.ultimate.by_relay.gain
         ),
         test,
         None,

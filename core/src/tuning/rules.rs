@@ -124,7 +124,7 @@ pub const RULES: [Rule; 10] = [
     Rule {
         id: "moving_point_pid",
         name: "Moving point M to S, PID",
-        source: "equation (9)",
+        source: "equation (4)",
         sentence: "Moves the point of the Nyquist curve that the relay with hysteresis showed to the target.",
         tune: |p| {
             let wish = &p.wish;
@@ -134,7 +134,7 @@ pub const RULES: [Rule; 10] = [
     Rule {
         id: "moving_point_pi",
         name: "Moving point M to S, PI",
-        source: "equation (9)",
+        source: "equation (4)",
         sentence: "The same without derivative action: the point can only be turned back.",
         tune: |p| moving_point::pi(&p.point, p.wish.target.point()),
     },

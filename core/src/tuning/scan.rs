@@ -1,6 +1,10 @@
 //! Frequencies at which something happens: a scan that is wide enough by bounds on poles and zeros.
 
+use std::cmp::Ordering;
+
 use num_complex::Complex;
+
+use crate::root::bisect;
 
 /// Points of a scan, per decade.
 const PER_DECADE: f64 = 300.0;
@@ -10,9 +14,6 @@ const MAX_DECADES: f64 = 16.0;
 
 /// How far beyond its poles, zeros and dead time a plant is followed, on either side.
 const MARGIN: f64 = 100.0;
-
-/// Bisections: the interval of a scan is halved to the last bit.
-const BISECTIONS: usize = 200;
 
 /// Value of a polynomial, highest power first, at `jw`.
 pub(super) fn horner(polynomial: &[f64], omega: f64) -> Complex<f64> {
@@ -99,7 +100,7 @@ pub(super) fn roots(frequencies: &[f64], f: impl Fn(f64) -> f64) -> Vec<(f64, bo
         if let Some((a, fa)) = before
             && fa * value < 0.0
         {
-            found.push((bisect(a, w, fa > 0.0, &f), value > 0.0));
+            found.push((crossing(a, w, fa > 0.0, &f), value > 0.0));
         }
         // A point exactly on the root belongs to the interval that ends behind it.
         if value != 0.0 && value.is_finite() {
@@ -110,17 +111,12 @@ pub(super) fn roots(frequencies: &[f64], f: impl Fn(f64) -> f64) -> Vec<(f64, bo
 }
 
 /// Root of `f` between `a` and `b`; `positive` tells its sign at `a`.
-pub(super) fn bisect(mut a: f64, mut b: f64, positive: bool, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (a + b);
-        if middle <= a || middle >= b {
-            break;
-        }
-        if (f(middle) > 0.0) == positive {
-            a = middle;
+pub(super) fn crossing(a: f64, b: f64, positive: bool, f: impl Fn(f64) -> f64) -> f64 {
+    bisect(a, b, |x| {
+        if (f(x) > 0.0) == positive {
+            Ordering::Less
         } else {
-            b = middle;
+            Ordering::Greater
         }
-    }
-    0.5 * (a + b)
+    })
 }

@@ -1,7 +1,7 @@
-//! Equation (4): ultimate gain and period from a relay test, beside the true ones.
+//! Equation (9): ultimate gain and period from a relay test, beside the true ones.
 //!
 //! **Amplitude** means half of peak to peak everywhere. A program that puts peak to peak into equation
-//! (4) reports half of the gain; one that takes peak to peak of the relay for its gain reports twice it.
+//! (9) reports half of the gain; one that takes peak to peak of the relay for its gain reports twice it.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::experiment::RelayTest;
 use super::scan;
+use crate::limit_cycle::{Cycle, typical_frequency};
 use crate::plant::TransferFunction;
+use crate::relay::Relay;
 
 /// The amplitude convention of every result.
 pub const AMPLITUDE_CONVENTION: &str =
@@ -40,21 +42,22 @@ pub struct Crossing {
 pub struct UltimateReport {
     /// How amplitudes are counted.
     pub amplitude_convention: String,
-    /// By `K_u = 4k/(pi a)`, as if the relay had no hysteresis, equation (4).
-    pub plain: Ultimate,
-    /// By `K_u = 4k/(pi sqrt(a^2 - eps^2))`, which allows for the hysteresis.
-    pub corrected: Ultimate,
+    /// By `K_u = |N(a)| = 4k/(pi a)`, equation (9), whatever the hysteresis.
+    pub by_relay: Ultimate,
+    /// By `-1/Re(-1/N(a)) = 4k/(pi sqrt(a^2 - eps^2))`: where the line of the relay, moved along the imaginary axis, would
+    /// meet the real one (Åström and Hägglund 1984). Not the paper's (9).
+    pub on_real_axis: Ultimate,
     /// From the plant's phase crossover; `None` where its phase never falls through -180 degrees.
     pub truth: Option<Ultimate>,
-    /// Error of the plain gain.
-    pub plain_error: Option<f64>,
-    /// Error of the corrected gain.
-    pub corrected_error: Option<f64>,
+    /// Error of `by_relay`'s gain.
+    pub by_relay_error: Option<f64>,
+    /// Error of `on_real_axis`' gain.
+    pub on_real_axis_error: Option<f64>,
     /// Error of the measured period.
     pub period_error: Option<f64>,
 }
 
-/// `4k/(pi a)`, equation (4): `gain` of the relay, amplitude `a` (half of peak to peak).
+/// `|N(a)| = 4k/(pi a)`, equation (9), whatever the hysteresis: `gain` of the relay, amplitude `a` (half of peak to peak).
 ///
 /// ```
 /// // The ideal relay around e^(-0.5 s)/(s + 1): amplitude 1 - e^(-0.5).
@@ -65,8 +68,9 @@ pub fn ultimate_gain(gain: f64, amplitude: f64) -> f64 {
     4.0 * gain / (PI * amplitude)
 }
 
-/// `4k/(pi sqrt(a^2 - eps^2))`, equation (4) with hysteresis: the inverse of the real part of `-1/N(a)`.
-pub fn ultimate_gain_with_hysteresis(gain: f64, amplitude: f64, hysteresis: f64) -> f64 {
+/// `4k/(pi sqrt(a^2 - eps^2))`: the inverse of the real part of `-1/N(a)` (Åström and Hägglund 1984); the paper's (9) is
+/// [`ultimate_gain`].
+pub fn gain_on_real_axis(gain: f64, amplitude: f64, hysteresis: f64) -> f64 {
     let (a, eps) = (amplitude, hysteresis);
     ultimate_gain(gain, ((a - eps) * (a + eps)).max(0.0).sqrt())
 }
@@ -91,24 +95,218 @@ pub fn crossings(plant: &TransferFunction) -> Vec<Crossing> {
         .collect()
 }
 
-/// The true ultimate gain and period of a valid `plant`: the least gain at which a crossing with falling
-/// phase reaches -1.
+/// The true ultimate gain and period of a valid `plant`: the upper one of its [`stability_limits`].
 pub fn true_ultimate(plant: &TransferFunction) -> Option<Ultimate> {
-    crossings(plant)
-        .into_iter()
-        .filter(|c| c.falling)
-        .min_by(|a, b| a.gain.total_cmp(&b.gain))
-        .map(|c| Ultimate {
-            gain: c.gain,
-            period: 2.0 * PI / c.omega,
-        })
+    stability_limits(plant).upper
+}
+
+/// Gains between which the loop is stable, proportional controller and negative feedback.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StabilityLimits {
+    /// Below it the loop is unstable: a conditionally stable or an unstable plant.
+    pub lower: Option<Ultimate>,
+    /// Above it the loop is unstable: the ultimate gain.
+    pub upper: Option<Ultimate>,
+}
+
+impl StabilityLimits {
+    /// Both in words, with a space before.
+    pub fn text(&self) -> String {
+        let at = |u: &Ultimate| {
+            if u.period.is_finite() {
+                format!("{:.4} at a period of {:.4} s", u.gain, u.period)
+            } else {
+                format!("{:.4} at frequency 0", u.gain)
+            }
+        };
+        match (&self.lower, &self.upper) {
+            (None, Some(upper)) => format!(" The plant's true Ku is {} (-180°).", at(upper)),
+            (Some(lower), Some(upper)) => format!(
+                " The loop is stable between two gains only: the lower limit is {}, the upper one, the true Ku, {}.",
+                at(lower),
+                at(upper)
+            ),
+            (Some(lower), None) => format!(
+                " The loop is stable above a gain only: that lower limit is {}; there is no true Ku.",
+                at(lower)
+            ),
+            (None, None) => {
+                " The plant has no true Ku: no gain brings it to the limit of stability.".to_owned()
+            }
+        }
+    }
+}
+
+/// The least range of gains in which a valid `plant` is stable, by the Nyquist criterion: from crossing to crossing of the
+/// negative real axis a pair of poles goes to the right (falling phase) or comes back. A real pole of an unstable plant
+/// crosses at frequency 0, so that the period of such a limit is infinite. Empty where no gain is stable.
+pub fn stability_limits(plant: &TransferFunction) -> StabilityLimits {
+    let mut crossings = crossings(plant);
+    let gain = plant.dc_gain();
+    if gain.is_finite() && gain < 0.0 {
+        crossings.push(Crossing {
+            omega: 0.0,
+            gain: -1.0 / gain,
+            falling: plant.response(NEAR_ZERO * typical_frequency(plant)).im > 0.0,
+        });
+    }
+    crossings.sort_by(|a, b| a.gain.total_cmp(&b.gain));
+    let mut unstable = unstable_at_small_gain(plant);
+    let ultimate = |c: &Crossing| Ultimate {
+        gain: c.gain,
+        period: 2.0 * PI / c.omega,
+    };
+    let mut limits = StabilityLimits::default();
+    let mut stable = unstable == 0;
+    for crossing in &crossings {
+        unstable += match (crossing.omega == 0.0, crossing.falling) {
+            (true, true) => 1,
+            (true, false) => -1,
+            (false, true) => 2,
+            (false, false) => -2,
+        };
+        match (stable, unstable == 0) {
+            (false, true) => {
+                limits.lower = Some(ultimate(crossing));
+                stable = true;
+            }
+            (true, false) => {
+                limits.upper = Some(ultimate(crossing));
+                return limits;
+            }
+            _ => {}
+        }
+    }
+    limits
+}
+
+/// Share of the typical frequency at which a Nyquist curve leaves frequency 0.
+const NEAR_ZERO: f64 = 1e-4;
+
+/// Poles of the closed loop with a positive real part at a gain next to nothing: those of the plant, and what its
+/// integrators become, which their phase tells.
+fn unstable_at_small_gain(plant: &TransferFunction) -> i32 {
+    let poles = plant.poles();
+    let unstable = poles.iter().filter(|p| p.re > 0.0).map(|_| 1).sum::<i32>();
+    let integrators = poles.iter().filter(|p| p.norm() == 0.0).count();
+    if integrators == 0 {
+        return unstable;
+    }
+    // The phase of K/s^n near 0 is -n 90 degrees, or that and 180 degrees; the arc at infinity goes round from there.
+    let sign = if plant.dc_gain() < 0.0 { PI } else { 0.0 };
+    let begin = -0.5 * PI * integrators as f64 - sign;
+    unstable + 2 * ((PI - begin) / (2.0 * PI) - ROUNDING).floor() as i32
+}
+
+/// A phase that is a whole number of turns but for rounding has not gone beyond it.
+const ROUNDING: f64 = 1e-9;
+
+/// What a limit cycle shows of its plant: the point of the Nyquist curve at the cycle's frequency, exact whatever the
+/// harmonics, since each passes a linear plant on its own.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShownPoint {
+    /// Angular frequency of the cycle, rad/s.
+    pub omega: f64,
+    /// `|P(jw)|`.
+    pub magnitude: f64,
+    /// Phase of `P(jw)` with its dead time, degrees, above -360 and up to 0.
+    pub phase_deg: f64,
+}
+
+impl ShownPoint {
+    /// The point at the frequency of a cycle with this period, s.
+    pub fn new(plant: &TransferFunction, period: f64) -> Self {
+        let omega = 2.0 * PI / period;
+        let p = plant.response(omega);
+        let degrees = p.arg().to_degrees();
+        Self {
+            omega,
+            magnitude: p.norm(),
+            phase_deg: if degrees > 0.0 {
+                degrees - 360.0
+            } else {
+                degrees
+            },
+        }
+    }
+}
+
+/// Ultimate gain by the relay, and what stands beside it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RelayGain {
+    /// By equation (9) with a symmetric relay; else first harmonic of the relay's output over that of its input.
+    pub by_relay: Ultimate,
+    /// What the cycle shows, exactly.
+    pub shown: ShownPoint,
+    /// The plant's own limits.
+    pub limits: StabilityLimits,
+    /// All of it in words, with the remedy.
+    pub text: String,
+}
+
+/// Phase within so many degrees of -180 that counts as the ultimate point itself.
+const AT_ULTIMATE: f64 = 5.0;
+
+/// The ultimate gain that a limit cycle of `plant` under `relay` gives, with what the cycle shows and the truth.
+///
+/// An asymmetric relay pushes for unequal times, and `4k/(pi a)` does not hold for it: the ratio of the first harmonics of
+/// its output and of the plant's does, and that is `1/|P(jw)|`.
+pub fn relay_gain(plant: &TransferFunction, relay: &Relay, cycle: &Cycle) -> RelayGain {
+    let shown = ShownPoint::new(plant, cycle.period);
+    let symmetric = relay.is_symmetric();
+    let gain = if symmetric {
+        ultimate_gain(relay.gain, cycle.amplitude)
+    } else {
+        1.0 / shown.magnitude
+    };
+    let by_relay = Ultimate {
+        gain,
+        period: cycle.period,
+    };
+    let limits = stability_limits(plant);
+    RelayGain {
+        text: gain_text(relay, &by_relay, &shown, &limits),
+        by_relay,
+        shown,
+        limits,
+    }
+}
+
+fn gain_text(
+    relay: &Relay,
+    by_relay: &Ultimate,
+    shown: &ShownPoint,
+    limits: &StabilityLimits,
+) -> String {
+    let formula = if relay.is_symmetric() {
+        "4k/(πa)"
+    } else {
+        "the first harmonics of an asymmetric relay"
+    };
+    let mut text = format!(
+        "By the relay Ku = {:.4} ({formula}) at a period of {:.4} s. The cycle shows the plant at {:.1}°, where 1/|P| is {:.4}.",
+        by_relay.gain,
+        by_relay.period,
+        shown.phase_deg,
+        1.0 / shown.magnitude
+    );
+    text += &limits.text();
+    let away = (shown.phase_deg + 180.0).abs() > AT_ULTIMATE && limits.upper.is_some();
+    if away && !relay.is_symmetric() {
+        text += " A symmetric relay with less hysteresis comes nearer to it.";
+    } else if away && relay.hysteresis > 0.0 {
+        text += " Less hysteresis comes nearer to it.";
+    } else if away && relay.delay > 0.0 {
+        text += " A relay without delay comes nearer to it.";
+    }
+    text
 }
 
 /// Compares the ultimate point of a symmetric relay `test` with the truth of its `plant`.
 pub fn compare(test: &RelayTest, plant: &TransferFunction) -> UltimateReport {
     let (k, a, period) = (test.relay.gain, test.amplitude, test.period);
-    let plain = ultimate_gain(k, a);
-    let corrected = ultimate_gain_with_hysteresis(k, a, test.relay.hysteresis);
+    let by_relay = ultimate_gain(k, a);
+    let on_real_axis = gain_on_real_axis(k, a, test.relay.hysteresis);
     let truth = true_ultimate(plant);
     let error = |value: f64, exact: fn(&Ultimate) -> f64| {
         truth
@@ -118,16 +316,16 @@ pub fn compare(test: &RelayTest, plant: &TransferFunction) -> UltimateReport {
     };
     UltimateReport {
         amplitude_convention: AMPLITUDE_CONVENTION.to_owned(),
-        plain: Ultimate {
-            gain: plain,
+        by_relay: Ultimate {
+            gain: by_relay,
             period,
         },
-        corrected: Ultimate {
-            gain: corrected,
+        on_real_axis: Ultimate {
+            gain: on_real_axis,
             period,
         },
-        plain_error: error(plain, |t| t.gain),
-        corrected_error: error(corrected, |t| t.gain),
+        by_relay_error: error(by_relay, |t| t.gain),
+        on_real_axis_error: error(on_real_axis, |t| t.gain),
         period_error: error(period, |t| t.period),
         truth,
     }

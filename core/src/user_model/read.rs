@@ -102,7 +102,7 @@ impl Reader<'_> {
         };
         let mut model = UserModel::blank(kind);
         if let Some(value) = entry("parameters") {
-            let symbols: Vec<&str> = baseline::parameters(kind)
+            let symbols: Vec<&str> = baseline::known_parameters(kind)
                 .iter()
                 .map(|p| p.symbol)
                 .collect();
@@ -112,6 +112,7 @@ impl Reader<'_> {
                 let positive = ["J1", "T"].contains(&p.symbol.as_str());
                 let bad = match p.symbol.as_str() {
                     "d1" => p.value < 0.0,
+                    "ambient" => false,
                     _ => p.value == 0.0 || (positive && p.value < 0.0),
                 };
                 if bad {

@@ -362,7 +362,7 @@ impl Backlash {
     }
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     let mut view = Backlash::default();
     let door = view
@@ -415,7 +415,7 @@ impl View for Backlash {
 
     fn offer(&self) -> Offer<'_> {
         Offer {
-            hint: self.hint(),
+            hint: Some(self.hint()),
             tables: Tables::new(self.table_names(), || self.tables()),
         }
     }
@@ -438,17 +438,17 @@ impl Settable for Backlash {
 
 impl Backlash {
     /// What to try next.
-    fn hint(&self) -> Option<Hint> {
+    fn hint(&self) -> Hint {
         if self.measured() {
-            return Some(Hint {
+            return Hint {
                 sentence: "Is the gap all that is missing? Drop the file on Compare too."
                     .to_owned(),
                 commands: vec![crate::command::Command::Go("compare")],
-            });
+            };
         }
         let motor = &self.input.drive.motor;
         let drifts = motor.coulomb > 0.0 || motor.viscous > 0.0;
-        Some(if drifts {
+        if drifts {
             Hint::open(
                 "Take friction and delay away: then no asymmetry makes it drift.",
                 "v1;backlash;backlash.run.drive.motor.coulomb=0;backlash.run.drive.motor.viscous=0;backlash.run.command.relay.relay.delay=0",
@@ -458,7 +458,7 @@ impl Backlash {
                 "Give friction and delay back: they make an uneven relay drift through the gap.",
                 "v1;backlash",
             )
-        })
+        }
     }
 
     /// Names of the tables that can be given now.

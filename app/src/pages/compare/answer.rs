@@ -44,6 +44,9 @@ impl Compare {
             }
         };
         theme::answer_ui(ui, &text);
+        for noise in self.report().iter().flat_map(|report| &report.noise) {
+            ui.weak(tr(noise.words()));
+        }
     }
 
     /// Whether nothing was missing before something needless was added.
@@ -69,6 +72,16 @@ impl Compare {
                 commands.push(Command::Shade(index));
             }
         }
+    }
+}
+
+/// A share in per cent, two digits.
+fn share(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent {
+        10.0.. => format!("{percent:.0}"),
+        1.0.. => format!("{percent:.1}"),
+        _ => format!("{percent:.2}"),
     }
 }
 
@@ -162,6 +175,10 @@ fn answer(report: &StepReport, present: &[EffectId], noise: bool) -> String {
                     "The model misses by {error} times the noise, with {} or without.",
                     name_of(*idle)
                 ),
+                _ if step.left > 0.0 => {
+                    let missed = share(step.left);
+                    format!("The model misses {missed} % of the motion, {error} times the noise.")
+                }
                 _ => format!("The model misses by {error} times the noise."),
             }
         }

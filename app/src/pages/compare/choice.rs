@@ -114,6 +114,8 @@ pub(super) struct Choice {
     pub chosen: [Chosen; CHANNELS.len()],
     /// Such as `0.05 N m/A`; empty where it is not known.
     pub torque_constant: String,
+    /// The time from sample to sample where no column has the times, such as `4s`.
+    pub period: String,
 }
 
 impl Choice {
@@ -124,6 +126,7 @@ impl Choice {
             kind: guess.kind,
             chosen: Default::default(),
             torque_constant: String::new(),
+            period: String::new(),
         };
         for (channel, chosen) in CHANNELS.iter().zip(&mut choice.chosen) {
             let found = guess
@@ -181,12 +184,22 @@ impl Choice {
             })
     }
 
+    /// Whether no column has the times, so that a sampling period is needed.
+    pub fn needs_period(&self) -> bool {
+        self.mapped()
+            .all(|(channel, ..)| channel.role != Role::Time)
+    }
+
     /// What is still to be chosen, by its names in the form.
     pub fn missing(&self) -> Vec<&'static str> {
         let mut missing = Vec::new();
         let has = |channel: &Channel| self.mapped().any(|(c, ..)| c.role == channel.role);
         for (_, channel) in self.channels() {
-            if !channel.is_optional() && !has(channel) {
+            if channel.role == Role::Time && !has(channel) {
+                if self.period.trim().is_empty() {
+                    missing.push("Time or Sampling period");
+                }
+            } else if !channel.is_optional() && !has(channel) {
                 missing.push(channel.title);
             }
         }
@@ -226,10 +239,16 @@ impl Choice {
         } else {
             String::new()
         };
+        let period = if self.needs_period() {
+            self.period.trim().replace(',', ".")
+        } else {
+            String::new()
+        };
         Reading {
             kind: Some(self.kind),
             map: map.join(", "),
             torque_constant,
+            period,
         }
     }
 }

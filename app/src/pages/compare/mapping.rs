@@ -1,7 +1,7 @@
 //! A form for a file that does not say what its columns are: which column is what, in which unit.
 
 use egui::Ui;
-use hysteron_core::measurement::{FoundColumn, Kind};
+use hysteron_core::measurement::{FoundColumn, Kind, Role};
 
 use super::choice::{Channel, Chosen};
 use super::command::Command;
@@ -41,6 +41,9 @@ impl Form {
                 ui.set_width(ui.available_width());
                 self.channel_ui(ui, channel, kind, &mut choice.chosen[i]);
             });
+        }
+        if choice.needs_period() {
+            period_ui(ui, &mut choice.period);
         }
         if choice.needs_torque_constant() {
             torque_constant_ui(ui, &mut choice.torque_constant);
@@ -105,7 +108,7 @@ impl Form {
         title: egui::Id,
         chosen: &mut Option<usize>,
     ) {
-        let nothing = if channel.is_optional() {
+        let nothing = if channel.is_optional() || channel.role == Role::Time {
             "none"
         } else {
             "choose ..."
@@ -213,6 +216,18 @@ fn unit_ui(ui: &mut Ui, channel: &Channel, kind: Kind, chosen: &mut Chosen) {
         )
         .labelled_by(label.id);
     }
+}
+
+fn period_ui(ui: &mut Ui, period: &mut String) {
+    ui.horizontal_wrapped(|ui| {
+        let label = label_ui(ui, "Sampling period, if no column has the times");
+        ui.add(
+            theme::line(period)
+                .hint_text(tr("4s or 100Hz"))
+                .desired_width(UNIT_WIDTH),
+        )
+        .labelled_by(label.id);
+    });
 }
 
 fn torque_constant_ui(ui: &mut Ui, constant: &mut String) {

@@ -38,7 +38,7 @@ use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
 use crate::link::parsed;
-use crate::page::{Hint, Offer, Page, Settable, View};
+use crate::page::{Offer, Page, Settable, View};
 use crate::save::save;
 use crate::theme;
 use built_in::{BUILT_IN, BuiltIn};
@@ -323,7 +323,7 @@ impl Compare {
     }
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     let mut view = Compare::default();
     let door = view.files.door("Drop the measurement to compare it");
@@ -345,7 +345,7 @@ impl View for Compare {
 
     fn offer(&self) -> Offer<'_> {
         Offer {
-            hint: self.hint(),
+            hint: Some(self.next()),
             tables: Tables::new(self.table_names(), || self.tables()),
         }
     }
@@ -367,11 +367,6 @@ impl Settable for Compare {
 }
 
 impl Compare {
-    /// What to try next.
-    fn hint(&self) -> Option<Hint> {
-        Some(self.next())
-    }
-
     /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
         self.measurement

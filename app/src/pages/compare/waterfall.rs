@@ -2,7 +2,7 @@
 
 use egui::Color32;
 use hysteron_core::diagnosis::StepReport;
-use hysteron_core::effect::name_of;
+use hysteron_core::effect::{EffectId, name_of};
 
 use super::answer::times_noise;
 use super::command::Command;
@@ -89,9 +89,19 @@ pub(super) fn ui(
         ui.end_row();
     });
     ui.small(tr("Bars on a logarithmic scale. Click a step to see it."));
-    if page.job.is_some() {
-        return;
+    if page.job.is_none() {
+        back_and_forth_ui(page, &way, ui, targets, commands);
     }
+}
+
+/// Takes the last effect back, or puts the next one back.
+fn back_and_forth_ui(
+    page: &Compare,
+    way: &[EffectId],
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal_wrapped(|ui| {
         if let Some(last) = page.effects.last() {
             let undo = ui.button(tr(format!("Take back {}", name_of(*last))));

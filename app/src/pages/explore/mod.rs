@@ -54,7 +54,7 @@ struct Finished {
     data: Result<(ExploreData, Vec<Check>), String>,
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     Page::new("explore", "Explore", Explore::default())
 }
@@ -268,7 +268,7 @@ impl Explore {
     fn numbers_ui(&self, ui: &mut egui::Ui) {
         if let Some((data, _)) = self.data() {
             ui.separator();
-            table::predictions_ui(ui, &self.input.relay, data);
+            table::predictions_ui(ui, &self.input, data);
             table::harmonics_ui(ui, data);
         }
         table::equations_ui(ui);

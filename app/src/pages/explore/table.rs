@@ -1,15 +1,15 @@
 //! The numbers: three ways to the same cycle, side by side.
 
-use hysteron_core::explore::{ExploreData, ultimate_gain};
+use hysteron_core::explore::{ExploreData, ExploreInput};
 use hysteron_core::limit_cycle::Cycle;
-use hysteron_core::relay::Relay;
+use hysteron_core::tuning::relay_gain;
 
 use crate::language::{tr, tr_number};
 use crate::theme;
 use crate::widgets::chart::significant;
 
 /// Describing function, exact and simulated values with their differences in per cent.
-pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
+pub fn predictions_ui(ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData) {
     egui::Grid::new("predictions")
         .num_columns(5)
         .striped(true)
@@ -30,17 +30,20 @@ pub fn predictions_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData) {
             ];
             for (name, cycle, color) in rows {
                 let reference = data.exact.filter(|_| name != "Exact");
-                row_ui(ui, name, color, relay, cycle, reference);
+                row_ui(ui, name, color, input, cycle, reference);
             }
         });
-    ui.small(tr("Amplitude a: half of peak to peak. Ku = 4k/(πa). Below each: difference from the exact value."));
+    ui.small(tr("Amplitude a: half of peak to peak. Ku = 4k/(πa), eq. (9). Below each: difference from the exact value."));
+    if let Some(ultimate) = &data.ultimate {
+        ui.label(tr(&ultimate.text));
+    }
 }
 
 fn row_ui(
     ui: &mut egui::Ui,
     name: &str,
     color: egui::Color32,
-    relay: &Relay,
+    input: &ExploreInput,
     cycle: Option<Cycle>,
     reference: Option<Cycle>,
 ) {
@@ -54,7 +57,7 @@ fn row_ui(
         ui.end_row();
         return;
     };
-    let gain = |c: Cycle| ultimate_gain(relay, c.amplitude);
+    let gain = |c: Cycle| relay_gain(&input.plant, &input.relay, &c).by_relay.gain;
     let values: [(f64, Option<f64>); 3] = [
         (cycle.period, reference.map(|r| r.period)),
         (cycle.amplitude, reference.map(|r| r.amplitude)),

@@ -12,9 +12,9 @@ use crate::theme;
 #[derive(Default)]
 pub struct Lessons;
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
-    Page::new("lessons", "Lessons", Lessons::default())
+    Page::new("lessons", "Lessons", Lessons)
 }
 
 impl View for Lessons {

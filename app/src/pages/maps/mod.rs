@@ -172,7 +172,7 @@ impl Maps {
     }
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     Page::new("maps", "Maps", Maps::default())
 }
@@ -227,8 +227,11 @@ impl View for Maps {
 
     fn offer(&self) -> Offer<'_> {
         Offer {
-            hint: self.hint(),
-            tables: Tables::new(self.table_names(), || self.tables()),
+            hint: Some(Hint::open(
+                "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
+                "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
+            )),
+            tables: Tables::new(["map"], || self.tables()),
         }
     }
 }
@@ -249,19 +252,6 @@ impl Settable for Maps {
 }
 
 impl Maps {
-    /// What to try next.
-    fn hint(&self) -> Option<Hint> {
-        Some(Hint::open(
-            "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
-            "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
-        ))
-    }
-
-    /// Names of the tables that can be given now.
-    fn table_names(&self) -> Vec<&'static str> {
-        vec!["map"]
-    }
-
     /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let size = self.map.size();

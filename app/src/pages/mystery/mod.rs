@@ -208,7 +208,7 @@ fn salt(count: u32) -> [u8; hysteron_core::mystery::SALT] {
     salt
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     Page::new("mystery", "Mystery", Bench::default())
 }
@@ -241,7 +241,7 @@ impl View for Bench {
 
     fn offer(&self) -> Offer<'_> {
         Offer {
-            hint: self.hint(),
+            hint: Some(self.hint()),
             tables: Tables::new(self.table_names(), || self.tables()),
         }
     }
@@ -273,16 +273,16 @@ impl Settable for Bench {
 
 impl Bench {
     /// What to try next.
-    fn hint(&self) -> Option<Hint> {
+    fn hint(&self) -> Hint {
         if self.made.is_some() {
-            return Some(Hint::say(
+            return Hint::say(
                 "Hand on the mystery: its file, or its link. Whoever solves it needs your word at the end.",
-            ));
+            );
         }
-        Some(Hint::open(
+        Hint::open(
             "Never looked for a hidden effect? Begin with a drive that loses its swing.",
             "v1;compare;compare.file=drive-02",
-        ))
+        )
     }
 
     /// Names of the tables that can be given now.

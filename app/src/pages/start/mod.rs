@@ -77,7 +77,7 @@ struct Settings {
     paused: Option<f64>,
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     Page::new("start", "Start", Start::default())
 }

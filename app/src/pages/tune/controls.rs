@@ -132,10 +132,10 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
 
 fn equations_ui(ui: &mut egui::Ui) {
     ui.collapsing(tr("The equations"), |ui| {
-        ui.monospace(tr("(4) Ku = 4k/(π √(a² - ε²)), Tu: period\n\
+        ui.monospace(tr("(4) M R = S: C(jω) = S/M\n\
              (7) k = π a/4,  ε = a sin φ\n\
              (8) K(n+1): secant through two runs\n\
-             (9) C(jω) = S/M\n\
+             (9) Ku = |N(a)| = 4k/(πa), Tu: period\n\
              C(s) = K (1 + 1/(Ti s) + Td s/(Tf s + 1))"));
         ui.small(tr(format!("Convention: {AMPLITUDE_CONVENTION}.")));
         ui.small(tr(

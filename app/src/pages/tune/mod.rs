@@ -66,7 +66,7 @@ impl Default for Tune {
     }
 }
 
-/// The page.
+/// The page as the registry has it.
 pub fn page() -> Page {
     Page::new("tune", "Tune", Tune::default())
 }

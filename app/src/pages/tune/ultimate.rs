@@ -1,4 +1,4 @@
-//! Step 2: ultimate gain and period, equation (4), beside the true ones.
+//! Step 2: ultimate gain and period, equation (9), beside the true ones.
 
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
 use hysteron_core::tuning::Ultimate;
@@ -22,10 +22,10 @@ fn answer(seen: Seen<'_>) -> String {
     let found = &seen.report.ultimate;
     let said = format!(
         "At Ku = {} with Tu = {} s, says the relay.",
-        number(found.corrected.gain),
-        number(found.corrected.period)
+        number(found.by_relay.gain),
+        number(found.by_relay.period)
     );
-    match (found.truth, found.corrected_error, found.period_error) {
+    match (found.truth, found.by_relay_error, found.period_error) {
         (Some(truth), Some(gain), Some(period)) => format!(
             "{said} In truth {} ({}) and {} s ({}).",
             number(truth.gain),
@@ -44,7 +44,7 @@ fn off(share: f64) -> String {
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
-    ui.label(tr("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis, and Ku is read off the axis. Try less hysteresis."));
+    ui.label(tr("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis: the point has less than 180° of phase lag, and 4k/(πa) is the gain that moves it onto the unit circle. Try less hysteresis."));
     beside(
         ui,
         height,
@@ -108,7 +108,7 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
             theme::MODEL,
             MarkerShape::Diamond,
         );
-        let by_relay = on_axis(report.ultimate.corrected);
+        let by_relay = on_axis(report.ultimate.by_relay);
         mark(
             "-1/Ku by the relay",
             by_relay,
@@ -139,15 +139,15 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
             ui.end_row();
         };
         row(
-            "4k/(π a)",
-            Some(found.plain),
-            found.plain_error,
+            "4k/(π a), eq. (9)",
+            Some(found.by_relay),
+            found.by_relay_error,
             found.period_error,
         );
         row(
-            "4k/(π √(a² - ε²))",
-            Some(found.corrected),
-            found.corrected_error,
+            "on the real axis, 4k/(π √(a² - ε²))",
+            Some(found.on_real_axis),
+            found.on_real_axis_error,
             found.period_error,
         );
         row("true", found.truth, None, None);

@@ -344,7 +344,7 @@ mod tests {
         let measurement = import_csv("step", csv.as_bytes(), None).unwrap();
         let session = Session::new(&measurement, &UserModel::blank(measurement.kind)).unwrap();
         let (data, scales) = (&session.data, &session.scales);
-        let structure = Structure::new(data.kind, Vec::new(), session.knowledge.clone());
+        let structure = Structure::new(data.baseline, Vec::new(), session.knowledge.clone());
         let starts = data.guessed_starts();
         let fit = Fit::new(data, structure, BODY.to_vec(), starts, scales);
         let steps = fit.structure.difference_steps(&fit.values, scales);

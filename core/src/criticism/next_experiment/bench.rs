@@ -1,7 +1,6 @@
 //! The experiments that are simulated: what one model does, and what the others leave of it.
 
-use super::candidates::Sizes;
-use super::design::LEAST_SAMPLES;
+use super::candidates::{LEAST_SAMPLES, Sizes};
 use super::limits::extent;
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
@@ -12,6 +11,7 @@ use crate::criticism::structure::Structure;
 use crate::criticism::window;
 use crate::diagnosis::{CriticismError, FittedModel, Limits, Program};
 use crate::effect::EffectId;
+use crate::effect::baseline::Baseline;
 use crate::measurement::{Channel, Kind, Measurement, Quantity};
 use crate::model::{Run, Sensor, run_controlled};
 
@@ -58,7 +58,7 @@ impl Hypothesis {
                 session.find(*id).ok_or(wrong)
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let structure = Structure::new(session.kind(), effects, session.knowledge.clone());
+        let structure = Structure::new(session.data.baseline, effects, session.knowledge.clone());
         let values = structure
             .symbols()
             .into_iter()
@@ -143,7 +143,10 @@ impl Bench {
             inertia: first.values[0],
             time_constant: match kind {
                 Kind::Drive => session.scales.time_constant,
-                Kind::Process => first.values[1],
+                Kind::Process => match first.structure.baseline {
+                    Baseline::Lag { .. } => first.values[1],
+                    _ => session.scales.time_constant,
+                },
             },
             window: window::SHORTEST as f64 * step,
             stretch: step * samples,
@@ -155,6 +158,7 @@ impl Bench {
                 .map(|o| Noise {
                     level: o.noise,
                     counted: o.counted,
+                    step: o.step,
                 })
                 .collect(),
             outputs: session.outputs.clone(),

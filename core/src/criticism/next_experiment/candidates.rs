@@ -3,6 +3,9 @@
 use crate::diagnosis::{Limits, Program, Sine};
 use crate::measurement::Kind;
 
+/// Samples that are simulated at least; fewer are no experiment.
+pub(super) const LEAST_SAMPLES: f64 = 200.0;
+
 /// What the sizes of a program follow from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
@@ -56,7 +59,8 @@ const STEP_SPEED: f64 = 0.4;
 pub(super) fn candidates(sizes: &Sizes, limits: &Limits) -> Vec<Program> {
     let u = limits.input;
     let mut programs = Vec::new();
-    if let Some(noise) = sizes.noise {
+    // A relay or a sum of sines goes both ways.
+    if let Some(noise) = sizes.noise.filter(|_| limits.side == 0) {
         for share in HYSTERESES {
             let hysteresis = round((share * sizes.speed).max(CLEAR_OF_NOISE * noise));
             let relay = |gains: Vec<f64>, hold, asymmetry| Program::Relay {
@@ -74,17 +78,19 @@ pub(super) fn candidates(sizes: &Sizes, limits: &Limits) -> Vec<Program> {
         }
     }
     for hold in step_holds(sizes, limits) {
-        let levels = STAIRS.iter().map(|s| round(s * u)).collect();
+        let levels = STAIRS.iter().map(|s| round(limits.level(*s))).collect();
         programs.push(Program::Levels { levels, hold });
     }
-    let levels = BINARY.iter().map(|s| f64::from(*s) * u).collect();
+    let levels = BINARY.iter().map(|s| limits.level(f64::from(*s))).collect();
     let clock = match sizes.kind {
         Kind::Drive => 0.04 * sizes.window,
         Kind::Process => (0.15 * sizes.time_constant).min(sizes.stretch / 64.0),
     };
     let hold = whole(clock, limits.step);
     programs.push(Program::Levels { levels, hold });
-    programs.push(multisine(sizes, limits));
+    if limits.side == 0 {
+        programs.push(multisine(sizes, limits));
+    }
     programs
 }
 

@@ -1,16 +1,13 @@
 //! The search for the experiment, in small pieces.
 
 use super::bench::{Bench, Hypothesis, Outcome};
-use super::candidates::candidates;
+use super::candidates::{LEAST_SAMPLES, candidates};
 use super::program::Shape;
 use super::words;
 use crate::criticism::session::{Scored, Session};
 use crate::diagnosis::{Limits, NextExperiment, Program, Trial};
 use crate::effect::{Effect, EffectId};
 use crate::measurement::Kind;
-
-/// Samples that are simulated at least; fewer are no experiment.
-pub(super) const LEAST_SAMPLES: f64 = 200.0;
 
 /// Iterations of a fit of the rival: at first, and for what comes into question.
 const SCAN_ITERATIONS: usize = 3;

@@ -33,6 +33,7 @@ impl Limits {
         let slides = measurement.motion() == crate::measurement::Motion::Translational;
         Self {
             input: largest(&measurement.input.values),
+            side: side(&measurement.input.values),
             duration,
             step,
             speed: (speed > 0.0).then_some(FASTER * speed),
@@ -41,6 +42,20 @@ impl Limits {
                 .map(|x| FARTHER * extent(x))
                 .filter(|t| *t > 0.0),
         }
+    }
+}
+
+/// Share of the largest input that may go the other way, by the noise of a measured one.
+const OTHER_WAY: f64 = 0.02;
+
+/// The only way in which an input goes, 1 or -1; 0 where it goes both ways.
+fn side(input: &[f64]) -> i8 {
+    let (low, high) = range(input);
+    let little = OTHER_WAY * high.abs().max(low.abs());
+    match (low < -little, high > little) {
+        (false, true) => 1,
+        (true, false) => -1,
+        _ => 0,
     }
 }
 

@@ -7,7 +7,7 @@ use super::subsets::{Bench, Tried, smallest};
 use super::tuning::LISTED;
 use super::window::Width;
 use crate::diagnosis::{Parameter, Screening, Status, Subset};
-use crate::effect::{EffectId, VISCOUS_FRICTION, baseline};
+use crate::effect::{Dimension, EffectId, VISCOUS_FRICTION, baseline};
 use crate::measurement::{Kind, Measurement};
 
 /// Version of the layout.
@@ -75,26 +75,19 @@ fn is_body(parameter: &Parameter) -> bool {
 fn names(measurement: &Measurement, bench: &Bench, members: &[(usize, usize)]) -> Vec<Name> {
     let (motion, input) = (measurement.motion(), measurement.input.unit.as_str());
     let output = measurement.outputs.first().map_or("1", |o| o.unit.as_str());
-    let mut names: Vec<Name> = baseline::parameters(measurement.kind)
+    let mut names: Vec<Name> = baseline::known_parameters(measurement.kind)
         .iter()
         .map(|p| Name {
             effect: p.effect,
             symbol: p.symbol,
             label: p.label,
-            unit: p.dimension.map_or_else(
-                || baseline::gain_unit(input, output),
-                |d| baseline::unit(d, motion, input),
-            ),
+            unit: match p.dimension {
+                None => baseline::gain_unit(input, output),
+                Some(Dimension::Compound { .. }) => output.to_owned(),
+                Some(d) => baseline::unit(d, motion, input),
+            },
         })
         .collect();
-    if measurement.kind == Kind::Process {
-        names.push(Name {
-            effect: None,
-            symbol: "ambient",
-            label: "output without input",
-            unit: output.to_owned(),
-        });
-    }
     for (c, _) in members {
         let effect = bench.choices[*c].effect;
         names.extend(effect.parameters().iter().map(|p| Name {

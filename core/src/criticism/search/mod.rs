@@ -10,6 +10,7 @@ use super::fit::{Fit, same_place};
 use super::guess::guess;
 use super::knowledge::Knowledge;
 use super::structure::Structure;
+use crate::effect::baseline::Baseline;
 use crate::effect::{Scales, baseline};
 use crate::model::Start;
 
@@ -89,16 +90,23 @@ pub(super) struct Search {
 impl Search {
     /// Fits the baseline from a regression.
     pub fn baseline(data: &Data, knowledge: &Knowledge) -> Self {
-        let structure = Structure::new(data.kind, Vec::new(), knowledge.clone());
-        let plain = baseline::model(data.kind, &[1.0, 1.0]);
+        let structure = Structure::new(data.baseline, Vec::new(), knowledge.clone());
+        let plain = Baseline::plain();
         let guess = guess(data, &data.excitation.effective_input(&plain));
-        let mut values = guess.unwrap_or_else(|| vec![1.0, 1.0]);
+        let mut values = guess.unwrap_or_else(|| data.baseline.unknown());
         structure.begin(&mut values, 0);
         Self::from_points(
             structure,
             vec![(values, data.guessed_starts())],
             f64::INFINITY,
         )
+    }
+
+    /// Fits a model of a process as one that integrates.
+    pub fn integrating(fit: &Fit) -> Self {
+        let (structure, values) = fit.structure.integrating(&fit.values);
+        let point = (values, fit.starts.clone());
+        Self::from_points(structure, vec![point], f64::INFINITY)
     }
 
     /// Fits the baseline once more, from the body that `scales` hold.

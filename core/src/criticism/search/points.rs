@@ -156,6 +156,7 @@ impl Search {
             .zip(&fit.values)
             .any(|(g, v)| (g - v).abs() > WORTH_A_START * v.abs());
         values[..guess.len()].copy_from_slice(&guess);
+        structure.hold(&mut values);
         far.then(|| (values, data.guessed_starts()))
     }
 

@@ -4,17 +4,17 @@ use super::{NOISE_FLOOR, StepJob};
 use crate::criticism::fingerprint::fingerprints;
 use crate::criticism::judge::{alike, helps_clearly, nested};
 use crate::criticism::missing::missing_parts;
+use crate::criticism::one_way::OneWay;
 use crate::criticism::residual_test::residual_tests;
-use crate::criticism::score::Score;
+use crate::criticism::score::{Score, share_left};
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
-    add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations, add_limited,
-    add_pauses, add_rest, add_resting_place, verdict,
+    add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations,
+    add_integrating, add_limited, add_pauses, add_rest, verdict,
 };
 use crate::diagnosis::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
-use crate::measurement::Kind;
 
 impl StepJob {
     pub(super) fn report(&self) -> Option<StepReport> {
@@ -33,7 +33,7 @@ impl StepJob {
             let places = (0..self.wanted.len()).filter(|k| !self.is_present(*k));
             let mut places: Vec<usize> = places.collect();
             places.sort_by_key(|k| self.found(self.wanted[*k]));
-            let (added, classes): (Vec<_>, Vec<_>) = places
+            let (mut added, mut classes): (Vec<_>, Vec<_>) = places
                 .into_iter()
                 .map(|k| {
                     (
@@ -42,6 +42,9 @@ impl StepJob {
                     )
                 })
                 .unzip();
+            let one_way = OneWay::of(&self.session);
+            let is_joined = one_way
+                .is_some_and(|o| o.join(&self.session, &model.fit, &mut added, &mut classes));
             let mut verdict = verdict(
                 &added,
                 &classes,
@@ -52,9 +55,7 @@ impl StepJob {
             );
             let first = self.session.first(&whole).error;
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
-            if self.session.kind() == Kind::Process {
-                add_resting_place(&mut verdict, &parameters, self.session.output_unit());
-            }
+            add_integrating(&mut verdict, &parameters);
             add_imitations(&mut verdict, &self.barred);
             add_hint(&mut verdict, self.hint(model));
             // What is held wrongly says nothing of what is needed.
@@ -66,7 +67,11 @@ impl StepJob {
             let present = present.into_iter();
             let (unsure, idle): (Vec<_>, Vec<_>) = present.partition(|id| self.lowers(model, *id));
             add_idle(&mut verdict, &idle, &unsure);
-            add_experiments(&mut verdict, &self.experiments);
+            if is_joined {
+                add_both_ways(&mut verdict);
+            } else {
+                add_experiments(&mut verdict, &self.experiments);
+            }
             add_glitches(&mut verdict, self.session.whole().glitches);
             add_pauses(&mut verdict, self.session.whole().pauses);
             add_held(&mut verdict, self.session.whole());
@@ -96,12 +101,14 @@ impl StepJob {
                 effects: self.session.effects(&model.fit),
                 error: whole.score.error,
                 error_fit: whole.score.error_fit,
+                left: share_left(self.session.whole(), &whole.score),
                 parameters,
                 findings,
                 tests: residual_tests(self.session.whole(), &whole.fit.motion),
                 candidates,
             },
             noise_floor: noise_floor(rest, &whole.score),
+            noise: self.session.channel_noise(),
             replay: self.session.replay(&whole.fit),
             atlas: self.session.atlas(&whole.fit),
             suggestion,

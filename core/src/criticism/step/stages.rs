@@ -72,7 +72,7 @@ impl StepJob {
         search.map_or_else(|| self.remove_stage(0), Stage::Revisit)
     }
 
-    pub(super) fn remove_stage(&self, index: usize) -> Stage {
+    pub(super) fn remove_stage(&mut self, index: usize) -> Stage {
         match &self.model {
             Some(model) if index < self.wanted.len() => Stage::Remove {
                 index,
@@ -83,7 +83,7 @@ impl StepJob {
     }
 
     /// Swaps are tried only for a final model: nothing helps it, and all in it is needed.
-    pub(super) fn swap_stage(&self, place: usize) -> Stage {
+    pub(super) fn swap_stage(&mut self, place: usize) -> Stage {
         let Some(model) = &self.model else {
             return Stage::Report;
         };
@@ -92,6 +92,12 @@ impl StepJob {
             || !self.needless(model).is_empty()
         {
             return Stage::Report;
+        }
+        if place == 0 && self.session.settle_baseline(model) {
+            let search = Search::integrating(&model.fit);
+            self.without.clear();
+            let next = self.wanted.len();
+            return Stage::Build { search, next };
         }
         // What the user says is in the model is not up for exchange, nor what is not said of the machine.
         let kept = |k: &usize| self.is_present(*k) || self.session.tells_of_record(&model.fit, *k);

@@ -4,7 +4,8 @@
 //! the body is moved to the turn, and goes on from there; where the force holds it from both sides, it stays (A. F.
 //! Filippov, Differential Equations with Discontinuous Righthand Sides, 1988).
 
-use super::{Engine, State};
+use super::Engine;
+use crate::model::state::State;
 
 /// Turns in one step after which the rest of it is one piece.
 const MAX_TURNS: usize = 4;
@@ -100,7 +101,8 @@ impl Engine<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::engine::{Engine, State};
+    use crate::model::engine::Engine;
+    use crate::model::state::State;
     use crate::model::{Instant, Model};
 
     const INERTIA: f64 = 9e-4;

@@ -4,25 +4,11 @@
 //! counter repeats as well, at rest or while it creeps on; but where a channel holds, nearly every reading stays for the
 //! same number of samples while the signal goes on by now more and now fewer counts.
 
-use super::noise::resolution;
-
-/// Fewest readings from which it is told.
-const LEAST_READINGS: usize = 20;
-
-/// Share of the readings that must stay for the usual number of samples, but for one more or less where a log and a
-/// sensor have clocks of their own.
-const USUAL: f64 = 0.8;
-
-/// A counter that creeps goes on by one count or two, each printed in two ways at most: share of the moves that so many
-/// sizes must not reach.
-const SIZES_OF_COUNTS: usize = 4;
-const COUNTED: f64 = 0.6;
-
-/// How far, as a share of the values, sizes of moves that are the same may differ in binary numbers.
-const BINARY: f64 = 1e-12;
+use super::lattice::resolution;
+use super::tuning::{BINARY, COUNTED, IN_STEP, LEAST_READINGS, SIZES_OF_COUNTS, USUAL};
 
 /// The samples with fresh readings, of a channel that holds them.
-pub(super) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
+pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     let mut begins: Vec<usize> = (1..values.len())
         .filter(|i| values[*i] != values[i - 1])
         .collect();
@@ -35,16 +21,19 @@ pub(super) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     if median < 2 {
         return None;
     }
+    let every = in_step(&stays, median);
     stays.retain(|stay| *stay > 1 && stay.abs_diff(median) <= 1);
-    if (stays.len() as f64) < USUAL * count as f64 {
-        return None;
-    }
+    let usual = stays.len() as f64 >= USUAL * count as f64;
     let readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
-    if goes_by_counts(&readings) {
+    if usual && goes_by_counts(&readings) {
         return None;
     }
     // One that stays longer came again as it was.
-    let period = stays.iter().sum::<usize>() as f64 / stays.len() as f64;
+    let period = match every {
+        Some(every) => every as f64,
+        None if usual => stays.iter().sum::<usize>() as f64 / stays.len() as f64,
+        None => return None,
+    };
     let again = |times: usize| (0..times).map(move |k| (k as f64 * period).round() as usize);
     let first = begins[0];
     let before = (first as f64 / period) as usize + 1;
@@ -62,6 +51,16 @@ pub(super) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     Some(fresh)
 }
 
+/// For how many samples each reading is held, where nearly all stay for a multiple of that: the longest such time, up to
+/// `most`.
+fn in_step(stays: &[usize], most: usize) -> Option<usize> {
+    let share = |every: usize| {
+        let whole = stays.iter().filter(|stay| **stay % every == 0);
+        whole.count() as f64 / stays.len() as f64
+    };
+    (2..=most).rev().find(|every| share(*every) >= IN_STEP)
+}
+
 /// Whether most moves from one reading to the next are of a few sizes only.
 fn goes_by_counts(readings: &[f64]) -> bool {
     let mut moves: Vec<f64> = readings.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
@@ -76,7 +75,7 @@ fn goes_by_counts(readings: &[f64]) -> bool {
 }
 
 /// Values for every time, on straight lines between the `readings` at these samples, of which there must be one.
-pub(super) fn bridged(readings: &[f64], samples: &[usize], time: &[f64]) -> Vec<f64> {
+pub(in crate::criticism) fn bridged(readings: &[f64], samples: &[usize], time: &[f64]) -> Vec<f64> {
     let last = readings.len() - 1;
     let value = |i: usize| {
         let next = samples.partition_point(|s| *s <= i);
@@ -93,7 +92,7 @@ pub(super) fn bridged(readings: &[f64], samples: &[usize], time: &[f64]) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::criticism::noise::noise_level;
+    use crate::criticism::noise_level;
     use crate::rig::Random;
 
     /// A turning body whose angle, with noise of 0.01, comes once in so many samples, after a rest.
@@ -138,6 +137,20 @@ mod tests {
         assert!(count.abs_diff(4000 * 10 / 43) < 12, "{count}");
         let level = noise_level(&values, &vec![1.0; 4000]);
         assert!((level / 0.01 - 1.0).abs() < 0.3, "{level}");
+    }
+
+    #[test]
+    fn a_coarse_sensor_that_is_logged_twice_holds_though_it_goes_by_counts() {
+        let mut random = Random::new(3);
+        let reading = |i: usize| 20.0 + 30.0 * (1.0 - libm::exp(-(i as f64) / 60.0));
+        let values: Vec<f64> = (0..200)
+            .map(|i| reading(i) + 0.2 * random.normal())
+            .map(|v| (4.0 * v).round() / 4.0)
+            .flat_map(|v| [v, v])
+            .collect();
+        assert_eq!(fresh(&values).map(|f| f.len()), Some(200));
+        let level = noise_level(&values, &[1.0; 400]);
+        assert!((level / 0.21 - 1.0).abs() < 0.25, "{level}");
     }
 
     #[test]

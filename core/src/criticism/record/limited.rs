@@ -1,21 +1,12 @@
 //! A sensor at its limit: it shows the same largest or smallest value while what it measures goes on.
 
 use super::held::fresh;
-use super::noise::resolution;
+use super::lattice::resolution;
+use super::tuning::{AT_ONCE, LEAST_SAMPLES, LEAST_STAY, REPEATED};
 use crate::measurement::{Channel, Quantity};
 
-/// Samples in a row at the limit, and samples in all such rows, from which it is told.
-const LEAST_STAY: usize = 3;
-const LEAST_SAMPLES: usize = 10;
-
-/// It comes to its limit by a step of more than so many units of the last digit: what settles there comes by one.
-const AT_ONCE: f64 = 4.0;
-
-/// Share of the other samples that may be as the one before: of noise hardly any is, of counts many are.
-const REPEATED: f64 = 0.02;
-
 /// Which samples of a channel are at a limit of its sensor; empty where none is. A position at its end may rest there.
-pub(super) fn limited(channel: &Channel) -> Vec<bool> {
+pub(in crate::criticism) fn limited(channel: &Channel) -> Vec<bool> {
     let values = &channel.values;
     if channel.quantity == Quantity::Position || fresh(values).is_some() {
         return Vec::new();

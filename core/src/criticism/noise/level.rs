@@ -4,54 +4,14 @@
 //! noise. A switching input makes kinks, always at the same times after the switch: differences
 //! are therefore grouped by the number of samples since the input changed, and the quiet groups
 //! decide. Within a group a low quantile keeps what kinks remain from counting. Of a channel that holds its readings only
-//! the fresh ones tell.
+//! the fresh ones tell. Of a quantised channel the lattice adds its own variance, however its values are printed.
 
-use super::held::fresh;
+use super::tuning::{
+    CHANCE, GROUPS, MIN_GROUP, NORMAL_QUANTILE, ORDERS, QUANTILE, QUANTISED, QUIET, REPEATED,
+    STATE_ORDER, STATES, UNLIKE,
+};
+use crate::criticism::record::{fresh, lattice, resolution};
 use crate::order::quantile;
-
-/// Orders of difference that are tried.
-const ORDERS: [usize; 4] = [2, 3, 4, 5];
-
-/// Groups by samples since the last change of the input; later samples share the last group.
-const GROUPS: usize = 24;
-
-/// Fewest differences from which a group may speak.
-const MIN_GROUP: usize = 60;
-
-/// Quantile of the absolute differences that is read off: low, so that kinks do not count.
-const QUANTILE: f64 = 0.3;
-
-/// The same quantile of the absolute value of a standard normal variable.
-const NORMAL_QUANTILE: f64 = 0.385_320_466_407_567_6;
-
-/// Share of the differences that lies in quieter groups than the one that decides.
-const QUIET: f64 = 0.4;
-
-/// Three standard errors of a level that is read off one difference, relative to it; of many, this over the root of their
-/// number.
-const CHANCE: f64 = 4.8;
-
-/// Excess of the variance over that of quantisation up to which it is quantisation alone.
-const QUANTISED: f64 = 1.25;
-
-/// Values that are looked at to find the step of a quantised channel.
-const QUANTUM_SAMPLES: usize = 4000;
-
-/// Most counts that the least step between two values may be.
-const MOST_COUNTS: u32 = 16;
-
-/// Distance from a whole number of counts up to which many counts are whole.
-const WHOLE: f64 = 0.1;
-
-/// Digits after the point up to which values are looked at as printed ones, the most units of the last digit that they
-/// may be, and how far they may be from whole ones: that of binary numbers.
-const MOST_DIGITS: usize = 12;
-const MOST_UNITS: f64 = 1e9;
-const PRINTED: f64 = 1e-6;
-
-/// A count is that of a sensor behind the print where it is this many units of the last digit, seen in so many steps.
-const BEHIND_PRINT: f64 = 8.0;
-const STEPS_BEHIND_PRINT: usize = 5;
 
 /// Standard deviation of the noise in `values`, in their unit; above 0 unless all are equal.
 ///
@@ -62,12 +22,14 @@ pub fn noise_level(values: &[f64], input: &[f64]) -> f64 {
 
 /// The noise of a channel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Noise {
+pub(in crate::criticism) struct Noise {
     /// Standard deviation.
     pub level: f64,
     /// It is that of counting alone: nothing is seen of what stays within half a step, and a body that rests
     /// or creeps leaves an error that is no random one.
     pub counted: bool,
+    /// Step of the lattice on which the values lie; 0 where none is seen.
+    pub step: f64,
 }
 
 pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
@@ -75,14 +37,18 @@ pub(super) fn noise(values: &[f64], input: &[f64]) -> Noise {
         let places: Vec<usize> = (0..values.len()).collect();
         return noise_at(&places, values, input);
     };
-    // At rest even a fresh reading may be the same again.
-    fresh.dedup_by_key(|i| values[*i].to_bits());
+    // At rest even a fresh reading may be the same again; where most are, they count steps and go on so.
+    let mut single = fresh.clone();
+    single.dedup_by_key(|i| values[*i].to_bits());
+    if single.len() as f64 > (1.0 - REPEATED) * fresh.len() as f64 {
+        fresh = single;
+    }
     let at = |all: &[f64]| -> Vec<f64> { fresh.iter().map(|i| all[*i]).collect() };
     noise_at(&fresh, &at(values), &at(input))
 }
 
 /// The same without the samples that are marked; none is where there are no marks.
-pub(super) fn noise_beside(values: &[f64], input: &[f64], marked: &[bool]) -> Noise {
+pub(in crate::criticism) fn noise_beside(values: &[f64], input: &[f64], marked: &[bool]) -> Noise {
     if marked.is_empty() {
         return noise(values, input);
     }
@@ -93,7 +59,7 @@ pub(super) fn noise_beside(values: &[f64], input: &[f64], marked: &[bool]) -> No
 
 /// The same of values at these samples.
 fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
-    let quantum = quantum(values);
+    let quantum = lattice(values);
     // A quantised signal is dithered by one step, evenly spread, so that quantiles are smooth.
     let dithered: Vec<f64> = values
         .iter()
@@ -103,11 +69,19 @@ fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
     let uniform = quantum * quantum / 12.0;
     let groups = since_change(input);
     let smallest = least_level(places, &dithered, &groups);
+    if let Some(mean_square) = mean_square_over_states(places, &dithered, &groups, smallest) {
+        return Noise {
+            level: (mean_square - uniform).max(uniform).sqrt(),
+            counted: false,
+            step: quantum,
+        };
+    }
     // Quantisation and dither alone, within what the estimate can tell.
     if quantum > 0.0 && smallest * smallest < QUANTISED * 2.0 * uniform {
         return Noise {
             level: uniform.sqrt(),
             counted: true,
+            step: quantum,
         };
     }
     let variance = if smallest.is_finite() {
@@ -124,84 +98,12 @@ fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
             .max(rounding * rounding)
             .sqrt(),
         counted: false,
+        step: quantum,
     }
-}
-
-/// Unit of the last digit to which the values were printed; 0 where they are no decimal numbers.
-pub(super) fn resolution(values: &[f64]) -> f64 {
-    let most = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let mut units = 1.0;
-    for _ in 0..=MOST_DIGITS {
-        if most * units > MOST_UNITS {
-            break;
-        }
-        let is_whole = |v: &f64| (v * units - (v * units).round()).abs() < PRINTED;
-        if values.iter().all(is_whole) {
-            return 1.0 / units;
-        }
-        units *= 10.0;
-    }
-    0.0
-}
-
-/// Step of a quantised channel; 0 where none is seen.
-fn quantum(values: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = values.iter().take(QUANTUM_SAMPLES).copied().collect();
-    sorted.sort_by(f64::total_cmp);
-    let mut steps: Vec<f64> = sorted
-        .windows(2)
-        .map(|w| w[1] - w[0])
-        .filter(|d| *d > 0.0)
-        .collect();
-    steps.sort_by(f64::total_cmp);
-    let Some(least) = steps.first() else {
-        return 0.0;
-    };
-    // The printed values are rounded, so the median of the single steps is better than the least.
-    let single = steps.partition_point(|d| *d < 1.5 * least);
-    let least = steps[single / 2];
-    // What runs on fast may never stop on two neighbouring counts.
-    let mut parts = (1..=MOST_COUNTS).map(|n| refined(&steps, least / f64::from(n)));
-    // Either end of a step was rounded where it was printed.
-    let printed = resolution(values);
-    let seen = steps.len() >= STEPS_BEHIND_PRINT;
-    let rounded = |step: f64| {
-        if seen && step > BEHIND_PRINT * printed {
-            printed / step
-        } else {
-            0.0
-        }
-    };
-    let step = parts.find(|step| is_whole(&steps, *step, rounded(*step)));
-    step.unwrap_or(0.0)
-}
-
-/// The step of which these ascending ones are whole multiples, from a rough value: the longer ones, whose number of steps
-/// follows from the shorter ones, tell it to more digits than print rounding leaves of one.
-fn refined(ascending: &[f64], rough: f64) -> f64 {
-    let (mut product, mut square, mut step) = (0.0, 0.0, rough);
-    for length in ascending {
-        let count = (length / step).round();
-        if (length / step - count).abs() < WHOLE {
-            product += length * count;
-            square += count * count;
-            step = product / square;
-        }
-    }
-    step
-}
-
-/// Whether nearly all of these steps are whole multiples of one, but for a share of it by which they are rounded.
-fn is_whole(steps: &[f64], step: f64, rounded: f64) -> bool {
-    let whole = steps.iter().filter(|d| {
-        let ratio = *d / step;
-        (ratio - ratio.round()).abs() < WHOLE * (0.2 * ratio).clamp(0.2, 1.0) + rounded
-    });
-    whole.count() as f64 > 0.95 * steps.len() as f64
 }
 
 /// Evenly spread over 0 to 1 and without pattern, the same on every machine (finaliser of `SplitMix64`).
-fn dither(i: usize) -> f64 {
+pub(super) fn dither(i: usize) -> f64 {
     let mut z = (i as u64)
         .wrapping_add(1)
         .wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -242,6 +144,47 @@ fn least_level(places: &[usize], values: &[f64], groups: &[usize]) -> f64 {
         0 => f64::INFINITY,
         count => sum / count as f64,
     }
+}
+
+/// The mean square of the noise over the states of the signal, where it depends on them: of a speed that is counted over a
+/// time, say, which is quiet at rest and rough in motion, neither part tells alone. `usual` is what the quiet differences
+/// show. `None` where the loudest part is no louder than the quietest, but for chance.
+fn mean_square_over_states(
+    places: &[usize],
+    values: &[f64],
+    groups: &[usize],
+    usual: f64,
+) -> Option<f64> {
+    let signs = binomials(STATE_ORDER);
+    let gain = signs.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let even = evenly_spaced(places, STATE_ORDER);
+    // Long after a change of the input there are no kinks.
+    let settled = |i: usize| even[i] && groups[i + STATE_ORDER] == GROUPS - 1;
+    let mut differences: Vec<(f64, f64)> = values
+        .windows(STATE_ORDER + 1)
+        .enumerate()
+        .filter(|(i, _)| settled(*i))
+        .map(|(_, window)| {
+            let mean = window.iter().sum::<f64>() / window.len() as f64;
+            let difference: f64 = window.iter().zip(&signs).map(|(v, c)| v * c).sum();
+            (mean.abs(), difference.abs() / gain)
+        })
+        .collect();
+    let part = differences.len() / STATES;
+    if part < MIN_GROUP {
+        return None;
+    }
+    differences.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let levels = differences.chunks(part).take(STATES).map(|part| {
+        let mut part: Vec<f64> = part.iter().map(|(_, difference)| *difference).collect();
+        low_quantile(&mut part)
+    });
+    let levels: Vec<f64> = levels.collect();
+    let loudest = levels.iter().copied().fold(0.0, f64::max);
+    let quietest = levels.iter().copied().fold(f64::INFINITY, f64::min);
+    let chance = 1.0 + chance(part);
+    let depends = loudest > UNLIKE * chance * quietest.min(usual);
+    depends.then(|| levels.iter().map(|l| l * l).sum::<f64>() / STATES as f64)
 }
 
 /// The noise that the differences of this order show, and the number of those that tell.
@@ -342,24 +285,6 @@ mod tests {
     }
 
     #[test]
-    fn a_count_is_found_where_no_two_neighbouring_counts_were_seen() {
-        let step = 2.0 * std::f64::consts::PI / f64::from(1 << 20);
-        for (stride, least) in [(293.0, 2.0), (299.5, 3.0), (1201.0, 5.0)] {
-            // Coasting, but for a turn that passes a few counts twice.
-            let mut values: Vec<f64> = (0..3000)
-                .map(|i| (stride * f64::from(i)).round() * step)
-                .collect();
-            let last = values[2999];
-            values.push(last + least * step);
-            values.extend((1..900).map(|i| last + 5e3 * step * f64::from(i)));
-            let found = quantum(&values);
-            assert!((found / step - 1.0).abs() < 1e-9, "{stride}: {found}");
-        }
-        let smooth: Vec<f64> = (0..3000).map(|i| libm::sin(f64::from(i) * 0.7)).collect();
-        assert_eq!(quantum(&smooth), 0.0);
-    }
-
-    #[test]
     fn noise_is_known_where_a_controller_changes_the_input_now_and_then() {
         let random = |i: usize, of: usize| dither(i * 13 + of);
         for of in 0..8 {
@@ -394,19 +319,6 @@ mod tests {
     }
 
     #[test]
-    fn the_step_is_found_where_hardly_two_samples_are_near_each_other() {
-        // A body at 20 rad/s, encoder of 2^20 counts, nine digits printed: neighbours are hundreds of counts apart.
-        let step = std::f64::consts::TAU / f64::from(1 << 20);
-        let printed = |x: f64| (x * 1e8).round() * 1e-8;
-        let values: Vec<f64> = (0..4000)
-            .map(|i| 8.0 * libm::sin(1e-3 * f64::from(i)) + 1e-3 * f64::from(i * i % 977))
-            .map(|x| printed((x / step).round() * step))
-            .collect();
-        let found = quantum(&values);
-        assert!((found / step - 1.0).abs() < 1e-4, "{found}");
-    }
-
-    #[test]
     fn a_count_that_is_no_round_number_is_found_behind_the_print() {
         // A converter's steps of 0.3223 degrees, printed with two digits: they are 0.32 and 0.33.
         let step = 0.3223;
@@ -415,7 +327,7 @@ mod tests {
             .map(|x| 20.9 + (x / step).floor() * step)
             .map(|x| (x * 100.0).round() / 100.0)
             .collect();
-        let found = quantum(&values);
+        let found = lattice(&values);
         assert!((found / step - 1.0).abs() < 1e-3, "{found}");
         let noise = noise(&values, &vec![50.0; 800]);
         assert!(noise.counted);

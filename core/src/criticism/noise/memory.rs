@@ -5,12 +5,12 @@
 //! depends on time, on the motion or on the input. (Whiteness is no requirement on a residual for a model to be right,
 //! independence of the input is: Ljung, System Identification, 2nd edition, 1999, section 16.6.)
 
-use super::axes::{Axis, axes};
-use super::correlation::product;
-use super::data::Data;
-use super::fit::{Motion, residuals};
-use super::locate::depends_on_the_motion;
-use super::output::Output;
+use crate::criticism::axes::{Axis, axes};
+use crate::criticism::correlation::product;
+use crate::criticism::data::Data;
+use crate::criticism::fit::{Motion, residuals};
+use crate::criticism::locate::depends_on_the_motion;
+use crate::criticism::output::Output;
 
 /// Samples within which it forgets, and up to which it must not remember again.
 const FORGETS: usize = 6;
@@ -30,7 +30,11 @@ const CHANCE: f64 = 1.5;
 const PARTS: usize = 20;
 
 /// Whether the residual of every output is noise, with a memory of some samples at most.
-pub(super) fn is_noise_with_memory(data: &Data, motion: &Motion, velocity_unit: &str) -> bool {
+pub(in crate::criticism) fn is_noise_with_memory(
+    data: &Data,
+    motion: &Motion,
+    velocity_unit: &str,
+) -> bool {
     if data.used() != data.len() {
         return false;
     }

@@ -8,38 +8,14 @@
 //! elsewhere, at once, while what is before and after them each runs on evenly, and nothing else in the record comes and
 //! goes as quickly: as the first speeds that are counted over a time in which the machine stood. Nothing is known there.
 
-/// Deviation from the neighbours, in standard deviations of the noise, of a glitch: none of ten million normal values
-/// is as far off.
-const FAR_OFF: f64 = 8.0;
-
-/// Deviation of the neighbours from each other, likewise, and as a share of that of the value between them.
-const AGREE: f64 = 4.0;
-const SHARE: f64 = 0.15;
-
-/// Share of the values that may be glitches; more are the way that the sensor is.
-const FEW: f64 = 0.01;
-
-/// Standard deviation of a value less the cubic through four neighbours, in that of the noise.
-const CUBIC: f64 = 1.394;
-
-/// Weights of the cubic at a value through those two and one before and one and two after it, and at a neighbour of one
-/// that is left out, through the two beyond that neighbour and the two beyond the gap, from the far side.
-const AT_VALUE: [f64; 4] = [-1.0 / 6.0, 4.0 / 6.0, 4.0 / 6.0, -1.0 / 6.0];
-const AT_NEIGHBOUR: [f64; 4] = [-0.3, 1.0, 0.5, -0.2];
-
-/// Most values in a row that may be a glitch, and most such rows on one side of all other values.
-const LONGEST: usize = 3;
-const MOST_ROWS: usize = 2;
-
-/// How far beyond all other values they are, as a share of the range of these.
-const BEYOND: f64 = 0.3;
-
-/// Standard deviation of a second difference in that of the noise.
-const SECOND_DIFFERENCE: f64 = 2.45;
+use super::tuning::{
+    AGREE, AT_NEIGHBOUR, AT_VALUE, BEYOND, CUBIC, FAR_OFF, FEW, LONGEST, MOST_ROWS,
+    SECOND_DIFFERENCE, SHARE,
+};
 
 /// What was found among the values of a channel.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(super) struct Glitches {
+pub(in crate::criticism) struct Glitches {
     /// Samples that were put where their neighbours say.
     pub mended: Vec<usize>,
     /// Samples at which nothing is known.
@@ -47,7 +23,7 @@ pub(super) struct Glitches {
 }
 
 /// Puts the glitches among `values` where their neighbours say, and tells where they were; none where they are many.
-pub(super) fn mend(values: &mut [f64], noise: f64) -> Glitches {
+pub(in crate::criticism) fn mend(values: &mut [f64], noise: f64) -> Glitches {
     let found: Vec<(usize, f64)> = (3..values.len().saturating_sub(3))
         .filter_map(|i| Some(i).zip(expected(values, i, noise)))
         .collect();

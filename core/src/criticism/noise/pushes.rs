@@ -5,9 +5,9 @@
 //! by two things. What it leaves goes one way for a while, so that it grows faster, or comes back. And it depends on the
 //! motion or on the input, so that what one half of the windows shows of that foretells something of the other half.
 
-use super::data::Data;
-use super::fit::{Motion, residuals};
-use super::output::Output;
+use crate::criticism::data::Data;
+use crate::criticism::fit::{Motion, residuals};
+use crate::criticism::output::Output;
 use crate::effect::Probe;
 use crate::measurement::Kind;
 
@@ -30,7 +30,7 @@ const FORETOLD: f64 = 0.3;
 
 /// Whether small random forces leave what a model of a drive with this `error` (in noise units) leaves; `probe` gives the
 /// force that it leaves unexplained.
-pub(super) fn is_left_by_random_forces(
+pub(in crate::criticism) fn is_left_by_random_forces(
     data: &Data,
     motion: &Motion,
     error: f64,

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use hysteron_work::enclosed::DRIVE_02;
 
-use crate::start::run_native;
+use super::start::run_native;
 
 /// A laboratory for relay feedback systems. Without a command, the app opens, with a measurement if one is given.
 #[derive(Debug, clap::Parser)]

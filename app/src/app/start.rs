@@ -3,7 +3,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 use std::path::PathBuf;
 
-use crate::HysteronApp;
+use super::HysteronApp;
 #[cfg(target_arch = "wasm32")]
 use crate::language::{self, Language, tr};
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,0 +1,364 @@
+//! `hysteron tune FILE.csv|LOG`, or with `--amplitude`, `--period`, `--levels` and `--hysteresis`
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use hysteron_core::measurement::{ImportOptions, Kind, Mapping, import};
+use hysteron_core::tuning::measured::log::{self, Log};
+use hysteron_core::tuning::measured::{
+    AmplitudeConvention, FittedModel, Form, MeasuredTuning, Readings, Record, Settings, TunedGains,
+    tune_readings, tune_record,
+};
+use serde_json::json;
+
+use crate::output::Format;
+
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
+
+/// What may be given.
+const FILE_HELP: &str = "Record of a relay test as CSV or MATLAB file, or the log of an auto-tuner: Klipper, Marlin, \
+                         ESPHome, Mycodo, Home Assistant";
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    #[arg(value_name = "FILE.csv|LOG", help = FILE_HELP, required_unless_present_all = ["amplitude", "period", "levels"])]
+    file: Option<PathBuf>,
+    /// Amplitude of the output, in its unit: half of peak to peak, unless --peak-to-peak
+    #[arg(long, value_name = "A", conflicts_with = "file", requires_all = ["period", "levels"])]
+    amplitude: Option<f64>,
+    /// The amplitude was read from peak to peak
+    #[arg(long, requires = "amplitude")]
+    peak_to_peak: bool,
+    /// Period of the oscillation, s
+    #[arg(long, value_name = "S", conflicts_with = "file")]
+    period: Option<f64>,
+    /// Input while the relay is down and up
+    #[arg(
+        long,
+        value_name = "LOW,HIGH",
+        conflicts_with = "file",
+        allow_hyphen_values = true
+    )]
+    levels: Option<Two>,
+    /// Half the distance between the outputs at which the relay switches
+    #[arg(long, value_name = "H")]
+    hysteresis: Option<f64>,
+    /// Time with the input up and down, s
+    #[arg(long, value_name = "UP,DOWN", requires = "amplitude")]
+    half_periods: Option<Two>,
+    /// Form of the gains; parallel, or for a log that of its firmware, if not given
+    #[arg(long, value_enum)]
+    form: Option<FormName>,
+    /// Largest value of the input, such as 1, 100 or 255; guessed if not given
+    #[arg(long, value_name = "U")]
+    full_scale: Option<f64>,
+    /// Set point of the test, in the unit of the output
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
+    target: Option<f64>,
+    /// Which column is what: t, u, y, its name in the file, its unit
+    #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
+    map: Option<Mapping>,
+    /// For a person or for a program
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+/// Form of the gains.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum FormName {
+    /// kp + ki/s + kd s
+    Parallel,
+    /// kp (1 + 1/(ti s) + td s)
+    Ideal,
+    /// kp (1 + 1/(ti s)) (1 + td s)
+    Series,
+    /// `pid_Kp`, `pid_Ki` and `pid_Kd`
+    Klipper,
+    /// P, I and D of M301 or M304
+    Marlin,
+    /// kp, ki and kd of a climate
+    Esphome,
+}
+
+impl FormName {
+    const fn form(self) -> Form {
+        match self {
+            Self::Parallel => Form::Parallel,
+            Self::Ideal => Form::Ideal,
+            Self::Series => Form::Series,
+            Self::Klipper => Form::Klipper,
+            Self::Marlin => Form::Marlin,
+            Self::Esphome => Form::Esphome,
+        }
+    }
+}
+
+/// Two numbers with a comma between them.
+#[derive(Clone, Copy, Debug)]
+struct Two([f64; 2]);
+
+impl FromStr for Two {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text
+            .split(',')
+            .filter_map(|n| n.trim().parse().ok())
+            .collect();
+        match (numbers.as_slice(), text.split(',').count()) {
+            ([a, b], 2) => Ok(Self([*a, *b])),
+            _ => Err("expected two numbers with a comma between them, such as 0,255".to_owned()),
+        }
+    }
+}
+
+/// What the test tells, or one line that says what is wrong with the input.
+pub fn run(arguments: &Arguments) -> Result<String, String> {
+    let settings = Settings {
+        form: arguments.form.map_or(Form::Parallel, FormName::form),
+        full_scale: arguments.full_scale,
+        target: arguments.target,
+        notes: Vec::new(),
+    };
+    if let Some(scale) = arguments.full_scale
+        && !(scale.is_finite() && scale > 0.0)
+    {
+        return Err(format!("--full-scale is {scale}: it must be above 0"));
+    }
+    let result = match (&arguments.file, of_numbers(arguments)) {
+        (Some(file), _) => of_file(file, arguments, &settings)?,
+        (None, Some(readings)) => tune_readings(&readings, &settings).map_err(|e| e.to_string())?,
+        (None, None) => {
+            return Err("expected a file, or --amplitude, --period and --levels".to_owned());
+        }
+    };
+    Ok(match arguments.format {
+        Format::Text => text(&result),
+        Format::Json => format!("{:#}\n", json(&result)),
+    })
+}
+
+fn of_numbers(arguments: &Arguments) -> Option<Readings> {
+    Some(Readings {
+        amplitude: arguments.amplitude?,
+        convention: if arguments.peak_to_peak {
+            AmplitudeConvention::PeakToPeak
+        } else {
+            AmplitudeConvention::Half
+        },
+        period: arguments.period?,
+        levels: arguments.levels?.0,
+        hysteresis: arguments.hysteresis.unwrap_or(0.0),
+        half_periods: arguments.half_periods.map(|t| t.0),
+    })
+}
+
+fn of_file(
+    file: &Path,
+    arguments: &Arguments,
+    settings: &Settings,
+) -> Result<MeasuredTuning, String> {
+    let shown = file.display();
+    if file.is_dir() {
+        return Err(format!(
+            "{shown} is a directory; expected a CSV or MATLAB file, or a log"
+        ));
+    }
+    let bytes = std::fs::read(file).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let name = file
+        .file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy();
+    let logged = arguments
+        .map
+        .is_none()
+        .then(|| log::read(&name, &String::from_utf8_lossy(&bytes)))
+        .flatten();
+    if let Some(read) = logged {
+        let read = read.map_err(|e| format!("{shown}: {e}"))?;
+        let result = with_arguments(read, arguments).tune(arguments.form.map(FormName::form));
+        return result.map_err(|e| format!("{shown}: {e}"));
+    }
+    let options = ImportOptions {
+        kind: arguments.map.is_none().then_some(Kind::Process),
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: None,
+        period: None,
+    };
+    // A drive is a plant as well: what is no process may be one.
+    let measurement = import(&name, &bytes, &options).or_else(|error| {
+        let any = ImportOptions {
+            kind: None,
+            ..options.clone()
+        };
+        import(&name, &bytes, &any).map_err(|_| error)
+    });
+    let measurement = measurement.map_err(|e| e.to_string())?;
+    let settings = Settings {
+        notes: measurement.warnings.clone(),
+        ..settings.clone()
+    };
+    tune_record(&Record::of(&measurement), &settings).map_err(|e| format!("{shown}: {e}"))
+}
+
+/// What the user says beats what a log does not know.
+fn with_arguments(mut read: Log, arguments: &Arguments) -> Log {
+    if let (log::Held::Readings(readings), Some(hysteresis)) =
+        (&mut read.held, arguments.hysteresis)
+    {
+        readings.hysteresis = hysteresis;
+    }
+    read.settings.full_scale = arguments.full_scale.or(read.settings.full_scale);
+    read.settings.target = arguments.target.or(read.settings.target);
+    read
+}
+
+fn json(result: &MeasuredTuning) -> serde_json::Value {
+    let cycle = result.cycle.as_ref().map(|c| {
+        json!({"period": c.period, "amplitude": c.amplitude, "half_periods": c.half_periods, "levels": c.levels,
+               "hysteresis": c.hysteresis, "periods": c.periods})
+    });
+    let point = result.point.map(|p| {
+        json!({"omega": p.omega, "magnitude": p.magnitude, "phase_deg": p.phase_deg,
+               "std_error_magnitude": p.std_error_magnitude, "std_error_phase_deg": p.std_error_phase_deg})
+    });
+    let ultimate = result.ultimate.map(|u| {
+        json!({"gain": u.gain, "period": u.period, "std_error_gain": u.std_error_gain,
+               "std_error_period": u.std_error_period})
+    });
+    json!({
+        "schema": SCHEMA,
+        "cycle": cycle,
+        "point": point,
+        "ultimate": ultimate,
+        "conventional": result.conventional.map(|c| json!({"gain": c.gain, "period": c.period})),
+        "static_gain": result.static_gain.map(|k| json!({"value": k.value, "std_error": k.std_error})),
+        "models": result.models.iter().map(model).collect::<Vec<_>>(),
+        "gains": result.gains.iter().map(gains).collect::<Vec<_>>(),
+        "stall": result.stall(),
+        "troubles": result.troubles.iter()
+            .map(|t| json!({"kind": t.kind, "fatal": t.fatal, "number": t.number, "text": t.text}))
+            .collect::<Vec<_>>(),
+        "text": result.text,
+    })
+}
+
+/// A model; times in s, the largest time constant first.
+fn model(model: &FittedModel) -> serde_json::Value {
+    let lag = |i: usize, of: fn(&hysteron_core::tuning::measured::Value) -> f64| {
+        model.time_constants.get(i).map(of)
+    };
+    json!({
+        "kind": model.structure.id(),
+        "gain": model.gain.value,
+        "std_error_gain": model.gain.std_error,
+        "time_constant": lag(0, |t| t.value),
+        "std_error_time_constant": lag(0, |t| t.std_error),
+        "second_time_constant": lag(1, |t| t.value),
+        "std_error_second_time_constant": lag(1, |t| t.std_error),
+        "zero": model.zero.map(|z| z.value),
+        "dead_time": model.dead_time.value,
+        "std_error_dead_time": model.dead_time.std_error,
+        "operating_point": model.operating_point,
+        "left": model.left,
+        "preferred": model.preferred,
+    })
+}
+
+fn gains(gains: &TunedGains) -> serde_json::Value {
+    json!({
+        "rule": gains.rule,
+        "controller": gains.controller,
+        "form": gains.form.id(),
+        "kp": gains.kp,
+        "ki": gains.ki,
+        "kd": gains.kd,
+        "ti": gains.ti,
+        "td": gains.td,
+        "stable": gains.stable,
+        "phase_margin_deg": gains.phase_margin_deg,
+        "gain_margin": gains.gain_margin,
+        "max_sensitivity": gains.max_sensitivity,
+    })
+}
+
+fn text(result: &MeasuredTuning) -> String {
+    let mut out = format!(
+        "{}: {}\n",
+        result.name.replace(char::is_control, " "),
+        result.text
+    );
+    if !result.models.is_empty() {
+        let _ = writeln!(
+            out,
+            "\n{:<16} {:>12} {:>12} {:>12} {:>12} {:>9}",
+            "model", "gain", "lag [s]", "2nd lag [s]", "dead time [s]", "left"
+        );
+    }
+    for m in &result.models {
+        let lag = |i: usize| {
+            m.time_constants
+                .get(i)
+                .map_or_else(String::new, |t| short(t.value))
+        };
+        let _ = writeln!(
+            out,
+            "{:<16} {:>12} {:>12} {:>12} {:>12} {:>7.2} %",
+            m.structure.id(),
+            short(m.gain.value),
+            lag(0),
+            lag(1),
+            short(m.dead_time.value),
+            100.0 * m.left
+        );
+    }
+    if let Some(first) = result.gains.first() {
+        let _ = writeln!(
+            out,
+            "\n{:<22} {:>12} {:>12} {:>12} {:>13} {:>12}",
+            format!("gains, {} form", first.form.id()),
+            "kp",
+            "ki [1/s]",
+            "kd [s]",
+            "phase margin",
+            "gain margin"
+        );
+    }
+    for g in &result.gains {
+        let margins = if g.stable || result.models.is_empty() {
+            let phase = g
+                .phase_margin_deg
+                .map_or_else(|| "-".to_owned(), |p| format!("{p:.0} deg"));
+            let gain = g
+                .gain_margin
+                .map_or_else(|| "-".to_owned(), |m| format!("{m:.2}"));
+            format!("{phase:>13} {gain:>12}")
+        } else {
+            "unstable on the model".to_owned()
+        };
+        let name = format!("{} {}", g.name, g.controller.to_uppercase());
+        let _ = writeln!(
+            out,
+            "{name:<22} {:>12} {:>12} {:>12} {margins}",
+            short(g.kp),
+            short(g.ki),
+            short(g.kd)
+        );
+    }
+    out
+}
+
+/// Five significant digits.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e5).contains(&size) {
+        let decimals = (4 - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}

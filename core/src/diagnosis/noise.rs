@@ -1,0 +1,57 @@
+//! The noise of the measured channels: the unit of the errors.
+
+use serde::{Deserialize, Serialize};
+
+use crate::measurement::Quantity;
+use crate::uncertain::shown_unit;
+
+/// The noise of a measured channel, in its own unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChannelNoise {
+    /// Name of the channel in the file.
+    pub channel: String,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Standard deviation of the noise in `unit`.
+    pub value: f64,
+    /// SI unit.
+    pub unit: String,
+    /// Step of the lattice on which its values lie, in `unit`; absent where none is seen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<f64>,
+}
+
+/// Share of the noise from which on a step is worth a word.
+const COARSE: f64 = 0.3;
+
+impl ChannelNoise {
+    /// `velocity noise 0.0037 rad/s, steps of 0.0132 rad/s`: steps far below the noise are not said.
+    pub fn words(&self) -> String {
+        let quantity = match self.quantity {
+            Quantity::Input => "input",
+            Quantity::Position | Quantity::LoadPosition => "position",
+            Quantity::Velocity | Quantity::LoadVelocity => "velocity",
+            Quantity::Output => "output",
+        };
+        let size = |value: f64| match shown_unit(&self.unit).as_str() {
+            "1" => three_digits(value),
+            unit => format!("{} {unit}", three_digits(value)),
+        };
+        let noise = format!("{quantity} noise {}", size(self.value));
+        match self.step.filter(|step| *step > COARSE * self.value) {
+            Some(step) => format!("{noise}, steps of {}", size(step)),
+            None => noise,
+        }
+    }
+}
+
+/// A size with three digits that count.
+fn three_digits(value: f64) -> String {
+    let written = format!("{value:.2e}");
+    let rounded: f64 = written.parse().unwrap_or(value);
+    if (1e-4..1e5).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        written
+    }
+}

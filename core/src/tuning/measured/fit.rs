@@ -1,0 +1,515 @@
+//! Models of a record by least squares, its held input simulated exactly.
+//!
+//! Gain, operating point, initial state and what acted before the record enter linearly and are solved for; only time
+//! constants and dead time are searched (separable least squares, Golub and Pereyra 1973): on a grid, by a simplex, then
+//! by Gauss and Newton with the damping of Levenberg and Marquardt. Standard errors come from the Jacobian of all
+//! parameters; residuals that hang together count as fewer samples.
+
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
+
+use super::least_squares::{coherence, damped, inverse_gram, least_squares};
+use super::record::Record;
+use super::response::Held;
+use super::structure::{FittedModel, LARGEST_SHARE, Structure, Value, physical, response, times};
+use crate::simplex::minimise;
+use crate::sums::dot;
+
+/// Most samples of the output that are compared; the input is simulated with all.
+const COMPARED: usize = 3000;
+
+/// Time constants and dead times of the grid, in periods of the cycle.
+const GRID_TIMES: [f64; 9] = [0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.56, 5.12, 10.24];
+const GRID_DEAD_TIMES: [f64; 7] = [0.003, 0.03, 0.08, 0.15, 0.25, 0.35, 0.46];
+
+/// Second time constants of the grid, as shares of the first.
+const GRID_SHARES: [f64; 3] = [0.1, 0.4, 0.8];
+
+/// Evaluations of a simplex, and steps of the last improvement.
+const SIMPLEX_EVALUATIONS: usize = 160;
+const IMPROVEMENTS: usize = 40;
+
+/// A time constant of more than this many lengths of the record is an integrator's.
+const LONGEST: f64 = 20.0;
+
+/// A time constant of less than this share of the largest has no effect.
+const SHORTEST: f64 = 1e-6;
+
+/// What a model misses of the motion below this share is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// By how much the score must be better with a drift: strong evidence on Raftery's scale (1995).
+const DRIFT_EVIDENCE: f64 = 10.0;
+
+/// Relative standard error from which a gain is not known.
+const VAGUE: f64 = 0.5;
+
+/// Step of a numerical derivative.
+const DERIVATIVE: f64 = 1e-5;
+
+/// A model with all that its fit knows.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    pub model: FittedModel,
+    /// Gains, then logarithms of time constants and dead time as they were searched.
+    theta: Vec<f64>,
+    covariance: DMatrix<f64>,
+    /// Output of the model at the compared samples, and the record's there.
+    pub simulated: Vec<f64>,
+    pub score: f64,
+    /// Noise of the output: what changes from sample to sample of what the model leaves.
+    pub noise: f64,
+    motion: f64,
+    rss: f64,
+    scale: f64,
+    parameters: usize,
+}
+
+impl Fit {
+    /// Response at a frequency.
+    pub fn response(&self, omega: f64) -> Complex<f64> {
+        response(self.model.structure, &self.theta, self.scale, omega)
+    }
+
+    /// Share of the motion that the model misses beyond what changes from sample to sample.
+    pub fn misfit(&self) -> f64 {
+        (self.model.left.powi(2) - (self.noise / self.motion).powi(2))
+            .max(0.0)
+            .sqrt()
+    }
+
+    /// Standard error of a number that is computed from the model's response.
+    pub fn error_of(
+        &self,
+        number: impl Fn(&dyn Fn(f64) -> Complex<f64>) -> Option<f64>,
+    ) -> Option<f64> {
+        let at = |theta: &[f64]| number(&|w| response(self.model.structure, theta, self.scale, w));
+        let middle = at(&self.theta)?;
+        let mut gradient = DVector::zeros(self.theta.len());
+        for i in 0..self.theta.len() {
+            let step = DERIVATIVE * self.theta[i].abs().max(1e-3);
+            let mut theta = self.theta.clone();
+            theta[i] += step;
+            gradient[i] = (at(&theta)? - middle) / step;
+        }
+        let variance = (&self.covariance * &gradient).dot(&gradient);
+        (variance.is_finite() && variance >= 0.0).then(|| variance.sqrt())
+    }
+}
+
+/// Weights of the single lags in the response of several in a row: `Ti^(n-1)/prod_(j != i) (Ti - Tj)`.
+fn partial_fractions(lags: &[f64]) -> Vec<f64> {
+    let others = |i: usize| {
+        lags.iter()
+            .enumerate()
+            .filter(move |(j, _)| *j != i)
+            .map(|(_, t)| *t)
+    };
+    (0..lags.len())
+        .map(|i| others(i).map(|t| lags[i] / (lags[i] - t)).product())
+        .collect()
+}
+
+/// Sum of series with weights.
+fn weighted(weights: &[f64], series: &[Vec<f64>]) -> Vec<f64> {
+    let mut sum = vec![0.0; series.first().map_or(0, Vec::len)];
+    for (w, values) in weights.iter().zip(series) {
+        sum.iter_mut().zip(values).for_each(|(s, v)| *s += w * v);
+    }
+    sum
+}
+
+/// The record as the fits see it.
+pub(super) struct Compared {
+    held: Held,
+    /// Mean of the input, which the simulated input goes without.
+    origin: f64,
+    pub time: Vec<f64>,
+    pub output: Vec<f64>,
+    /// Root mean square of the output about its mean.
+    motion: f64,
+    span: f64,
+    scale: f64,
+    /// Whether the load may change steadily.
+    drifts: bool,
+}
+
+impl Compared {
+    /// `scale` is a time in the order of the plant's, s.
+    pub fn new(record: &Record, scale: f64) -> Self {
+        let stride = record.time.len().div_ceil(COMPARED).max(1);
+        let taken = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
+        let (time, output) = (taken(&record.time), taken(&record.output));
+        let origin = record.input.iter().sum::<f64>() / record.input.len() as f64;
+        let mean = output.iter().sum::<f64>() / output.len() as f64;
+        let motion =
+            (output.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / output.len() as f64).sqrt();
+        Self {
+            held: Held::new(&record.time, &record.input),
+            origin,
+            time,
+            output,
+            motion,
+            span: record.span(),
+            scale,
+            drifts: false,
+        }
+    }
+
+    /// Columns of the linear problem: forced responses, operating point, of an integrator its slope, free motions, what
+    /// acted before the record, and the drift.
+    fn columns(&self, structure: Structure, p: &[f64]) -> Vec<Vec<f64>> {
+        let (all, dead_time) = times(structure, p, self.scale);
+        let lags = &all[..structure.lags()];
+        let start = self.time[0];
+        let since = || self.time.iter().map(move |t| t - start);
+        // Another input before the record acts until the dead time is over.
+        let early = |t: f64| -> Vec<f64> {
+            since()
+                .map(|s| {
+                    let over = (s - dead_time).max(0.0);
+                    (1.0 - libm::exp(-(s - over) / t)) * libm::exp(-over / t)
+                })
+                .collect()
+        };
+        let forced: Vec<Vec<f64>> = lags
+            .iter()
+            .map(|t| self.held.lag(&self.time, *t, self.origin, dead_time))
+            .collect();
+        let before: Vec<Vec<f64>> = lags.iter().map(|t| early(*t)).collect();
+        let weights = partial_fractions(lags);
+        let mut columns = Vec::with_capacity(8);
+        let acted;
+        if structure.integrates() {
+            // 1/(s (T s + 1)) = 1/s - T/(T s + 1).
+            let through: Vec<f64> = std::iter::once(1.0)
+                .chain(lags.iter().map(|t| -t))
+                .collect();
+            let own = |first: Vec<f64>, rest: Vec<Vec<f64>>| {
+                let all: Vec<Vec<f64>> = std::iter::once(first).chain(rest).collect();
+                weighted(&through, &all)
+            };
+            columns.push(own(
+                self.held.integral(&self.time, self.origin, dead_time),
+                forced,
+            ));
+            acted = own(since().map(|s| s.min(dead_time)).collect(), before);
+        } else if structure == Structure::SopdtZero {
+            acted = weighted(&weights, &before);
+            columns.extend(forced);
+        } else {
+            acted = weighted(&weights, &before);
+            columns.push(weighted(&weights, &forced));
+        }
+        columns.push(vec![1.0; self.time.len()]);
+        if structure.integrates() {
+            columns.push(since().map(|s| s / self.span).collect());
+        }
+        columns.extend(
+            lags.iter()
+                .map(|t| since().map(|s| libm::exp(-s / t)).collect::<Vec<f64>>()),
+        );
+        if self.time.partition_point(|t| t - start < dead_time) > 2 {
+            columns.push(acted);
+        }
+        // A steady change of the load: behind lags a slope, behind an integrator a parabola.
+        if self.drifts {
+            let power = if structure.integrates() { 2 } else { 1 };
+            columns.push(since().map(|s| (s / self.span).powi(power)).collect());
+        }
+        columns
+    }
+
+    /// Coefficients and residuals at the searched parameters.
+    fn solve(&self, columns: &[Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let coefficients = least_squares(columns, &self.output)?;
+        let mut residuals = self.output.clone();
+        for (c, column) in coefficients.iter().zip(columns) {
+            residuals
+                .iter_mut()
+                .zip(column)
+                .for_each(|(r, x)| *r -= c * x);
+        }
+        Some((coefficients, residuals))
+    }
+
+    fn cost(&self, structure: Structure, p: &[f64]) -> f64 {
+        let allowed = {
+            let (lags, dead_time) = times(structure, p, self.scale);
+            let too_long = lags[0] > LONGEST * self.span || dead_time > 0.5 * self.span;
+            // A lag that is far below the others is none.
+            let none = (1..structure.lags()).any(|i| lags[i] < SHORTEST * lags[0]);
+            p.iter().all(|v| v.is_finite()) && !too_long && !none
+        };
+        if !allowed {
+            return f64::INFINITY;
+        }
+        let columns = self.columns(structure, p);
+        self.solve(&columns)
+            .map_or(f64::INFINITY, |(_, r)| dot(&r, &r))
+    }
+
+    /// Fits one structure.
+    pub fn fit(&self, structure: Structure) -> Option<Fit> {
+        let mut starts: Vec<(Vec<f64>, f64)> = grid(structure)
+            .into_iter()
+            .map(|p| {
+                let cost = self.cost(structure, &p);
+                (p, cost)
+            })
+            .collect();
+        starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let best = starts
+            .into_iter()
+            .take(2)
+            .map(|(p, _)| self.descend(structure, p))
+            .min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let p = self.improve(structure, best.0);
+        self.finish(structure, &p)
+    }
+
+    fn descend(&self, structure: Structure, p: Vec<f64>) -> (Vec<f64>, f64) {
+        let cost = |p: &[f64]| self.cost(structure, p);
+        match p.as_slice() {
+            [a] => descended(minimise(
+                |p: &[f64; 1]| cost(p),
+                [*a],
+                0.1,
+                SIMPLEX_EVALUATIONS,
+                0.0,
+            )),
+            [a, b] => descended(minimise(
+                |p: &[f64; 2]| cost(p),
+                [*a, *b],
+                0.1,
+                SIMPLEX_EVALUATIONS,
+                0.0,
+            )),
+            [a, b, c] => descended(minimise(
+                |p: &[f64; 3]| cost(p),
+                [*a, *b, *c],
+                0.1,
+                SIMPLEX_EVALUATIONS,
+                0.0,
+            )),
+            _ => (p, f64::INFINITY),
+        }
+    }
+
+    /// Levenberg-Marquardt on the searched parameters, the others solved for.
+    fn improve(&self, structure: Structure, mut p: Vec<f64>) -> Vec<f64> {
+        let residuals = |p: &[f64]| self.solve(&self.columns(structure, p)).map(|s| s.1);
+        let Some(mut r) = residuals(&p) else { return p };
+        let mut damping = 1e-3;
+        for _ in 0..IMPROVEMENTS {
+            let cost = dot(&r, &r);
+            let mut jacobian: Vec<Vec<f64>> = Vec::new();
+            for i in 0..p.len() {
+                let mut moved = p.clone();
+                moved[i] += DERIVATIVE;
+                let Some(other) = residuals(&moved) else {
+                    return p;
+                };
+                jacobian.push(
+                    other
+                        .iter()
+                        .zip(&r)
+                        .map(|(a, b)| (a - b) / DERIVATIVE)
+                        .collect(),
+                );
+            }
+            let mut better = false;
+            while damping < 1e9 {
+                let Some(step) = damped(&jacobian, &r, damping) else {
+                    break;
+                };
+                let moved: Vec<f64> = p.iter().zip(&step).map(|(a, b)| a - b).collect();
+                let new_cost = self.cost(structure, &moved);
+                if new_cost < cost {
+                    let done = cost - new_cost < 1e-15 * cost;
+                    let Some(new) = residuals(&moved) else {
+                        return p;
+                    };
+                    (p, r, better) = (moved, new, !done);
+                    damping = (damping * 0.1).max(1e-12);
+                    break;
+                }
+                damping *= 10.0;
+            }
+            if !better {
+                break;
+            }
+        }
+        p
+    }
+
+    /// The model with its errors.
+    fn finish(&self, structure: Structure, p: &[f64]) -> Option<Fit> {
+        let columns = self.columns(structure, p);
+        let (coefficients, residuals) = self.solve(&columns)?;
+        let forced = structure.forced();
+        let rss = dot(&residuals, &residuals);
+        let n = residuals.len();
+        let parameters = columns.len() + p.len();
+        // Full Jacobian: linear columns, and how the model moves with the searched parameters.
+        let mut jacobian = columns.clone();
+        for i in 0..p.len() {
+            let mut moved = p.to_vec();
+            moved[i] += DERIVATIVE;
+            let others = self.columns(structure, &moved);
+            let mut change = vec![0.0; n];
+            for ((c, a), b) in coefficients.iter().zip(&others).zip(&columns) {
+                for (d, (a, b)) in change.iter_mut().zip(a.iter().zip(b)) {
+                    *d += c * (a - b) / DERIVATIVE;
+                }
+            }
+            jacobian.push(change);
+        }
+        let variance = rss / n.saturating_sub(parameters).max(1) as f64 * coherence(&residuals);
+        let full = inverse_gram(&jacobian)? * variance;
+        // What matters outside: forced coefficients and searched parameters.
+        let kept: Vec<usize> = (0..forced)
+            .chain(columns.len()..columns.len() + p.len())
+            .collect();
+        let covariance = DMatrix::from_fn(kept.len(), kept.len(), |i, j| full[(kept[i], kept[j])]);
+        let theta: Vec<f64> = coefficients[..forced].iter().chain(p).copied().collect();
+        let values = physical(structure, &theta, self.scale);
+        let errors = errors(structure, &theta, self.scale, &covariance);
+        let value = |i: usize| Value {
+            value: values[i],
+            std_error: errors[i],
+        };
+        let operating_point = if structure.integrates() {
+            self.origin - coefficients[forced + 1] / (self.span * values[0])
+        } else {
+            coefficients[forced] - values[0] * self.origin
+        };
+        let simulated = self
+            .output
+            .iter()
+            .zip(&residuals)
+            .map(|(y, r)| y - r)
+            .collect();
+        values.iter().all(|v| v.is_finite()).then(|| Fit {
+            model: FittedModel {
+                structure,
+                gain: value(0),
+                time_constants: (1..=structure.lags()).map(value).collect(),
+                zero: (structure == Structure::SopdtZero).then(|| value(4)),
+                dead_time: value(5),
+                operating_point,
+                left: (rss / n as f64).sqrt() / self.motion,
+                preferred: false,
+            },
+            theta,
+            covariance,
+            simulated,
+            score: f64::INFINITY,
+            noise: (0.5
+                * residuals
+                    .windows(2)
+                    .map(|r| (r[1] - r[0]).powi(2))
+                    .sum::<f64>()
+                / n as f64)
+                .sqrt(),
+            motion: self.motion,
+            rss,
+            scale: self.scale,
+            parameters,
+        })
+    }
+
+    /// Fits all structures, the one that the data prefer first: by Schwarz's criterion, where residuals that hang together
+    /// count as fewer samples. A drift is allowed where the data ask for it.
+    pub fn fit_all(&mut self) -> Vec<Fit> {
+        let steady = self.fit_each(&Structure::ALL);
+        let Some(best) = steady.first() else {
+            return steady;
+        };
+        self.drifts = true;
+        let drifting = self.fit(best.model.structure);
+        let better = drifting.is_some_and(|d| {
+            let independent = self.independent(&d);
+            independent * libm::log(best.rss / d.rss)
+                > DRIFT_EVIDENCE + libm::log(independent.max(2.0))
+        });
+        if better && best.model.left > ROUND_OFF {
+            return self.fit_each(&Structure::ALL);
+        }
+        self.drifts = false;
+        steady
+    }
+
+    /// Samples that count.
+    fn independent(&self, fit: &Fit) -> f64 {
+        let residuals: Vec<f64> = self
+            .output
+            .iter()
+            .zip(&fit.simulated)
+            .map(|(y, s)| y - s)
+            .collect();
+        (residuals.len() as f64 / coherence(&residuals)).max(1.0)
+    }
+
+    fn fit_each(&self, structures: &[Structure]) -> Vec<Fit> {
+        let mut fits: Vec<Fit> = structures.iter().filter_map(|s| self.fit(*s)).collect();
+        let n = self.output.len() as f64;
+        let floor = n * (ROUND_OFF * self.motion).powi(2);
+        let Some(least) = fits.iter().min_by(|a, b| a.rss.total_cmp(&b.rss)) else {
+            return fits;
+        };
+        let independent = self.independent(least);
+        for fit in &mut fits {
+            fit.score = independent * libm::log((fit.rss + floor) / n)
+                + fit.parameters as f64 * libm::log(independent.max(2.0));
+        }
+        // A model whose gain is not known at all is of no use, however well it follows.
+        let vague = |f: &Fit| f.model.gain.std_error >= VAGUE * f.model.gain.value.abs();
+        fits.sort_by(|a, b| vague(a).cmp(&vague(b)).then(a.score.total_cmp(&b.score)));
+        if let Some(first) = fits.first_mut() {
+            first.model.preferred = true;
+        }
+        fits
+    }
+}
+
+/// Starts of the search.
+fn grid(structure: Structure) -> Vec<Vec<f64>> {
+    let mut grid = Vec::new();
+    for l in GRID_DEAD_TIMES {
+        match structure.searched() {
+            0 => grid.push(vec![l]),
+            1 => grid.extend(GRID_TIMES.iter().map(|t| vec![libm::log(*t), l])),
+            _ => {
+                for t in GRID_TIMES {
+                    grid.extend(GRID_SHARES.iter().map(|share| {
+                        vec![libm::log(t), -libm::log(LARGEST_SHARE / share - 1.0), l]
+                    }));
+                }
+            }
+        }
+    }
+    grid
+}
+
+fn descended<const N: usize>((p, cost): ([f64; N], f64)) -> (Vec<f64>, f64) {
+    (p.to_vec(), cost)
+}
+
+/// Standard errors of the physical parameters.
+fn errors(structure: Structure, theta: &[f64], scale: f64, covariance: &DMatrix<f64>) -> [f64; 6] {
+    let middle = physical(structure, theta, scale);
+    let gradients: Vec<[f64; 6]> = (0..theta.len())
+        .map(|i| {
+            let step = DERIVATIVE * theta[i].abs().max(1e-3);
+            let mut moved = theta.to_vec();
+            moved[i] += step;
+            let values = physical(structure, &moved, scale);
+            std::array::from_fn(|k| (values[k] - middle[k]) / step)
+        })
+        .collect();
+    std::array::from_fn(|k| {
+        let g = DVector::from_iterator(theta.len(), gradients.iter().map(|g| g[k]));
+        (covariance * &g).dot(&g).max(0.0).sqrt()
+    })
+}

@@ -1,0 +1,88 @@
+//! Logs of auto-tuners in firmwares and home controllers, after their public documentation.
+//!
+//! Where a log holds the temperatures and the heater's power, it is a [`Record`]; else what its tuner read off the cycle
+//! is taken, never the gains that it computed, but for where nothing else is in it.
+
+mod esphome;
+mod klipper;
+mod lines;
+mod marlin;
+mod mycodo;
+mod source;
+
+use super::gains::Form;
+use super::readings::tune_readings;
+use super::report::{MeasuredTuning, Settings, tune_record};
+
+pub use source::{Held, LogError, Source};
+
+/// A log that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Log {
+    /// Whose.
+    pub source: Source,
+    /// What it holds.
+    pub held: Held,
+    /// Form in which its owner wants gains, full scale of the input, target, and what is to be said of it.
+    pub settings: Settings,
+}
+
+/// Whose log a text is, if it is one.
+pub fn recognise(text: &str) -> Option<Source> {
+    let has = |words: &[&str]| words.iter().any(|w| text.contains(w));
+    if has(&["PID_CALIBRATE", "pid_Kp", "Autotune: raw="])
+        || klipper::is_write_file(text)
+        || klipper::has_stats(text)
+    {
+        return Some(Source::Klipper);
+    }
+    if has(&["found peak:", "switched state: relay", "pid_autotune"]) {
+        return Some(Source::Mycodo);
+    }
+    if has(&[
+        "pid.autotune",
+        "pid.climate",
+        "PID Autotune finished!\n  ",
+        "Oscillation Period:",
+        "Ziegler-Nichols PID",
+    ]) {
+        return Some(Source::Esphome);
+    }
+    has(&["PID Autotune", "M303", " bias:"]).then_some(Source::Marlin)
+}
+
+/// Reads a log.
+///
+/// # Errors
+/// One sentence that says what was expected.
+pub fn read(name: &str, text: &str) -> Option<Result<Log, LogError>> {
+    let source = recognise(text)?;
+    let found = match source {
+        Source::Klipper => klipper::read(name, text),
+        Source::Marlin => marlin::read(name, text),
+        Source::Esphome => esphome::read(text),
+        Source::Mycodo => mycodo::read(text),
+    };
+    Some(found.map(|(held, settings)| Log {
+        source,
+        held,
+        settings,
+    }))
+}
+
+impl Log {
+    /// What it tells, with gains in `form`, or in that of its owner.
+    ///
+    /// # Errors
+    /// Numbers that cannot be.
+    pub fn tune(&self, form: Option<Form>) -> Result<MeasuredTuning, LogError> {
+        let settings = Settings {
+            form: form.unwrap_or(self.settings.form),
+            ..self.settings.clone()
+        };
+        Ok(match &self.held {
+            Held::Record(record) => tune_record(record, &settings)?,
+            Held::Readings(readings) => tune_readings(readings, &settings)?,
+        })
+    }
+}

@@ -1,0 +1,72 @@
+//! Whose log it is, what it holds, and why it tells nothing.
+
+use serde::{Deserialize, Serialize};
+
+use crate::tuning::measured::readings::Readings;
+use crate::tuning::measured::record::{Record, RecordError};
+
+/// Whose log it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// Klipper's `PID_CALIBRATE`: console, `klippy.log` or the file of `WRITE_FILE=1`.
+    Klipper,
+    /// Marlin's `M303`.
+    Marlin,
+    /// `ESPHome`'s `climate.pid.autotune`.
+    Esphome,
+    /// Mycodo's PID autotune, and thermostats of Home Assistant with the same tuner.
+    Mycodo,
+}
+
+impl Source {
+    /// As it is called in sentences.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Klipper => "Klipper PID_CALIBRATE",
+            Self::Marlin => "Marlin M303",
+            Self::Esphome => "ESPHome autotune",
+            Self::Mycodo => "Mycodo or Home Assistant autotune",
+        }
+    }
+
+    /// What its log must have at least.
+    pub(super) const fn needs(self) -> &'static str {
+        match self {
+            Self::Klipper => {
+                "the lines 'pwm: ...' with temperatures, 'Stats ...' with the heater, 'Autotune: raw=...', or 'pid_Kp=... \
+                 pid_Ki=... pid_Kd=...'"
+            }
+            Self::Marlin => {
+                "a line with 'bias: ... d: ... min: ... max: ...' followed by 'Ku: ... Tu: ...'"
+            }
+            Self::Esphome => "the lines 'kp: ...' and 'ki: ...', or those of the oscillation",
+            Self::Mycodo => {
+                "the lines 'found peak: ...' and 'switched state: ...' with their times"
+            }
+        }
+    }
+}
+
+/// Why a log tells nothing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LogError {
+    /// Recognised, but what is needed is not whole.
+    #[error("this looks like a log of {name}, but no cycle can be read from it: expected {needs}", name = .0.name(), needs = .0.needs())]
+    Garbled(Source),
+    /// The tuner gave up.
+    #[error("the tuner gave up: '{0}'; {1}")]
+    Failed(String, &'static str),
+    /// It was read, but its numbers cannot be.
+    #[error("{0}")]
+    Numbers(#[from] RecordError),
+}
+
+/// What a log holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Held {
+    /// Temperatures and power in time.
+    Record(Record),
+    /// What the tuner read off the cycle.
+    Readings(Readings),
+}

@@ -1,0 +1,49 @@
+//! What does a measured relay test tell, and which gains follow from it?
+//!
+//! A record of input and output, or only what was read off it, or the log of a firmware's auto-tuner. The cycle shows
+//! the plant at **one** frequency, and with hysteresis not where its phase is -180 degrees: amplitude `a` and hysteresis
+//! `h` of a symmetric relay put it near `-180 + asin(h/a)`. The ultimate gain is therefore told only where it follows,
+//! with its error, and else what would have to be done.
+//!
+//! | file | what |
+//! |---|---|
+//! | `record` | time, input and output, checked |
+//! | `cycle` | switches, half periods, amplitude, hysteresis |
+//! | `response` | exact responses of lags and integrators to a held input with dead time |
+//! | `structure` | lags, integrators, a zero: what a model consists of |
+//! | `least_squares` | linear least squares, residuals that hang together |
+//! | `fit` | models by least squares on the whole record |
+//! | `fourier` | the point of the Nyquist curve |
+//! | `ultimate` | ultimate gain and period, where they follow |
+//! | `gains` | rules, forms, margins achieved |
+//! | `trouble` | why a test stalls or misleads |
+//! | `readings` | from a few numbers, without a record |
+//! | `log` | logs of firmwares |
+//! | `report` | all of it at once |
+//!
+//! **Amplitude** is half of peak to peak everywhere.
+
+mod cycle;
+mod fit;
+mod fourier;
+mod gains;
+mod least_squares;
+pub mod log;
+mod number;
+mod readings;
+mod record;
+mod report;
+mod response;
+mod structure;
+mod trouble;
+mod ultimate;
+
+pub use cycle::Cycle;
+pub use fourier::Point;
+pub use gains::{Form, TunedGains, steps};
+pub use readings::{AmplitudeConvention, Readings, tune_readings};
+pub use record::{Record, RecordError};
+pub use report::{Conventional, MeasuredTuning, Settings, Summary, tune_record};
+pub use structure::{FittedModel, Structure, Value};
+pub use trouble::{Trouble, TroubleKind};
+pub use ultimate::MeasuredUltimate;

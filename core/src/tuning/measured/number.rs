@@ -1,0 +1,32 @@
+//! Numbers as they stand in sentences, and the scale of an input.
+
+/// Full scales of inputs in use: a switch, per cent, eight bits.
+const FULL_SCALES: [f64; 3] = [1.0, 100.0, 255.0];
+
+/// Four significant digits, without needless zeros.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let power = libm::log10(value.abs()).floor() as i32;
+    if (-4..7).contains(&power) {
+        let decimals = usize::try_from(3 - power).unwrap_or(0);
+        let text = format!("{value:.decimals$}");
+        return if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        };
+    }
+    format!("{value:.3e}")
+}
+
+/// The least usual full scale that holds the upper level; the level itself where none does.
+pub(super) fn full_scale(level: f64) -> f64 {
+    // Readings may pass a full scale by round-off.
+    let level = level.abs();
+    FULL_SCALES
+        .into_iter()
+        .find(|s| level <= s * 1.001)
+        .unwrap_or(level)
+}

@@ -1,0 +1,130 @@
+//! Time, input and output of a test.
+
+use serde::{Deserialize, Serialize};
+
+use crate::measurement::Measurement;
+
+/// Fewest samples from which a model can be had.
+const FEWEST: usize = 20;
+
+/// A record of one input and one output. The input is held: `input[i]` acts from `time[i]` to `time[i + 1]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Name shown to the user.
+    pub name: String,
+    /// Times, s, strictly increasing.
+    pub time: Vec<f64>,
+    /// Input of the plant, in `input_unit`.
+    pub input: Vec<f64>,
+    /// Output of the plant, in `output_unit`.
+    pub output: Vec<f64>,
+    /// Unit of the input; `1` for a plain number.
+    pub input_unit: String,
+    /// Unit of the output; `1` for a plain number.
+    pub output_unit: String,
+}
+
+/// Why a record cannot be used.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
+pub enum RecordError {
+    /// Too few samples.
+    #[error("{0} samples are too few: a relay test needs {FEWEST} or more")]
+    TooShort(usize),
+    /// Columns of different length.
+    #[error("time, input and output have {0}, {1} and {2} values: they must be as many")]
+    Lengths(usize, usize, usize),
+    /// A value that is no number, or time that does not increase.
+    #[error("sample {0} is not a number, or its time is not after that of the sample before")]
+    Sample(usize),
+    /// The output never moves.
+    #[error(
+        "the output is {0} from the first sample to the last: there is nothing to learn from it"
+    )]
+    Still(f64),
+    /// The input never moves.
+    #[error(
+        "the input is {0} from the first sample to the last: a test needs an input that changes, so record what the heater or valve was told as well"
+    )]
+    NoInput(f64),
+    /// A number read off a test that cannot be.
+    #[error("{name} is {value}: it must be {range}")]
+    Reading {
+        /// Its name.
+        name: String,
+        /// What it was.
+        value: f64,
+        /// What it may be.
+        range: String,
+    },
+}
+
+impl Record {
+    /// Input and first output of a measurement.
+    pub fn of(measurement: &Measurement) -> Self {
+        let (output, unit) = measurement
+            .outputs
+            .first()
+            .map_or((Vec::new(), "1".to_owned()), |c| {
+                (c.values.clone(), c.unit.clone())
+            });
+        Self {
+            name: measurement.name.clone(),
+            time: measurement.time.clone(),
+            input: measurement.input.values.clone(),
+            output,
+            input_unit: measurement.input.unit.clone(),
+            output_unit: unit,
+        }
+    }
+
+    /// Checks it.
+    ///
+    /// # Errors
+    /// The first thing that makes it useless.
+    pub fn validate(&self) -> Result<(), RecordError> {
+        let lengths = [self.time.len(), self.input.len(), self.output.len()];
+        if lengths[0] != lengths[1] || lengths[0] != lengths[2] {
+            return Err(RecordError::Lengths(lengths[0], lengths[1], lengths[2]));
+        }
+        let wrong = (0..lengths[0]).find(|&i| {
+            let late = i == 0 || self.time[i] > self.time[i - 1];
+            !(late
+                && self.time[i].is_finite()
+                && self.input[i].is_finite()
+                && self.output[i].is_finite())
+        });
+        if let Some(i) = wrong {
+            return Err(RecordError::Sample(i));
+        }
+        if lengths[0] < FEWEST {
+            return Err(RecordError::TooShort(lengths[0]));
+        }
+        if self.output.iter().all(|y| *y == self.output[0]) {
+            return Err(RecordError::Still(self.output[0]));
+        }
+        if self.input.iter().all(|u| *u == self.input[0]) {
+            return Err(RecordError::NoInput(self.input[0]));
+        }
+        Ok(())
+    }
+
+    /// Length, s.
+    pub(super) fn span(&self) -> f64 {
+        match (self.time.first(), self.time.last()) {
+            (Some(a), Some(b)) => b - a,
+            _ => 0.0,
+        }
+    }
+
+    /// Samples from a time up to another.
+    pub(super) fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let at = |t: f64| self.time.partition_point(|s| *s < t);
+        at(from)..at(to).max(at(from))
+    }
+
+    /// Median time between samples, s.
+    pub(super) fn sampling(&self) -> f64 {
+        let mut steps: Vec<f64> = self.time.windows(2).map(|t| t[1] - t[0]).collect();
+        crate::order::median(&mut steps)
+    }
+}

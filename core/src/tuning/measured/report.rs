@@ -1,0 +1,274 @@
+//! All that a measured relay test tells, in numbers and sentences.
+
+use std::f64::consts::PI;
+
+use serde::{Deserialize, Serialize};
+
+use super::cycle::{self, Cycle};
+use super::fit::Compared;
+use super::fourier::{self, Point};
+use super::gains::{self, Basis, Form, TunedGains};
+use super::number::{full_scale, number};
+use super::record::{Record, RecordError};
+use super::structure::{FittedModel, Value};
+use super::trouble::{self, Evidence, Trouble};
+use super::ultimate::{self, MeasuredUltimate};
+use crate::order::range;
+use crate::uncertain::with_error;
+
+/// Part of the record that is taken for the plant's time where there is no cycle.
+const PART: f64 = 0.1;
+
+/// Hysteresis over amplitude from which less hysteresis is the remedy.
+const MUCH_HYSTERESIS: f64 = 0.2;
+
+/// A static gain is told with at most this relative error.
+const GAIN_TOLD: f64 = 0.2;
+
+/// What the user wants besides.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Form of the gains.
+    pub form: Form,
+    /// Largest value of the input; guessed from the record where it is not given.
+    pub full_scale: Option<f64>,
+    /// Set point of the test, in the unit of the output.
+    pub target: Option<f64>,
+    /// What else is to be said of it, as by the reader of a log.
+    pub notes: Vec<String>,
+}
+
+/// The cycle in a few numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Period, s.
+    pub period: f64,
+    /// Half of peak to peak of the output.
+    pub amplitude: f64,
+    /// Time with the input up and down, s.
+    pub half_periods: [f64; 2],
+    /// Input while down and up.
+    pub levels: [f64; 2],
+    /// Half the distance of the thresholds, in the unit of the output.
+    pub hysteresis: f64,
+    /// Whole periods that were used; 0 where only numbers were given.
+    pub periods: usize,
+}
+
+/// What the usual formula says, `4d/(pi a)` with the cycle's period: right only for a symmetric relay without hysteresis
+/// and a sine.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Conventional {
+    /// "Ultimate gain".
+    pub gain: f64,
+    /// "Ultimate period", s.
+    pub period: f64,
+}
+
+/// All that a measured relay test tells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredTuning {
+    /// Name of the record.
+    pub name: String,
+    /// The cycle, where there is one.
+    pub cycle: Option<Summary>,
+    /// The point of the Nyquist curve at the cycle's frequency.
+    pub point: Option<Point>,
+    /// Ultimate gain and period, where they follow.
+    pub ultimate: Option<MeasuredUltimate>,
+    /// What the usual formula says.
+    pub conventional: Option<Conventional>,
+    /// Static gain, where the record tells it.
+    pub static_gain: Option<Value>,
+    /// Models, the preferred first.
+    pub models: Vec<FittedModel>,
+    /// Gains by all rules that have what they need.
+    pub gains: Vec<TunedGains>,
+    /// What went wrong or misleads, the fatal first.
+    pub troubles: Vec<Trouble>,
+    /// What else is to be said.
+    pub notes: Vec<String>,
+    /// Unit of the input.
+    pub input_unit: String,
+    /// Unit of the output.
+    pub output_unit: String,
+    /// What it means, in sentences.
+    pub text: String,
+}
+
+/// What the record tells.
+///
+/// # Errors
+/// A record that cannot be used.
+pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
+    record.validate()?;
+    let cycle = cycle::find(record);
+    let scale = cycle.as_ref().map_or(PART * record.span(), |c| c.period);
+    let mut compared = Compared::new(record, scale);
+    let fits = compared.fit_all();
+    let point = cycle
+        .as_ref()
+        .and_then(|c| fourier::point(record, c, &compared, fits.first()));
+    let omega = point.map_or(2.0 * PI / scale, |p| p.omega);
+    let ultimate = ultimate::ultimate(&fits, point.as_ref(), omega);
+    let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
+    let basis = Basis {
+        model: models.first(),
+        models: &models,
+        ultimate: ultimate.as_ref(),
+        point: point.as_ref(),
+        sampling: record.sampling(),
+    };
+    let (_, high) = range(&record.input);
+    let gains = gains::all(
+        &basis,
+        settings.form,
+        settings.full_scale.unwrap_or_else(|| full_scale(high)),
+    );
+    let troubles = trouble::find(&Evidence {
+        record,
+        cycle: cycle.as_ref(),
+        fit: fits.first(),
+        noise: fits.first().map_or(0.0, |f| f.noise),
+        target: settings.target,
+    });
+    let conventional = cycle.as_ref().map(|c| Conventional {
+        gain: 2.0 * (c.levels[1] - c.levels[0]) / (PI * c.amplitude),
+        period: c.period,
+    });
+    let static_gain = models
+        .first()
+        .filter(|m| !m.structure.integrates())
+        .map(|m| m.gain)
+        .filter(|k| k.std_error <= GAIN_TOLD * k.value.abs());
+    let mut result = MeasuredTuning {
+        name: record.name.clone(),
+        cycle: cycle.as_ref().map(summary),
+        point,
+        ultimate,
+        conventional,
+        static_gain,
+        models,
+        gains,
+        troubles,
+        notes: settings.notes.clone(),
+        input_unit: record.input_unit.clone(),
+        output_unit: record.output_unit.clone(),
+        text: String::new(),
+    };
+    result.tell();
+    Ok(result)
+}
+
+fn summary(cycle: &Cycle) -> Summary {
+    Summary {
+        period: cycle.period,
+        amplitude: cycle.amplitude,
+        half_periods: cycle.half_periods,
+        levels: cycle.levels,
+        hysteresis: cycle.hysteresis.max(0.0),
+        periods: cycle.periods,
+    }
+}
+
+impl MeasuredTuning {
+    /// The first fatal cause, in words.
+    pub fn stall(&self) -> Option<&str> {
+        self.troubles
+            .iter()
+            .find(|t| t.fatal)
+            .map(|t| t.text.as_str())
+    }
+
+    /// Unit of the gain from input to output.
+    pub fn gain_unit(&self) -> String {
+        match (self.output_unit.as_str(), self.input_unit.as_str()) {
+            (out, "1") => out.to_owned(),
+            (out, input) => format!("{out}/{input}"),
+        }
+    }
+
+    /// Puts it into words.
+    pub(super) fn tell(&mut self) {
+        let mut sentences: Vec<String> = Vec::new();
+        if let (Some(cycle), Some(point)) = (&self.cycle, &self.point) {
+            sentences.push(format!(
+                "The cycle (period {} s, amplitude {}, half of peak to peak) shows the plant at {} rad/s: |P| {}, phase \
+                 {} degrees.",
+                number(cycle.period),
+                number(cycle.amplitude),
+                number(point.omega),
+                with_error(point.magnitude, point.std_error_magnitude, &self.gain_unit()),
+                with_error(point.phase_deg, point.std_error_phase_deg, "1"),
+            ));
+        }
+        sentences.extend(self.of_ultimate());
+        if let Some(model) = self.models.first() {
+            sentences.push(self.of_model(model));
+        }
+        sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
+        sentences.extend(self.notes.iter().cloned());
+        self.text = sentences.join(" ");
+    }
+
+    /// Ultimate gain and period, or why they do not follow and what would help.
+    fn of_ultimate(&self) -> Option<String> {
+        let formula = self.conventional.map_or_else(String::new, |c| {
+            format!(
+                " (4d/(pi a) would say {} at {} s)",
+                number(c.gain),
+                number(c.period)
+            )
+        });
+        if let Some(u) = &self.ultimate {
+            return Some(format!(
+                "Ultimate gain {}, ultimate period {}{formula}.",
+                with_error(u.gain, u.std_error_gain, "1"),
+                with_error(u.period, u.std_error_period, "s"),
+            ));
+        }
+        let (point, cycle) = (self.point.as_ref()?, self.cycle.as_ref()?);
+        let off = point.phase_deg + 180.0;
+        let remedy = if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
+            format!(
+                "less hysteresis (it is {}, the amplitude {}) brings the cycle nearer to it",
+                number(cycle.hysteresis),
+                number(cycle.amplitude)
+            )
+        } else if self.models.is_empty() {
+            "the record of the test would show how the curve goes on".to_owned()
+        } else if off < 0.0 {
+            "a relay that switches sooner, without delay, brings the cycle nearer to it".to_owned()
+        } else {
+            "a longer test, a bias that makes the half periods differ, or a second test with another hysteresis or an \
+             added delay settles it"
+                .to_owned()
+        };
+        Some(format!(
+            "The ultimate gain does not follow{formula}: the phase of the cycle is {} degrees from -180, and how the \
+             curve goes on from there is not known well enough; {remedy}.",
+            number(off.abs()),
+        ))
+    }
+
+    fn of_model(&self, model: &FittedModel) -> String {
+        let seconds = |v: &Value| with_error(v.value, v.std_error, "s");
+        let times: Vec<String> = model.time_constants.iter().map(seconds).collect();
+        let zero = model
+            .zero
+            .as_ref()
+            .map_or_else(String::new, |z| format!(", zero {}", seconds(z)));
+        let lags = match times.len() {
+            0 => String::new(),
+            1 => format!(", time constant {}", times[0]),
+            _ => format!(", time constants {}", times.join(" and ")),
+        };
+        format!(
+            "The record prefers {}: gain {}{lags}{zero}, dead time {}; it misses {} % of the motion.",
+            model.structure.name(),
+            with_error(model.gain.value, model.gain.std_error, &self.gain_unit()),
+            seconds(&model.dead_time),
+            number(100.0 * model.left),
+        )
+    }
+}

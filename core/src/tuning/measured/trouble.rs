@@ -1,0 +1,433 @@
+//! Why a relay test stalls, or misleads: each cause recognised from the record, with the number that shows it.
+
+use serde::{Deserialize, Serialize};
+
+use super::cycle::{Cycle, rounds, threshold};
+use super::fit::Fit;
+use super::number::number;
+use super::record::Record;
+use crate::order::{median, range};
+
+/// The shorter half period over the longer, below which heating and cooling count as of different strength.
+const SYMMETRIC: f64 = 0.66;
+
+/// Share of the time with the input up from which a heater counts as too weak, and with it down as far too strong.
+const WEAK: f64 = 0.85;
+
+/// Fewest steps of the sensor in the amplitude.
+const FEWEST_STEPS: f64 = 5.0;
+
+/// Drift of a mean from the first to the last period, as a share of the swing, that is worth a word.
+const DRIFT: f64 = 0.1;
+
+/// Noise, as a share of the hysteresis, from which the relay switches on noise.
+const NOISY: f64 = 0.5;
+
+/// Flicker pulses for each half period that show that noise switches the relay.
+const FLICKERS: f64 = 0.25;
+
+/// The input is stuck where it does not change over this last share of the record.
+const STUCK: f64 = 0.5;
+
+/// Half periods that agree within this share of a sample, while the output at their ends scatters by more than this
+/// multiple of the noise, are held by a minimum time.
+const SAME_LENGTH: f64 = 1.01;
+const SCATTERS: f64 = 3.0;
+
+/// Share of the input's variance that a straight line in the output explains where a controller is at work.
+const FOLLOWS: f64 = 0.95;
+
+/// Values of an input that a controller makes; a relay, or steps by hand, have fewer.
+const LEVELS: usize = 12;
+
+/// Whole periods from which the window is long enough.
+const WHOLE_PERIODS: usize = 2;
+
+/// What went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TroubleKind {
+    /// The output levels off before the relay would switch.
+    TargetUnreachable,
+    /// The input is up almost always.
+    HeaterTooWeak,
+    /// Noise switches the relay.
+    NoiseLargerThanHysteresis,
+    /// Up and down take different times.
+    Asymmetric,
+    /// The sensor's steps are coarse.
+    Quantised,
+    /// The cycle wanders.
+    Drift,
+    /// A least time on or off holds the relay.
+    MinimumTime,
+    /// Too few periods.
+    WindowTooShort,
+    /// The input is not a relay's.
+    NoRelay,
+    /// A controller makes the input of the output.
+    Controller,
+}
+
+/// One cause.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trouble {
+    /// Which.
+    pub kind: TroubleKind,
+    /// Whether the test told nothing for this reason; else it is a caution.
+    pub fatal: bool,
+    /// The number that shows it.
+    pub number: f64,
+    /// A sentence with it.
+    pub text: String,
+}
+
+/// What the causes are looked for in.
+pub(super) struct Evidence<'a> {
+    pub record: &'a Record,
+    pub cycle: Option<&'a Cycle>,
+    pub fit: Option<&'a Fit>,
+    /// Noise of the output.
+    pub noise: f64,
+    /// Set point, if it is known.
+    pub target: Option<f64>,
+}
+
+/// All that is wrong, the fatal first.
+pub(super) fn find(evidence: &Evidence<'_>) -> Vec<Trouble> {
+    let causes = match evidence.cycle {
+        Some(cycle) => of_cycle(evidence, cycle),
+        None => without_cycle(evidence),
+    };
+    let mut causes: Vec<Trouble> = causes.into_iter().flatten().collect();
+    causes.sort_by_key(|c| !c.fatal);
+    causes
+}
+
+fn trouble(kind: TroubleKind, fatal: bool, number: f64, text: String) -> Trouble {
+    Trouble {
+        kind,
+        fatal,
+        number,
+        text,
+    }
+}
+
+/// Four significant digits.
+fn n(value: f64) -> String {
+    number(value)
+}
+
+fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
+    let [up, down] = cycle.half_periods;
+    let share = up / cycle.period;
+    let ratio = up.min(down) / up.max(down);
+    let (slower, faster) = if up > down {
+        ("rise", "fall")
+    } else {
+        ("fall", "rise")
+    };
+    let weak = (share > WEAK).then(|| {
+        let percent = n(100.0 * share);
+        trouble(
+            TroubleKind::HeaterTooWeak,
+            false,
+            share,
+            format!(
+                "The input is up {percent} % of the time: it is only just strong enough for this set point, so a \
+                 controller has little left to act with."
+            ),
+        )
+    });
+    let asymmetric = (ratio < SYMMETRIC).then(|| {
+        trouble(
+            TroubleKind::Asymmetric,
+            false,
+            ratio,
+            format!(
+                "The {slower} takes {} times as long as the {faster} ({} s against {} s): 4d/(pi a) does not hold for \
+                 such a cycle; a mean input nearer to {} would make it symmetric.",
+                n(1.0 / ratio),
+                n(up.max(down)),
+                n(up.min(down)),
+                n(cycle.levels[0] + share * (cycle.levels[1] - cycle.levels[0])),
+            ),
+        )
+    });
+    vec![
+        weak,
+        asymmetric,
+        noise(e, cycle),
+        quantised(e, cycle),
+        drift(e, cycle),
+        minimum_time(e, cycle),
+    ]
+}
+
+fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
+    let level = e.noise;
+    let half_periods = 2.0 * cycle.periods as f64;
+    let flickers = cycle.flicker as f64 / half_periods;
+    (flickers > FLICKERS && level > NOISY * cycle.hysteresis.max(0.0)).then(|| {
+        trouble(
+            TroubleKind::NoiseLargerThanHysteresis,
+            false,
+            level,
+            format!(
+                "The relay flickers {} times at each switch: the noise ({} {}) is of the size of the hysteresis ({}). \
+                 Three times the noise as hysteresis, or a filter, ends it.",
+                n(flickers),
+                n(level),
+                e.record.output_unit,
+                n(cycle.hysteresis.max(0.0)),
+            ),
+        )
+    })
+}
+
+/// Least distance of two different values.
+fn sensor_step(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    let mut steps: Vec<f64> = sorted.windows(2).map(|v| v[1] - v[0]).collect();
+    median(&mut steps)
+}
+
+fn quantised(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
+    let step = sensor_step(&e.record.output);
+    let steps = cycle.amplitude / step;
+    // A sensor with fine steps has as many values as samples.
+    let mut values = e.record.output.clone();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let few = values.len() * 4 < e.record.output.len();
+    (few && steps < FEWEST_STEPS).then(|| {
+        trouble(
+            TroubleKind::Quantised,
+            false,
+            steps,
+            format!(
+                "The amplitude of {} is only {} steps of the sensor ({}): a larger swing or a finer sensor would tell \
+                 more.",
+                n(cycle.amplitude),
+                n(steps),
+                n(step),
+            ),
+        )
+    })
+}
+
+/// Mean of a column in each period.
+fn means(record: &Record, column: &[f64], cycle: &Cycle) -> Vec<f64> {
+    (0..cycle.periods)
+        .filter_map(|k| {
+            let from = cycle.window[0] + k as f64 * cycle.period;
+            let inside = &column[record.between(from, from + cycle.period)];
+            (!inside.is_empty()).then(|| inside.iter().sum::<f64>() / inside.len() as f64)
+        })
+        .collect()
+}
+
+/// A relay keeps the output where it is: what drifts is the input that this takes, and seldom the output too.
+fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
+    let ends = |column: &[f64]| {
+        let means = means(e.record, column, cycle);
+        (means.len() >= 3)
+            .then(|| means.first().copied().zip(means.last().copied()))
+            .flatten()
+    };
+    let (u, y) = (ends(&e.record.input)?, ends(&e.record.output)?);
+    let swing = (cycle.levels[1] - cycle.levels[0]).abs();
+    let shares = [(u.1 - u.0) / swing, (y.1 - y.0) / (2.0 * cycle.amplitude)];
+    let (word, unit, ends, share) = if shares[0].abs() >= shares[1].abs() {
+        ("mean input", &e.record.input_unit, u, shares[0])
+    } else {
+        ("mean output", &e.record.output_unit, y, shares[1])
+    };
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    (share.abs() > DRIFT).then(|| {
+        trouble(
+            TroubleKind::Drift,
+            false,
+            share,
+            format!(
+                "From the first to the last period the {word} drifts from {} to {}{unit}, {} % of its swing: the plant was not \
+                 settled when the test began, or something else acts on it.",
+                n(ends.0),
+                n(ends.1),
+                n(100.0 * share.abs()),
+            ),
+        )
+    })
+}
+
+fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
+    let sampling = e.record.sampling();
+    let level = e.noise;
+    for up in [true, false] {
+        let (mut lengths, mut ends) = (Vec::new(), Vec::new());
+        for s in cycle.switches.windows(2) {
+            if s[0].1 == up && s[0].0 >= cycle.window[0] && s[1].0 <= cycle.window[1] {
+                lengths.push(s[1].0 - s[0].0);
+                let i = e.record.time.partition_point(|t| *t < s[1].0);
+                ends.extend(e.record.output.get(i));
+            }
+        }
+        let ((least, most), (low, high)) = (range(&lengths), range(&ends));
+        let others = cycle.scatter > 2.0 * sampling;
+        // Lengths that no threshold set: all the same, while outputs and the other half periods are not.
+        if lengths.len() >= 4
+            && most - least <= SAME_LENGTH * sampling
+            && others
+            && high - low > SCATTERS * level.max(sensor_step(&e.record.output))
+        {
+            let word = if up { "on" } else { "off" };
+            return Some(trouble(
+                TroubleKind::MinimumTime,
+                false,
+                least,
+                format!(
+                    "Every time {word} lasts {} s, whatever the output is at its end ({} to {}): a minimum time {word} \
+                     holds the relay, so the cycle is not that of its thresholds.",
+                    n(least),
+                    n(low),
+                    n(high),
+                ),
+            ));
+        }
+    }
+    None
+}
+
+fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
+    let record = e.record;
+    if let Some(controller) = controller(record) {
+        return vec![Some(controller)];
+    }
+    let Some(middle) = threshold(record) else {
+        let (low, high) = range(&record.input);
+        return vec![Some(trouble(
+            TroubleKind::NoRelay,
+            false,
+            high - low,
+            format!(
+                "The input takes values all over {} to {}: this is no relay test, so there is no cycle to read; the \
+                 models are fitted to the record as it is.",
+                n(low),
+                n(high)
+            ),
+        ))];
+    };
+    let last = record.input.len() - 1;
+    let up = record.input[last] > middle;
+    let since = (0..=last)
+        .rev()
+        .find(|&i| (record.input[i] > middle) != up)
+        .map_or(0, |i| i + 1);
+    let stuck = (record.time[last] - record.time[since]) / record.span();
+    vec![
+        (stuck > STUCK)
+            .then(|| stalled(e, since, up))
+            .flatten()
+            .or_else(|| too_short(e)),
+    ]
+}
+
+/// Whether the input is a straight line in the output: then the record shows the controller at least as much as the plant.
+fn controller(record: &Record) -> Option<Trouble> {
+    let count = record.input.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / count;
+    let (u0, y0) = (mean(&record.input), mean(&record.output));
+    let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+        record
+            .input
+            .iter()
+            .zip(&record.output)
+            .map(|(u, y)| of(u - u0, y - y0))
+            .sum()
+    };
+    let (uu, uy, yy) = (sum(&|u, _| u * u), sum(&|u, y| u * y), sum(&|_, y| y * y));
+    let explained = uy * uy / (uu * yy);
+    // A relay has two levels: that these follow the output says nothing.
+    let mut levels = record.input.clone();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    (levels.len() > LEVELS && explained > FOLLOWS).then(|| {
+        let slope = uy / yy;
+        trouble(
+            TroubleKind::Controller,
+            true,
+            slope,
+            format!(
+                "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the \
+                 models below are as much of it as of the plant. Record a step or a relay test with the controller off.",
+                n(slope),
+                n(u0 - slope * y0),
+                n(100.0 * explained)
+            ),
+        )
+    })
+}
+
+/// The input no longer changes: where does the output go?
+fn stalled(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
+    let record = e.record;
+    let last = record.input.len() - 1;
+    let model = &e.fit?.model;
+    if model.structure.integrates() {
+        return None;
+    }
+    let ends = model.operating_point + model.gain.value * record.input[last];
+    let (low, high) = range(&record.output[since..]);
+    let reached = if up { high } else { low };
+    let word = if up { "up" } else { "down" };
+    let wanted = e.target.map_or_else(String::new, |t| {
+        format!(", {} short of the target of {}", n((t - ends).abs()), n(t))
+    });
+    if let Some(target) = e.target
+        && ((up && ends > target) || (!up && ends < target))
+    {
+        return None;
+    }
+    let seconds = n(record.time[last] - record.time[since]);
+    Some(trouble(
+        TroubleKind::TargetUnreachable,
+        true,
+        ends,
+        format!(
+            "The input stays {word} for the last {seconds} s while the output has reached {} and levels off at {}{wanted}: \
+             the relay waits for a threshold that this input cannot reach. A lower target, or a stronger input, lets it \
+             switch.",
+            n(reached),
+            n(ends),
+        ),
+    ))
+}
+
+fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
+    let middle = threshold(e.record)?;
+    let switched = e
+        .record
+        .input
+        .windows(2)
+        .filter(|u| (u[0] > middle) != (u[1] > middle))
+        .count();
+    let rounds = rounds(e.record).len().saturating_sub(1).min(switched / 2);
+    (rounds <= WHOLE_PERIODS).then(|| {
+        trouble(
+            TroubleKind::WindowTooShort,
+            true,
+            rounds as f64,
+            format!(
+                "In {} s the input switches {switched} times and the output goes round {rounds} times: the window is too \
+                 short, at least {WHOLE_PERIODS} whole periods after the first are needed.",
+                n(e.record.span()),
+            ),
+        )
+    })
+}

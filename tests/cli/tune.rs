@@ -1,0 +1,143 @@
+//! `hysteron tune` as a person and a script meet it.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn tune(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron-cli"));
+    command.arg("tune").args(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = tune(arguments);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// A file of this test alone.
+fn written(name: &str, text: &str) -> String {
+    let path: PathBuf = [env!("CARGO_TARGET_TMPDIR"), name].iter().collect();
+    std::fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
+/// A relay of 0 and 100 with a hysteresis of 0.2 about 50 on a lag of 20 s and gain 0.3 that comes 5 s late.
+fn record() -> String {
+    let mut text = String::from("t [s],u [%],y [°C]\n");
+    let (mut late, mut output, mut up) = ([1.0; 50], 50.0, true);
+    for i in 0..4000_usize {
+        if output > 50.2 {
+            up = false;
+        } else if output < 49.8 {
+            up = true;
+        }
+        let u = if up { 100.0 } else { 0.0 };
+        writeln!(text, "{:.1},{u},{output:.6}", 0.1 * i as f64).unwrap();
+        // The lag goes on exactly from sample to sample.
+        let end = 35.0 + 0.3 * late[i % 50];
+        output = end + (output - end) * (-0.1_f64 / 20.0).exp();
+        late[i % 50] = u;
+    }
+    text
+}
+
+#[test]
+fn a_record_gives_what_the_contract_says() {
+    let file = written("relay-test.csv", &record());
+    let found = json(&[&file, "--format", "json"]);
+    assert_eq!(found["schema"], 1);
+    let number = |pointer: &str| {
+        found
+            .pointer(pointer)
+            .and_then(Value::as_f64)
+            .unwrap_or_else(|| panic!("{pointer}: {found}"))
+    };
+    let omega = number("/point/omega");
+    let phase = -(20.0 * omega).atan().to_degrees() - (5.0 * omega).to_degrees();
+    assert!((number("/point/magnitude") * (20.0 * omega).hypot(1.0) / 0.3 - 1.0).abs() < 0.005);
+    assert!((number("/point/phase_deg") - phase).abs() < 0.5);
+    let halves = number("/cycle/half_periods/0") + number("/cycle/half_periods/1");
+    assert!((halves - number("/cycle/period")).abs() < 1e-9);
+    // Phase -180 degrees of the lag and dead time: atan(20 w) + 5 w = pi.
+    let ultimate = 0.343_101_f64;
+    assert!(
+        (number("/ultimate/period") * ultimate / std::f64::consts::TAU - 1.0).abs() < 0.02,
+        "{found}"
+    );
+    assert!(number("/ultimate/std_error_gain") > 0.0);
+    assert_eq!(found["models"][0]["kind"], "fopdt");
+    assert!(
+        (number("/models/0/time_constant") - 20.0).abs() < 0.5
+            && (number("/models/0/dead_time") - 5.0).abs() < 0.2
+    );
+    let gains = found["gains"].as_array().unwrap();
+    let simc = gains.iter().find(|g| g["rule"] == "simc").unwrap();
+    assert_eq!(simc["form"], "parallel");
+    assert!(
+        simc["phase_margin_deg"].as_f64().unwrap() > 45.0
+            && simc["gain_margin"].as_f64().unwrap() > 2.0
+    );
+    assert_eq!(found["stall"], Value::Null);
+    let said = String::from_utf8(tune(&[&file]).stdout).unwrap();
+    assert!(
+        said.contains("Ultimate gain") && said.contains("SIMC PI"),
+        "{said}"
+    );
+}
+
+#[test]
+fn numbers_with_hysteresis_give_a_point_and_the_remedy() {
+    let numbers = [
+        "--amplitude",
+        "1.2",
+        "--period",
+        "47",
+        "--levels",
+        "0,255",
+        "--hysteresis",
+        "0.5",
+    ];
+    let found = json(&[&numbers[..], &["--format", "json"]].concat());
+    assert_eq!(found["ultimate"], Value::Null);
+    assert!(
+        (found["point"]["phase_deg"].as_f64().unwrap() + 155.376).abs() < 1e-3,
+        "{found}"
+    );
+    assert!(found["text"].as_str().unwrap().contains("less hysteresis"));
+}
+
+#[test]
+fn bad_input_gets_one_line() {
+    let garbled = written("garbled.log", "PID Autotune start\n bias: 9");
+    for (arguments, part) in [
+        (
+            vec![garbled.as_str()],
+            "this looks like a log of Marlin M303",
+        ),
+        (vec!["none.csv"], "cannot be read"),
+        (vec!["--amplitude", "1", "--period", "2"], "--levels"),
+        (
+            vec!["--amplitude", "1", "--period", "2", "--levels", "0"],
+            "two numbers with a comma",
+        ),
+        (
+            vec!["--amplitude", "1", "--period", "0", "--levels", "0,1"],
+            "the period is 0: it must be above 0 s",
+        ),
+    ] {
+        let output = tune(&arguments);
+        let line = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(
+            line.contains(part) && line.lines().count() == 1,
+            "{part}: {line}"
+        );
+    }
+}

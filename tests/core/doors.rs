@@ -1,0 +1,531 @@
+//! Files as loggers, spreadsheets and programs write them are read at once, or refused with the words that read them.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use hysteron_core::measurement::{
+    ImportError, ImportOptions, Kind, Measurement, Period, columns, guess, import,
+};
+use proptest::prelude::*;
+
+fn read(text: &str) -> Result<Measurement, ImportError> {
+    import("rig.csv", text.as_bytes(), &ImportOptions::default())
+}
+
+#[track_caller]
+fn accepted(text: &str) -> Measurement {
+    read(text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// What stands between these in a text.
+fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
+    Some(text.split_once(before)?.1.split_once(after)?.0)
+}
+
+/// The options that the advice of an error stands for.
+fn advised(error: &ImportError) -> Option<ImportOptions> {
+    let advice = error.advice.as_deref()?;
+    let map = between(advice, "--map \"", "\"").or_else(|| between(advice, "--map '", "'"))?;
+    let kind = between(advice, "--kind ", " ").map(|kind| match kind {
+        "drive" => Kind::Drive,
+        _ => Kind::Process,
+    });
+    Some(ImportOptions {
+        kind,
+        mapping: map.parse().ok()?,
+        period: between(advice, "--period ", " ").and_then(|p| p.parse().ok()),
+        torque_constant: None,
+    })
+}
+
+/// Refused with words that read it.
+#[track_caller]
+fn read_with_advice(bytes: &[u8], words: &str) -> Measurement {
+    let error = import("rig", bytes, &ImportOptions::default()).expect_err("must be refused");
+    let line = error.to_string();
+    assert!(
+        line.contains(words) && !line.contains('\n'),
+        "expected '{words}' in: {line}"
+    );
+    let options = advised(&error).unwrap_or_else(|| panic!("no advice: {line}"));
+    import("rig", bytes, &options).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Rows made of their number.
+fn rows(count: usize, row: impl Fn(usize) -> String) -> String {
+    (0..count).fold(String::new(), |mut text, k| {
+        let _ = writeln!(text, "{}", row(k));
+        text
+    })
+}
+
+/// A heater that is on for five samples and off for five, and what it warms.
+fn on(k: usize) -> bool {
+    k % 10 < 5
+}
+
+fn warmth(k: usize) -> f64 {
+    20.0 + (k % 10) as f64 * 0.5
+}
+
+#[track_caller]
+fn is_the_heater(m: &Measurement, step: f64) {
+    assert_eq!((m.kind, m.len()), (Kind::Process, 40));
+    for k in 0..40 {
+        assert!(
+            (m.time[k] - k as f64 * step).abs() < 1e-6 * step,
+            "{} at {k}",
+            m.time[k]
+        );
+        assert_eq!(m.input.values[k], f64::from(u8::from(on(k))));
+        assert_eq!(m.outputs[0].values[k], warmth(k));
+    }
+}
+
+#[test]
+fn times_are_dates_or_counted_from_1970() {
+    let table = |time: &dyn Fn(usize) -> String| {
+        let row = |k| format!("{},{},{}", time(k), u8::from(on(k)), warmth(k));
+        format!("timestamp,heater,temperature\n{}", rows(40, row))
+    };
+    let dates: [(&str, &dyn Fn(usize) -> String); 5] = [
+        ("a zone", &|k| {
+            format!("2025-01-01T23:59:{:02}.250Z", 10 + k)
+        }),
+        ("no zone, past midnight", &|k| {
+            let (day, second) = if k < 20 { (1, 40 + k) } else { (2, k - 20) };
+            let minute = if k < 20 { "23:59" } else { "00:00" };
+            format!("2025-01-0{day} {minute}:{second:02}")
+        }),
+        ("a time of day, past midnight", &|k| {
+            let (minute, second) = if k < 20 {
+                ("23:59", 40 + k)
+            } else {
+                ("00:00", k - 20)
+            };
+            format!("{minute}:{second:02}.5")
+        }),
+        ("seconds", &|k| format!("{}.5", 1_700_000_000 + k)),
+        ("nanoseconds", &|k| {
+            format!("{}", 1_700_000_000_000_000_001 + k as u64 * 1_000_000_000)
+        }),
+    ];
+    for (habit, time) in dates {
+        let m = accepted(&table(time));
+        is_the_heater(&m, 1.0);
+        let said = m
+            .warnings
+            .iter()
+            .any(|w| w.contains("dates or times of day") || w.contains("from 1970"));
+        assert!(said, "{habit}: {:?}", m.warnings);
+    }
+    let milli = |k: usize| format!("{}", 1_700_000_000_000_u64 + k as u64 * 100);
+    is_the_heater(&accepted(&table(&milli)), 0.1);
+    // A double has not the digits of the whole number that tell these apart as they are.
+    let fast = |k: usize| format!("{}", 1_700_000_000_000_000_001_u64 + k as u64 * 1000);
+    is_the_heater(&accepted(&table(&fast)), 1e-6);
+    let german = rows(40, |k| {
+        let temperature = format!("{:.1}", warmth(k)).replace('.', ",");
+        format!(
+            "31.12.2025 10:00:{k:02};{};{temperature}",
+            if on(k) { "ein" } else { "aus" }
+        )
+    });
+    is_the_heater(
+        &accepted(&format!("Zeit;Heizung;Temperatur\n{german}")),
+        1.0,
+    );
+}
+
+#[test]
+fn states_are_one_and_zero() {
+    for (one, zero) in [
+        ("True", "False"),
+        ("on", "off"),
+        ("YES", "no"),
+        ("open", "closed"),
+        ("ein", "aus"),
+    ] {
+        let row = |k| format!("{k},{},{}", if on(k) { one } else { zero }, warmth(k));
+        is_the_heater(
+            &accepted(&format!("time,heater_on,t1\n{}", rows(40, row))),
+            1.0,
+        );
+    }
+    let state = |k| {
+        if k == 13 {
+            "maybe"
+        } else {
+            ["off", "on"][usize::from(on(k))]
+        }
+    };
+    let row = |k| format!("{k},{},{}", state(k), warmth(k));
+    let error = read(&format!("time,heater_on,t1\n{}", rows(40, row))).expect_err("no state");
+    assert!(
+        error.to_string().contains("'maybe' is not a number"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_period_stands_for_times() {
+    let table = rows(40, |k| format!("{},{}", u8::from(on(k)), warmth(k)));
+    let with = |head: &str, period: &str| {
+        let period: Period = period.parse().expect("a period");
+        let options = ImportOptions {
+            period: Some(period),
+            ..ImportOptions::default()
+        };
+        import("rig.csv", format!("{head}\n{table}").as_bytes(), &options)
+            .unwrap_or_else(|e| panic!("{e}"))
+    };
+    is_the_heater(&with("u,y", "4s"), 4.0);
+    is_the_heater(&with("u,y", "100Hz"), 0.01);
+    read_with_advice(
+        format!("u,y\n{table}").as_bytes(),
+        "--period 1s --map \"u=u, y=y\" with the true period",
+    );
+    // A column that has it, in its first row or in all.
+    for rest in ["", "4"] {
+        let row = |k| {
+            format!(
+                "{},{},{}",
+                u8::from(on(k)),
+                warmth(k),
+                if k == 0 { "4" } else { rest }
+            )
+        };
+        for name in ["Ts", "dt [s]", "sampling time"] {
+            let m = accepted(&format!("u,y,{name}\n{}", rows(40, row)));
+            is_the_heater(&m, 4.0);
+            assert!(
+                m.warnings
+                    .iter()
+                    .any(|w| w.contains("sampling period, 4 s")),
+                "{:?}",
+                m.warnings
+            );
+        }
+        let m = accepted(&format!("u,y,Ts [min]\n{}", rows(40, row)));
+        is_the_heater(&m, 240.0);
+    }
+    // A period that changes is none.
+    let row = |k| format!("{},{},{k}", u8::from(on(k)), warmth(k));
+    let changing = format!("u,y,Ts\n{}", rows(40, row));
+    read_with_advice(changing.as_bytes(), "no column 't'");
+}
+
+#[test]
+fn a_device_says_much_before_its_numbers() {
+    let table = rows(40, |k| {
+        format!("{}.0,{}.0,{},0", k * 1000, u8::from(on(k)), warmth(k))
+    });
+    for head in [
+        "Recorder 7\nSamples,40\nInterval(ms),1000\nTime,Channel 1,Channel 2,Channel 3\nms,heater,temperature,-\n",
+        "Recorder 7,,,\n,,,\nTime [ms],heater,temperature,-\n",
+        "Recorder 7\n\nTime,heater,temperature,-\nms,%,degC,-\n",
+        "a;b\nc,d\nTime [ms],heater,temperature,-\n",
+    ] {
+        is_the_heater(&accepted(&format!("{head}{table}")), 1.0);
+    }
+    // Channels are called by their numbers too.
+    let head = "Recorder 7\nTime,Channel 1,Channel 2,Channel 3\nms,this,that,-\n";
+    let options = ImportOptions {
+        mapping: "u=Channel 1, y=that".parse().expect("a mapping"),
+        ..ImportOptions::default()
+    };
+    let m = import("rig.csv", format!("{head}{table}").as_bytes(), &options)
+        .unwrap_or_else(|e| panic!("{e}"));
+    is_the_heater(&m, 1.0);
+    // A drive needs the units that stand nowhere.
+    let head = "Axis 1\nTime,Analog 1,Analog 2,Analog 3\nms,Torque,Motor speed,Not selected\n";
+    read_with_advice(
+        format!("{head}{table}").as_bytes(),
+        "--map \"t=Time, u=Torque [N m], v1=Motor speed [rad/s]\" with the true units",
+    );
+}
+
+#[test]
+fn the_only_column_left_is_the_input() {
+    let table = |head: &str| {
+        let row = |k| format!("{k},{},{},7,{k}", u8::from(on(k)), warmth(k));
+        format!("{head},still,index\n{}", rows(40, row))
+    };
+    is_the_heater(&accepted(&table("time,control,temperature")), 1.0);
+    is_the_heater(&accepted(&table("time,whatever,temperature")), 1.0);
+    is_the_heater(&accepted(&table("Zeit,Stellgröße,Temperatur")), 1.0);
+    // What was only wanted is no input.
+    read_with_advice(
+        table("time,setpoint,temperature").as_bytes(),
+        "no column 'u'",
+    );
+}
+
+#[test]
+fn rows_that_are_there_twice_are_read_once() {
+    let row = |k| format!("{},{},{}", k / 2, u8::from(on(k / 2)), warmth(k / 2));
+    let m = accepted(&format!("t [s],u,y\n{}", rows(80, row)));
+    is_the_heater(&m, 1.0);
+    assert!(
+        m.warnings.iter().any(|w| w.starts_with("40 rows repeat")),
+        "{:?}",
+        m.warnings
+    );
+    // Other values at the same time are a contradiction.
+    let row = |k| format!("{},{},{}", k / 2, u8::from(on(k)), warmth(k));
+    assert!(read(&format!("t [s],u,y\n{}", rows(80, row))).is_err());
+}
+
+#[test]
+fn names_keep_their_numbers() {
+    let row = |k| format!("{k},{},{},{},1", u8::from(on(k)), warmth(k), warmth(k + 3));
+    let text = format!(
+        "t (s),heater (1),temp (5),temp (6),state (1)\n{}",
+        rows(40, row)
+    );
+    let names: Vec<String> = columns("rig.csv", text.as_bytes())
+        .unwrap()
+        .into_iter()
+        .map(|c| c.name)
+        .collect();
+    assert_eq!(
+        names,
+        ["t", "heater (1)", "temp (5)", "temp (6)", "state (1)"]
+    );
+    let m = read_with_advice(text.as_bytes(), "--map \"t=t, u=heater (1), y=temp (5)\"");
+    is_the_heater(&m, 1.0);
+    // A plain number is a unit where no other number stands in parentheses.
+    let row = |k| format!("{k},{},{}", u8::from(on(k)), warmth(k));
+    assert!(
+        accepted(&format!("t (s),u (1),y (1)\n{}", rows(40, row)))
+            .warnings
+            .is_empty()
+    );
+}
+
+#[test]
+fn logs_of_names_with_values_are_read() {
+    type Line = fn(usize) -> String;
+    let lines: [Line; 4] = [
+        |k| format!("t: {k} u: {} y: {}", u8::from(on(k)), warmth(k)),
+        |k| format!("t={k}, u={}, y={}", u8::from(on(k)), warmth(k)),
+        |k| {
+            format!(
+                "[info] t: {k} s; u: {} %; y: {} degC; state: running",
+                u8::from(on(k)),
+                warmth(k)
+            )
+        },
+        |k| {
+            format!(
+                "time:{k}s heater:{} temp:{}degC",
+                if on(k) { "on" } else { "off" },
+                warmth(k)
+            )
+        },
+    ];
+    for line in lines {
+        let m = accepted(&format!("logger 3\n{}", rows(40, line)));
+        is_the_heater(&m, 1.0);
+    }
+    let m = accepted(&rows(40, lines[2]));
+    assert_eq!(
+        (m.input.unit.as_str(), m.outputs[0].unit.as_str()),
+        ("%", "degC")
+    );
+}
+
+#[test]
+fn json_is_read_by_lines_rows_or_columns() {
+    let object = |k| {
+        format!(
+            "{{\"t\": {k}, \"log\": {{\"u\": {}, \"y\": {}}}, \"note\": null}}",
+            on(k),
+            warmth(k)
+        )
+    };
+    let list = |value: &dyn Fn(usize) -> String| (0..40).map(value).collect::<Vec<_>>().join(",");
+    let plain = |k: usize| format!("{{\"t\": {k}, \"u\": {}, \"y\": {}}}", on(k), warmth(k));
+    let series = |value: &dyn Fn(usize) -> String| format!("[{}]", list(value));
+    let [t, u, y] = [
+        series(&|k| k.to_string()),
+        series(&|k| on(k).to_string()),
+        series(&|k| warmth(k).to_string()),
+    ];
+    let dates = series(&|k| format!("\"2025-01-01T00:00:{k:02}Z\""));
+    for text in [
+        rows(40, plain),
+        format!("[{}]", list(&plain)),
+        format!("{{\"t\": {t}, \"u\": {u}, \"y\": {y}}}"),
+        format!("{{\"name\": \"rig\", \"Ts\": 1, \"u\": {u}, \"y\": {y}}}"),
+        format!("{{\"time\": {dates}, \"heater\": {u}, \"temp\": {y}}}"),
+    ] {
+        is_the_heater(&accepted(&text), 1.0);
+    }
+    for text in [rows(40, object), format!("[{}]", list(&object))] {
+        is_the_heater(&accepted(&text), 1.0);
+    }
+    for (text, said) in [
+        ("{\"t\": [1,", "is none"),
+        ("[1, 2", "is none"),
+        ("{}", "no numbers"),
+        ("[[[[", "is none"),
+    ] {
+        let error = read(text).expect_err("no record").to_string();
+        assert!(error.contains(said) && !error.contains('\n'), "{error}");
+    }
+}
+
+#[test]
+fn hdf5_of_matlab_is_read() {
+    use hdf5_pure::mat::builder::MatBuilder;
+    let mut file = MatBuilder::new(hdf5_pure::mat::Options::default());
+    let values = |of: &dyn Fn(usize) -> f64| (0..40).map(of).collect::<Vec<f64>>();
+    let (t, u, y) = (
+        values(&|k| k as f64),
+        values(&|k| f64::from(u8::from(on(k)))),
+        values(&warmth),
+    );
+    file.write_f64("t", &[40, 1], &t).expect("t");
+    file.struct_("log", |log| {
+        log.write_f64("heater", &[40, 1], &u)?;
+        log.write_f64("data", &[40, 2], &[y.clone(), t.clone()].concat())?;
+        Ok(())
+    })
+    .expect("a structure");
+    let bytes = file.finish().expect("a file");
+    let m = read_with_advice(&bytes, "--map \"t=t [s], u=log.heater, y=log.data(:,1)\"");
+    is_the_heater(&m, 1.0);
+}
+
+/// The files of `../shared/failing` that are no tables as they should be, and what is said of them: the words that read
+/// them, or nothing where they are read at once.
+const FAILING: [(&str, &str); 7] = [
+    ("cart-0m20-velocity-printed.csv", ""),
+    ("heater-step-plain-header.csv", ""),
+    (
+        "incubator-exp1-original-head.csv",
+        "--map \"t=time [s], u=heater_on, y=t1\"",
+    ),
+    (
+        "tanks-original-no-time-column.csv",
+        "--map \"u=uEst, y=yEst\"",
+    ),
+    (
+        "servo-export-preamble.csv",
+        "--map \"t=Time, u=Torque [N m], v1=Servo motor speed [rad/s]\"",
+    ),
+    (
+        "iso-time-and-numbered-names.csv",
+        "x1=pos (5) [rad], v1=speed (5) [rad/s]\"",
+    ),
+    (
+        "simulink-timeseries.mat",
+        "--map \"t=sig_speed.Time, u=sig_volt.Data [V], v1=sig_speed.Data [rad/s]\"",
+    ),
+];
+
+#[test]
+fn files_from_real_work_are_read() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/failing"));
+    if !folder.is_dir() {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "{} is not there",
+            folder.display()
+        );
+        println!("skipped: {} is not there", folder.display());
+        return;
+    }
+    for (name, words) in FAILING {
+        let bytes = std::fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let m = if words.is_empty() {
+            import(name, &bytes, &ImportOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+        } else {
+            let error = import(name, &bytes, &ImportOptions::default()).expect_err(name);
+            assert!(error.to_string().contains(words), "{error}");
+            match import(name, &bytes, &advised(&error).expect("advice")) {
+                Ok(m) => m,
+                // Heads of files are short.
+                Err(e) if e.to_string().contains("rows of numbers") => continue,
+                Err(e) => panic!("{e}"),
+            }
+        };
+        let step = (m.time[m.len() - 1] - m.time[0]) / (m.len() - 1) as f64;
+        assert!((1e-4..10.0).contains(&step), "{name}: {step}");
+    }
+}
+
+fn name() -> impl Strategy<Value = String> {
+    prop_oneof![
+        Just(String::new()),
+        "[a-zA-Zäß][a-zA-Z0-9_ äß.-]{0,12}",
+        "(pos|speed|temp|time|heater|u|y|Ts)( \\([0-9]\\))?",
+        "(t|u|x1|v1|y|a) \\[(s|ms|N m|rad|counts|rpm|degC|furlong)\\]",
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn what_is_refused_for_its_columns_is_read_with_the_advice(
+        names in prop::collection::vec(name(), 3..7),
+        separator in prop::sample::select(vec![",", ";", "\t"]),
+        kind in prop::sample::select(vec![None, Some(Kind::Process)]),
+    ) {
+        let row = |k: usize| {
+            let value = |i: usize| if i == 0 { k } else { (k * i) % 7 };
+            (0..names.len()).map(|i| value(i).to_string()).collect::<Vec<_>>().join(separator)
+        };
+        let text = format!("{}\n{}", names.join(separator), rows(40, row));
+        let options = ImportOptions { kind, ..ImportOptions::default() };
+        // A header that ends with a separator has a column less.
+        prop_assume!(names.last().is_some_and(|name| !name.is_empty()));
+        if let Err(error) = import("rig.csv", text.as_bytes(), &options) {
+            let line = error.to_string();
+            prop_assert!(!line.contains('\n') && !line.ends_with("has "), "{line}");
+            if error.problem.is_about_columns() {
+                let options = advised(&error);
+                prop_assert!(options.is_some(), "no advice: {line}");
+                let again = import("rig.csv", text.as_bytes(), &options.unwrap_or_default());
+                let settled = again.as_ref().map_or_else(|e| !e.problem.is_about_columns(), |_| true);
+                prop_assert!(settled, "{line}\n{again:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn any_text_of_these_kinds_is_read_or_refused_in_one_line(
+        text in "(\\{|\\[|t[:=]|u|y|[0-9]{1,4}|[.,;: \\n\"\\]}-]|true|off|2025-01-01T10:00:0[0-9]){0,80}",
+    ) {
+        if let Err(error) = read(&text) {
+            let line = error.to_string();
+            prop_assert!(!line.contains('\n') && line.len() < 2000, "{line}");
+        }
+        if let Ok(found) = columns("rig.csv", text.as_bytes()) {
+            let guess = guess(&found);
+            prop_assert!(guess.channels.iter().all(|(_, i)| *i < found.len()));
+        }
+    }
+
+    #[test]
+    fn damaged_hdf5_is_read_or_refused(
+        changes in prop::collection::vec((0_usize..4000, any::<u8>()), 1..6),
+        length in 8_usize..6000,
+    ) {
+        use hdf5_pure::mat::builder::MatBuilder;
+        let mut file = MatBuilder::new(hdf5_pure::mat::Options::default());
+        let values: Vec<f64> = (0..40_u8).map(f64::from).collect();
+        file.write_f64("t", &[40, 1], &values).expect("t");
+        let mut bytes = file.finish().expect("a file");
+        for (at, value) in changes {
+            let at = at % bytes.len();
+            bytes[at] = value;
+        }
+        bytes.truncate(length);
+        if let Err(error) = import("rig.mat", &bytes, &ImportOptions::default()) {
+            prop_assert!(!error.to_string().contains('\n'));
+        }
+    }
+}
