@@ -38,6 +38,7 @@ mod records;
 mod report;
 mod rests;
 mod scenario_text;
+mod screen;
 mod sensors;
 mod simulation;
 mod slow_and_short;

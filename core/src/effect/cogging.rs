@@ -16,7 +16,7 @@ const BEST: usize = 3;
 /// travel holds, half of what tells two waves apart; and how many at most.
 const LEAST_SAMPLES: f64 = 8.0;
 const FREQUENCIES_PER_TURN: f64 = 2.0;
-const MOST_FREQUENCIES: usize = 60;
+const MOST_FREQUENCIES: f64 = 160.0;
 
 impl Effect for Cogging {
     fn id(&self) -> EffectId {
@@ -93,12 +93,10 @@ impl Effect for Cogging {
             // From a wave in the travel to the finest that samples at the typical speed show.
             grid: |extent| {
                 let shortest = LEAST_SAMPLES * extent.speed * extent.step;
-                let count = (FREQUENCIES_PER_TURN * extent.travel / shortest) as usize;
-                even(
-                    TAU / extent.travel,
-                    TAU / shortest,
-                    count.min(MOST_FREQUENCIES),
-                )
+                let (first, last) = (TAU / extent.travel, TAU / shortest);
+                let apart = first / FREQUENCIES_PER_TURN;
+                let count = ((last - first) / apart).min(MOST_FREQUENCIES);
+                even(first, first + count.floor() * apart, count as usize + 1)
             },
             shapes: 1,
             values: |solved| {

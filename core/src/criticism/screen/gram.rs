@@ -3,7 +3,7 @@
 use super::signals::Signals;
 use super::tuning::{BLOCKS, COLLINEAR};
 use super::window::Width;
-use crate::effect::{Atom, Part, Shape};
+use crate::effect::{Atom, Part, Series, Shape};
 
 /// Integrals of what may stand in the equation: one value for each window of all widths.
 pub(super) struct Rows<'a> {
@@ -102,15 +102,12 @@ impl<'a> Rows<'a> {
                     columns.tied = Some(self.held(&change));
                 }
                 Part::Motion(series) => {
-                    columns
-                        .free
-                        .extend(series(&track, shape).into_iter().map(|s| {
-                            if s.derivative == 0 {
-                                self.force(s.values)
-                            } else {
-                                self.integrals(&s.values, s.derivative)
-                            }
-                        }))
+                    let integrated = |s: Series| match s.derivative {
+                        0 => self.force(s.values),
+                        derivative => self.integrals(&s.values, derivative),
+                    };
+                    let series = series(&track, shape).into_iter();
+                    columns.free.extend(series.map(integrated));
                 }
             }
         }
@@ -381,9 +378,9 @@ impl Solution {
                 y[i] = (y[i] - inner) / self.lower[i * n + i];
             }
         }
-        for i in 0..n {
-            if !self.out[i] {
-                y[i] /= self.scale[i];
+        for (y, (scale, out)) in y.iter_mut().zip(self.scale.iter().zip(&self.out)) {
+            if !out {
+                *y /= scale;
             }
         }
         y

@@ -4,7 +4,7 @@ use super::gram::{AtomColumns, Gram, Halves, Reduced, Rows};
 use super::model::{BASE, Choice, Shaped, elements, found, unit};
 use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
-use super::tuning::{COARSE, DULL, EXACT, FINE, HUBER, KEPT_SHAPES, REFINED, ROUNDS};
+use super::tuning::{ATTENUATED, COARSE, DULL, EXACT, FINE, HUBER, KEPT_SHAPES, REFINED, ROUNDS};
 use super::window::Width;
 use crate::effect::{self, Atom, Extent, Shape, Solved};
 use crate::measurement::Kind;
@@ -283,30 +283,46 @@ impl Builder<'_> {
         }
     }
 
-    /// Leaves out the widths whose windows are too short, or too long, to tell more than noise.
-    fn drop_dull_widths(&mut self, all: &[Vec<usize>]) {
-        let left: Vec<f64> = (0..self.rows.widths.len())
+    /// Leaves out the widths whose windows are too short to tell more than noise. Noise in the acceleration of a drive makes
+    /// its inertia too small, and what is left of the input larger (errors in variables); the rate of a process is the target,
+    /// where noise only adds to what is left.
+    fn drop_dull_widths(&mut self, everything: &[Vec<usize>]) {
+        self.dull.fill(false);
+        if self.kind == Kind::Drive {
+            self.mark_dull(&elements(self.kind, &[]));
+        }
+        self.mark_dull(everything);
+        if self.dull.iter().all(|dull| *dull) {
+            self.dull.fill(false);
+        }
+    }
+
+    fn mark_dull(&mut self, all: &[Vec<usize>]) {
+        let told: Vec<(f64, f64)> = (0..self.rows.widths.len())
             .map(|width| {
                 for (weight, of) in self.weights.iter_mut().zip(&self.rows.width_of) {
                     *weight = f64::from(u8::from(*of == width));
                 }
                 let gram = self.gram();
-                let sums = gram.sum(|_| true);
-                let reduced = Reduced::new(&sums, gram.size, all);
+                let reduced = Reduced::new(&gram.sum(|_| true), gram.size, all);
                 let w = reduced
                     .solve(true)
                     .map(|s| reduced.coefficients(&s))
                     .unwrap_or_default();
-                if w.is_empty() {
-                    return f64::INFINITY;
+                let target = reduced.square(reduced.order).max(f64::MIN_POSITIVE);
+                match w.first() {
+                    Some(inertia) => ((reduced.loss(&w) / target).sqrt(), *inertia),
+                    None => (f64::INFINITY, 0.0),
                 }
-                let windows = self.rows.widths[width].starts.len() as f64;
-                let free = (windows - w.len() as f64).max(1.0) / windows;
-                (reduced.loss(&w) / reduced.square(w.len()).max(f64::MIN_POSITIVE) / free).sqrt()
             })
             .collect();
-        let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-        self.dull = left.iter().map(|l| *l > DULL * least).collect();
+        let Some(best) = told.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return;
+        };
+        let bent = |inertia: f64| self.kind == Kind::Process || inertia < ATTENUATED * best.1;
+        for (dull, (left, inertia)) in self.dull.iter_mut().zip(&told) {
+            *dull |= *left > DULL * best.0 && bent(*inertia);
+        }
     }
 
     /// All widths count alike.
@@ -345,12 +361,21 @@ impl Builder<'_> {
             .take(REFINED)
             .map(|t| t.members.clone())
             .collect();
-        let Some(best) = members.first() else { return };
-        let elements = bench.elements(best);
+        let Some(best) = members.first().cloned() else {
+            return;
+        };
+        let elements = bench.elements(&best);
         if let Some(fit) = super::model::Fit::new(&gram, &elements) {
             self.weigh(&elements, &fit.w);
         }
-        for members in &members {
+        // A part of the best may do as well, once its own shapes are as fine: lags make up for a dead time off the grid.
+        let parts = (0..best.len()).map(|out| {
+            let mut part = best.clone();
+            part.remove(out);
+            part
+        });
+        let refined: Vec<Vec<(usize, usize)>> = parts.chain(members.iter().cloned()).collect();
+        for members in &refined {
             self.refine(members);
         }
     }

@@ -93,8 +93,10 @@ pub(super) const LATEST: f64 = 0.25;
 /// Factor of the error left beyond which a subset is no longer the same, however few blocks show it.
 pub(super) const WORSE: f64 = 1.12;
 
-/// Widths that leave more than this many times the share of the best width, all atoms fitted, tell noise.
-pub(super) const DULL: f64 = 3.0;
+/// Widths that leave more than this many times the share of the best width, and of a drive less than this share of its
+/// inertia, tell noise: an inertia that is bent by a fifth misleads every atom beside it.
+pub(super) const DULL: f64 = 1.6;
+pub(super) const ATTENUATED: f64 = 0.8;
 
 /// Subsets whose shapes are refined in each round, and the first and last step of it as shares of a number.
 pub(super) const REFINED: usize = 3;

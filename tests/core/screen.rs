@@ -1,0 +1,150 @@
+//! The screen names what a rig hides, questions the input, and says what a record cannot tell.
+
+use hysteron_core::criticism::screen;
+use hysteron_core::diagnosis::{InputVerdict, Screening};
+use hysteron_core::measurement::{Measurement, Quantity};
+use hysteron_core::rig::process::{Excitation as ProcessExcitation, ProcessRig};
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Stranger};
+
+const SINES: Excitation = Excitation::Multisine { amplitude: 0.05 };
+
+fn drive(excitation: Excitation) -> DriveRig {
+    DriveRig {
+        seed: 7,
+        excitation,
+        ..DriveRig::default()
+    }
+}
+
+fn ids(screening: &Screening) -> Vec<Vec<&'static str>> {
+    let subsets = screening.subsets.iter();
+    subsets
+        .map(|s| s.effects.iter().map(|e| e.as_str()).collect())
+        .collect()
+}
+
+/// The only subset, with a value of it to this share.
+fn check(measurement: &Measurement, effect: &str, symbol: &str, value: f64, within: f64) {
+    let found = screen(measurement);
+    assert_eq!(ids(&found), [[effect]], "{}", found.input_check.text);
+    let own = found.subsets[0].parameters.iter();
+    let mut own = own.filter(|p| p.effect.is_some_and(|e| e.as_str() == effect));
+    let parameter = own
+        .find(|p| p.name == symbol)
+        .expect("a parameter of the effect");
+    let off = (parameter.value / value - 1.0).abs();
+    assert!(off < within, "{symbol}: {} for {value}", parameter.value);
+    assert_eq!(found.input_check.verdict, InputVerdict::Ok);
+}
+
+#[test]
+fn effects_of_a_drive_are_named_alone() {
+    let sines = drive(SINES);
+    let coulomb = DriveRig {
+        friction: Friction::dry(0.03),
+        ..sines
+    };
+    check(&coulomb.measure(), "coulomb_friction", "c", 0.03, 0.05);
+    let cogging = DriveRig {
+        cogging: (0.03, 6.0, 0.4),
+        ..sines
+    };
+    check(&cogging.measure(), "cogging", "a", 0.03, 0.05);
+    let spring = DriveRig {
+        stranger: Some(Stranger::Spring { stiffness: 0.5 }),
+        ..sines
+    };
+    check(&spring.measure(), "return_spring", "k", 0.5, 0.02);
+    let stairs = drive(Excitation::Staircase { top: 0.3 });
+    let load = DriveRig {
+        constant_load: 0.015,
+        ..stairs
+    };
+    check(&load.measure(), "constant_load", "F0", 0.015, 0.05);
+    let asymmetry = DriveRig {
+        gain_asymmetry: 0.06,
+        ..stairs
+    };
+    check(&asymmetry.measure(), "gain_asymmetry", "a", 0.06, 0.05);
+}
+
+#[test]
+fn effects_of_a_process_are_named() {
+    let stairs = ProcessRig {
+        seed: 7,
+        excitation: ProcessExcitation::Staircase { top: 1.0 },
+        ..ProcessRig::default()
+    };
+    let late = ProcessRig {
+        dead_time: 6.0,
+        ..stairs
+    };
+    check(&late.measure(), "input_delay", "tau", 6.0, 0.05);
+    let clean = screen(&stairs.measure());
+    assert_eq!(ids(&clean), [Vec::<&str>::new()]);
+}
+
+#[test]
+fn a_turned_sign_is_said() {
+    let mut measurement = drive(SINES).measure();
+    for u in &mut measurement.input.values {
+        *u = -*u;
+    }
+    let found = screen(&measurement);
+    assert_eq!(
+        found.input_check.verdict,
+        InputVerdict::Sign,
+        "{}",
+        found.input_check.text
+    );
+}
+
+#[test]
+fn an_input_of_another_record_explains_nothing() {
+    let mut measurement = drive(SINES).measure();
+    let other = DriveRig {
+        seed: 8,
+        ..drive(SINES)
+    };
+    measurement.input = other.measure().input;
+    let found = screen(&measurement);
+    assert_eq!(
+        found.input_check.verdict,
+        InputVerdict::DoesNotExplain,
+        "{}",
+        found.input_check.text
+    );
+}
+
+#[test]
+fn a_controller_is_read_off() {
+    let stairs = ProcessRig {
+        excitation: ProcessExcitation::Staircase { top: 1.0 },
+        ..ProcessRig::default()
+    };
+    let mut measurement = stairs.measure();
+    let output = measurement
+        .outputs
+        .iter()
+        .find(|o| o.quantity == Quantity::Output);
+    let law = output
+        .expect("an output")
+        .values
+        .iter()
+        .map(|y| 3.0 - 1.5 * y);
+    measurement.input.values = law.collect();
+    let found = screen(&measurement);
+    assert_eq!(found.input_check.verdict, InputVerdict::ClosedLoop);
+    assert!(
+        found.input_check.text.contains("u = -1.50 y + 3.00"),
+        "{}",
+        found.input_check.text
+    );
+}
+
+#[test]
+fn the_same_record_gives_the_same_bits() {
+    let measurement = drive(SINES).measure();
+    let [a, b] = [screen(&measurement), screen(&measurement)];
+    assert_eq!(a, b);
+}
