@@ -94,8 +94,10 @@ impl DiagnosisJob {
         measurement: &Measurement,
         model: &UserModel,
     ) -> Result<Self, CriticismError> {
+        let job = StepJob::with_model(measurement, &[], model)?;
+        let input_check = Some(job.input_check().clone());
         Ok(Self {
-            job: Some(StepJob::with_model(measurement, &[], model)?),
+            job: Some(job),
             limits: Limits::of(measurement),
             diagnosis: Diagnosis {
                 schema: 1,
@@ -103,6 +105,7 @@ impl DiagnosisJob {
                 samples: measurement.len(),
                 noise_floor: NOISE_FLOOR,
                 noise: Vec::new(),
+                input_check,
                 steps: Vec::new(),
                 verdict: crate::diagnosis::Verdict {
                     missing: Vec::new(),

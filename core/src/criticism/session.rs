@@ -19,7 +19,8 @@ use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
 use crate::crew::Crew;
 use crate::diagnosis::{
-    ChannelNoise, CriticismError, InputVerdict, Parameter, Replay, ReplayChannel, Screening, Subset,
+    ChannelNoise, CriticismError, InputCheck, InputVerdict, Parameter, Replay, ReplayChannel,
+    Screening, Subset,
 };
 use crate::effect::{
     self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
@@ -125,6 +126,8 @@ pub(super) struct Session {
     /// What models that were met leave unexplained.
     probes: Probes,
     pub motion: Motion,
+    /// Whether the input explains the motion.
+    pub input_check: InputCheck,
     /// Subsets of effects that the screen found, the best first.
     pub screened: Vec<Subset>,
     /// The gap that a drifting test shows.
@@ -162,6 +165,7 @@ impl Session {
             scales,
             held: None,
             screened_body,
+            input_check: screening.input_check,
             screened: screening
                 .subsets
                 .into_iter()

@@ -7,7 +7,10 @@ use super::locate::signal_name;
 use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
-use crate::diagnosis::{Contradiction, Finding, NextExperiment, Parameter, Step, Verdict};
+use crate::diagnosis::{
+    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Parameter, Step, Subset,
+    Verdict,
+};
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
 use crate::uncertain::{shown_unit, with_error};
@@ -269,6 +272,43 @@ pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
             " Perhaps {}: it would lower the error to {error:.2} times the noise, but not in enough independent stretches of \
              the record to rule out chance.",
             name_of(id)
+        );
+    }
+}
+
+/// Says first where the input does not explain the motion: where it is wrong or follows the output, no physics is named, for
+/// that would be physics of another machine. A model that leaves noise alone has explained the motion.
+pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck) {
+    let wrong = match check.verdict {
+        InputVerdict::Ok => return,
+        InputVerdict::InertiaNotTold => false,
+        InputVerdict::Sign | InputVerdict::DoesNotExplain | InputVerdict::ClosedLoop => true,
+    };
+    if verdict.complete {
+        return;
+    }
+    if wrong {
+        verdict.missing.clear();
+        verdict.experiments.clear();
+        verdict.next_experiment = None;
+        verdict.unknown = true;
+        verdict.text.clone_from(&check.text);
+    } else {
+        verdict.text = format!("{} {}", check.text, verdict.text);
+    }
+}
+
+/// Where nothing explains the rest, says what the screen finds without a simulation, the likeliest first.
+pub(super) fn add_screened(verdict: &mut Verdict, check: &InputCheck, screened: &[Subset]) {
+    let found = screened
+        .first()
+        .filter(|_| check.verdict == InputVerdict::Ok && verdict.unknown);
+    if let Some(subset) = found {
+        let _ = write!(
+            verdict.text,
+            " The balance of momentum alone would want {}, and then misses {:.0} % of the force.",
+            names(&subset.effects, " with "),
+            100.0 * subset.left
         );
     }
 }

@@ -7,6 +7,7 @@ use super::missing::MissingPart;
 use super::noise::ChannelNoise;
 use super::profile::Profile;
 use super::replay::Replay;
+use super::screening::InputCheck;
 use super::step::Step;
 use super::verdict::Verdict;
 use crate::effect::EffectId;
@@ -26,6 +27,9 @@ pub struct Diagnosis {
     /// The unit of the errors: the noise of each measured channel.
     #[serde(default)]
     pub noise: Vec<ChannelNoise>,
+    /// Whether the input explains the motion at all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_check: Option<InputCheck>,
     /// From the baseline to the last model.
     pub steps: Vec<Step>,
     /// What is missing.

@@ -3,7 +3,10 @@
 use std::f64::consts::TAU;
 
 use super::atom::even;
-use super::{Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{
+    Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, gravity,
+    hardening_spring, return_spring,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -81,6 +84,11 @@ impl Effect for Cogging {
             (balance.body, wave)
         });
         found.into_iter().collect()
+    }
+
+    /// A wave as long as a turn is gravity; of a longer one the travel shows a spring.
+    fn limits(&self) -> &'static [EffectId] {
+        &[gravity::ID, return_spring::ID, hardening_spring::ID]
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {

@@ -14,7 +14,9 @@ use super::select::{fall, is_plain_noise, is_too_rich};
 use super::session::{Scored, Session};
 use super::verdict::Class;
 use crate::crew::Crew;
-use crate::diagnosis::{Contradiction, CriticismError, Limits, NextExperiment, Step, StepReport};
+use crate::diagnosis::{
+    Contradiction, CriticismError, InputCheck, Limits, NextExperiment, Step, StepReport,
+};
 use crate::effect::{self, Effect, EffectId};
 use crate::measurement::Measurement;
 use crate::progress::Progress;
@@ -125,6 +127,11 @@ impl StepJob {
     #[must_use]
     pub fn within(self, limits: Limits) -> Self {
         Self { limits, ..self }
+    }
+
+    /// Whether the input explains the motion.
+    pub(in crate::criticism) fn input_check(&self) -> &InputCheck {
+        &self.session.input_check
     }
 
     /// The same with the independent parts of the work done by `crew`.
