@@ -2,9 +2,11 @@
 
 use hysteron_core::criticism::screen;
 use hysteron_core::diagnosis::{InputVerdict, Screening};
-use hysteron_core::measurement::{Measurement, Quantity};
+use hysteron_core::measurement::{ImportOptions, Measurement, Quantity, import};
 use hysteron_core::rig::process::{Excitation as ProcessExcitation, ProcessRig};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Stranger};
+
+use crate::support::shared::shared;
 
 const SINES: Excitation = Excitation::Multisine { amplitude: 0.05 };
 
@@ -21,6 +23,44 @@ fn ids(screening: &Screening) -> Vec<Vec<&'static str>> {
     subsets
         .map(|s| s.effects.iter().map(|e| e.as_str()).collect())
         .collect()
+}
+
+/// A controller that holds the output gives an input that tells nothing of the plant: none is said.
+#[test]
+fn a_controller_is_not_taken_for_the_plant() {
+    let Some(bytes) = shared("failing/closed-loop-heater.csv") else {
+        return;
+    };
+    let measurement = import("closed-loop-heater.csv", &bytes, &ImportOptions::default());
+    let found = screen(&measurement.expect("a record"));
+    assert_eq!(found.input_check.verdict, InputVerdict::ClosedLoop);
+    assert!(
+        found.input_check.text.contains("u = -1.84 y + 185"),
+        "{}",
+        found.input_check.text
+    );
+    assert_eq!(ids(&found), Vec::<Vec<&str>>::new());
+}
+
+/// A ball-screw axis: mass within 5 % of what its authors identified, and with the sign of its input turned that is said.
+#[test]
+fn a_real_axis_has_its_mass() {
+    let screened = |path: &str| {
+        let measurement = import(path, &shared(path)?, &ImportOptions::default());
+        Some(screen(&measurement.expect("a record")))
+    };
+    if let Some(found) = screened("real/emps.csv") {
+        let mass = found.body[0].value;
+        assert!((mass / 95.1 - 1.0).abs() < 0.05, "{mass}");
+    }
+    if let Some(found) = screened("failing/emps-wrong-sign-250Hz.csv") {
+        assert_eq!(
+            found.input_check.verdict,
+            InputVerdict::Sign,
+            "{}",
+            found.input_check.text
+        );
+    }
 }
 
 /// The only subset, with a value of it to this share.

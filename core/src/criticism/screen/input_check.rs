@@ -28,7 +28,10 @@ pub(super) fn checked(
     let left = left(bench, tried);
     let explained = !tried.is_empty() && left < UNEXPLAINED;
     if let Some(made) = controller(signals) {
-        return say(InputVerdict::ClosedLoop, closed(&made, explained));
+        let plant = smallest(tried, bench.motion())
+            .first()
+            .is_some_and(|t| bench.settles(&t.members));
+        return say(InputVerdict::ClosedLoop, closed(&made, explained && plant));
     }
     if explained {
         let share = 100.0 * left;

@@ -6,7 +6,7 @@ use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
 use super::tuning::LISTED;
 use super::window::Width;
-use crate::diagnosis::{Parameter, Screening, Status, Subset};
+use crate::diagnosis::{InputVerdict, Parameter, Screening, Status, Subset};
 use crate::effect::{Dimension, EffectId, VISCOUS_FRICTION, baseline};
 use crate::measurement::{Kind, Measurement};
 
@@ -30,7 +30,11 @@ pub(super) fn screening(
 ) -> Screening {
     let motion = bench.motion();
     let share = |loss: f64| (loss / motion.max(f64::MIN_POSITIVE)).sqrt();
-    let class = smallest(tried, motion);
+    let input_check = input_check::checked(signals, widths, bench, tried);
+    let mut class = smallest(tried, motion);
+    if input_check.verdict == InputVerdict::ClosedLoop {
+        class.retain(|t| bench.settles(&t.members));
+    }
     let subsets: Vec<Subset> = class
         .iter()
         .take(LISTED)
@@ -63,7 +67,7 @@ pub(super) fn screening(
             .find(|t| t.members.is_empty())
             .map(|t| share(t.loss())),
         subsets,
-        input_check: input_check::checked(signals, widths, bench, tried),
+        input_check,
         seconds: 0.0,
     }
 }

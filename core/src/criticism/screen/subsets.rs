@@ -134,6 +134,13 @@ impl<'a> Bench<'a> {
         }
     }
 
+    /// Whether a process settles by itself, told by its own standard errors: in a closed loop what is left may as well be the
+    /// controller turned round.
+    pub fn settles(&self, members: &[(usize, usize)]) -> bool {
+        let fit = Fit::new(self.gram, &self.elements(members));
+        self.kind == Kind::Drive || fit.is_some_and(|fit| -fit.w[1] > TOLD * fit.error(1))
+    }
+
     pub fn subset(&self, members: &[(usize, usize)]) -> Vec<(&'a Choice, &'a Shaped)> {
         let pair = |(c, s): &(usize, usize)| {
             let choice = &self.choices[*c];
