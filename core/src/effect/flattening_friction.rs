@@ -1,7 +1,9 @@
 //! Viscous friction that flattens with speed, as grease that gets thin.
 
 use super::atom::{geometric, not_negative};
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{
+    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, coulomb_friction,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -67,6 +69,15 @@ impl Effect for FlatteningFriction {
             .flatten()
             .min_by(|a, b| a.0.total_cmp(&b.0));
         best.into_iter().map(|(_, values)| values).collect()
+    }
+
+    /// Without a speed at which it flattens it is dry friction.
+    fn contains(&self) -> &'static [EffectId] {
+        &[coulomb_friction::ID]
+    }
+
+    fn needs_its_parts(&self) -> bool {
+        true
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
