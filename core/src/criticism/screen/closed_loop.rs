@@ -1,5 +1,7 @@
 //! Was the loop closed? An input that follows from the output by a linear law was made by a controller.
 
+use std::fmt::Write as _;
+
 use super::signals::{Signals, deviation};
 use super::tuning::{CONTROLLED, FEW_LEVELS};
 use crate::measurement::Kind;
@@ -98,7 +100,12 @@ fn law(gains: &[f64], terms: &[Term]) -> String {
             (false, _) => " + ",
         };
         let space = if terms[k].symbol.is_empty() { "" } else { " " };
-        text += &format!("{sign}{}{space}{}", three(gain.abs()), terms[k].symbol);
+        let _ = write!(
+            text,
+            "{sign}{}{space}{}",
+            three(gain.abs()),
+            terms[k].symbol
+        );
     }
     text
 }

@@ -110,7 +110,7 @@ impl<'a> Rows<'a> {
                             } else {
                                 self.integrals(&s.values, s.derivative)
                             }
-                        }))
+                        }));
                 }
             }
         }
@@ -381,9 +381,9 @@ impl Solution {
                 y[i] = (y[i] - inner) / self.lower[i * n + i];
             }
         }
-        for i in 0..n {
-            if !self.out[i] {
-                y[i] /= self.scale[i];
+        for (value, (out, scale)) in y.iter_mut().zip(self.out.iter().zip(&self.scale)) {
+            if !out {
+                *value /= scale;
             }
         }
         y

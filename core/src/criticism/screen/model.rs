@@ -208,6 +208,8 @@ fn clustered(solution: &Solution, blocks: &[Reduced], w: &[f64]) -> Vec<f64> {
     }
     // As many blocks as coefficients leave no scatter.
     let few = BLOCKS as f64 / (BLOCKS - n.min(BLOCKS / 2)) as f64;
-    covariance.iter_mut().for_each(|c| *c *= few);
+    for entry in &mut covariance {
+        *entry *= few;
+    }
     covariance
 }

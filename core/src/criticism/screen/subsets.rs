@@ -6,11 +6,14 @@ use super::tuning::{BLOCKS, GROWTH, MOST_ATOMS, PRACTICAL, SAME, TOLD, WORSE};
 use crate::effect::Extent;
 use crate::measurement::Kind;
 
+/// Indices of the choices, and of the shape of each.
+type Members = Vec<(usize, usize)>;
+
 /// A subset of the choices with the shapes that fit best.
 #[derive(Clone, Debug)]
 pub(super) struct Tried {
-    /// Indices of the choices, and of the shape of each.
-    pub members: Vec<(usize, usize)>,
+    /// What is in it.
+    pub members: Members,
     /// Squared residuals of the acceleration in each block, by the fit to the others.
     pub losses: Vec<f64>,
     /// Numbers that it fits.
@@ -65,8 +68,8 @@ impl<'a> Bench<'a> {
     }
 
     /// The shapes of these choices that leave least of these sums: one after the other, until none gets better.
-    fn profiled(&self, sums: &[f64], choices: &[usize]) -> Option<(Vec<(usize, usize)>, Vec<f64>)> {
-        let mut members: Vec<(usize, usize)> = choices.iter().map(|c| (*c, 0)).collect();
+    fn profiled(&self, sums: &[f64], choices: &[usize]) -> Option<(Members, Vec<f64>)> {
+        let mut members: Members = choices.iter().map(|c| (*c, 0)).collect();
         let mut best = self.fitted(sums, &members);
         let shaped = choices
             .iter()
@@ -210,15 +213,15 @@ fn is_same(tried: &Tried, best: &Tried, motion: f64) -> bool {
     }
     let floor = PRACTICAL * PRACTICAL * motion / BLOCKS as f64;
     let pairs = || tried.losses.iter().zip(&best.losses);
-    let plain = pairs().map(|(a, b)| a - b).collect();
-    let logs = pairs()
+    let plain: Vec<f64> = pairs().map(|(a, b)| a - b).collect();
+    let logs: Vec<f64> = pairs()
         .map(|(a, b)| libm::log((a + floor) / (b + floor)))
         .collect();
     let near = tried.loss() <= WORSE * WORSE * best.loss();
-    near && within_error(plain) && within_error(logs)
+    near && within_error(&plain) && within_error(&logs)
 }
 
-fn within_error(differences: Vec<f64>) -> bool {
+fn within_error(differences: &[f64]) -> bool {
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
     let squares = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>();
