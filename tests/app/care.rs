@@ -439,7 +439,8 @@ fn backlash_points_to_the_page_that_asks_for_columns() {
     harness.state_mut().speak(Language::German);
     finish(&mut harness);
     let texts = texts(&harness);
-    let german = |t: &String| t.contains("eine MAT-Datei sagt nicht") && t.contains("Vergleichen");
+    let german =
+        |t: &String| t.contains("eine Datei von MATLAB sagt nicht") && t.contains("Vergleichen");
     assert!(texts.iter().any(german), "{texts:#?}");
 }
 

@@ -311,7 +311,7 @@ fn a_model_is_read_and_saved() {
     let bad = written("bad.toml", b"kind = \"process\"\n[parameters]\nJ1 = 3\n");
     refused(
         &run(&[&file, model, &bad]),
-        &["bad.toml, line 3: 'J1'", "K or T"],
+        &["bad.toml, line 3: 'J1'", "K, T or ambient"],
     );
     refused(
         &run(&[&file, model, Path::new("none.toml")]),

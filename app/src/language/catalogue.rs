@@ -21,12 +21,12 @@ use super::number::with_comma;
 /// Texts nested in each other, at most.
 const DEEPEST: usize = 8;
 
-/// Words that are the same in every language: units and names of functions.
-const SAME: [&str; 53] = [
+/// Words that are the same in every language: units, names of functions and of parameters.
+const SAME: [&str; 54] = [
     "rad", "mrad", "deg", "rev", "ms", "us", "µs", "kg", "mm", "um", "mN", "kN", "mA", "mV", "Hz",
     "rpm", "min", "Ti", "Td", "Tf", "Ms", "cos", "sin", "exp", "sgn", "ln", "sqrt", "tau", "phi",
     "beta", "dt", "dy", "du", "dx", "dv", "log", "Hysteron", "csv", "toml", "abs", "rms", "kHz",
-    "max", "counts", "dw", "tanh", "dc", "Ku", "Tu", "µrad", "µm", "µN", "µV",
+    "max", "counts", "dw", "tanh", "dc", "Ku", "Tu", "µrad", "µm", "µN", "µV", "ambient",
 ];
 
 /// What joins parts that are translated one by one, English and translated; the loosest first.

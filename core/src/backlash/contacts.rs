@@ -2,11 +2,13 @@
 
 use super::cycles::Cycles;
 use super::drift::Drift;
-use super::estimate::FEWEST_CONTACTS;
 use super::free_motor::FreeMotor;
 use super::gap::Side;
 use super::record::{DIFFERENCE, Record};
 use crate::order::{drop_marked, median};
+
+/// Contacts with one side only from which engagement is believed.
+pub(super) const FEWEST_CONTACTS: usize = 3;
 
 /// Cycles about an engaged one in which contacts are looked for.
 const MARGIN: usize = 2;

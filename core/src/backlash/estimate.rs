@@ -4,7 +4,7 @@ use crate::measurement::Measurement;
 use crate::model::{SeenContact, SeenLoad, Sharpness};
 use crate::order::{drop_marked, median, quantile, range};
 
-use super::contacts::{Touch, touches};
+use super::contacts::{FEWEST_CONTACTS, Touch, touches};
 use super::cycles::Cycles;
 use super::drift::Drift;
 use super::free_motor::FreeMotor;
@@ -35,9 +35,6 @@ const GOOD_TRAVERSES: usize = 3;
 
 /// Share of the gap by which a traverse may be off before its ends are doubted.
 const STRAY: f64 = 0.5;
-
-/// Contacts with one side only from which engagement is believed.
-pub(super) const FEWEST_CONTACTS: usize = 3;
 
 /// Crossings of the gap within so many cycles, from how many on the load rattles, and the relative error
 /// that this leaves; seen with independent rigs.

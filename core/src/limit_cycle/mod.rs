@@ -7,6 +7,7 @@ mod exact;
 mod existence;
 mod harmonics;
 mod history;
+mod long_run;
 mod noisy;
 mod outcome;
 mod pattern;
@@ -27,7 +28,8 @@ pub use exact::{ExactCycle, exact_cycle, exact_cycles, exact_symmetric};
 use exact::{continuum, settled_cycle};
 pub use existence::{Existence, existence};
 pub use harmonics::{Harmonic, harmonics};
-pub use outcome::{LongRun, LongRunResult, Outcome};
+pub use long_run::{LongRun, LongRunResult};
+pub use outcome::Outcome;
 pub use prediction::{PredictError, Prediction, Trust, dominant, predict};
 
 /// Typical angular frequency of a plant, rad/s: the geometric mean of its poles, or of what its

@@ -5,6 +5,9 @@ use crate::simulate::Trajectory;
 /// Relative change from one cycle to the next below which a run has settled: well above round-off.
 const SETTLED: f64 = 1e-9;
 
+/// Relative difference of a settled run from the exact cycle that it settled into.
+pub(super) const SAME_CYCLE: f64 = 1e-6;
+
 /// Cycles over which it must have.
 const SETTLED_CYCLES: usize = 3;
 

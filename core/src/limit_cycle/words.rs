@@ -1,7 +1,7 @@
 //! What becomes of a loop, in sentences.
 
 use super::noisy::NoisyCycle;
-use super::pattern::OneCycle;
+use super::pattern::{OneCycle, SAME_CYCLE, difference};
 use super::{Cycle, ExactCycle, Prediction};
 use crate::relay::Relay;
 use crate::simulate::Noise;
@@ -41,7 +41,7 @@ pub(super) fn limit_cycle(
 ) -> String {
     let slow = prediction.exact.iter().find(|c| {
         let of = [c.cycle.period, c.cycle.amplitude];
-        super::pattern::difference(cycle, &of) < super::outcome::SAME_CYCLE
+        difference(cycle, &of) < SAME_CYCLE
     });
     let slow = slow
         .and_then(|c| c.multiplier)

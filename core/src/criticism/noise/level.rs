@@ -67,11 +67,17 @@ fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
         .map(|(i, v)| v + quantum * (dither(i) - 0.5))
         .collect();
     let uniform = quantum * quantum / 12.0;
+    // Counting, print and arithmetic leave at least this.
+    let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * 1e-9;
+    let printed = resolution(values);
+    let floor = uniform
+        .max(printed * printed / 12.0)
+        .max(rounding * rounding);
     let groups = since_change(input);
     let smallest = least_level(places, &dithered, &groups);
     if let Some(mean_square) = mean_square_over_states(places, &dithered, &groups, smallest) {
         return Noise {
-            level: (mean_square - uniform).max(uniform).sqrt(),
+            level: (mean_square - uniform).max(floor).sqrt(),
             counted: false,
             step: quantum,
         };
@@ -89,14 +95,8 @@ fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
     } else {
         0.0
     };
-    let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * 1e-9;
-    let printed = resolution(values);
     Noise {
-        level: variance
-            .max(uniform)
-            .max(printed * printed / 12.0)
-            .max(rounding * rounding)
-            .sqrt(),
+        level: variance.max(floor).sqrt(),
         counted: false,
         step: quantum,
     }
