@@ -1,12 +1,11 @@
 //! Files as loggers, spreadsheets and programs write them are read at once, or refused with the words that read them.
 
-use std::fmt::Write as _;
-use std::path::Path;
-
+use crate::support::shared::shared;
 use hysteron_core::measurement::{
     ImportError, ImportOptions, Kind, Measurement, Period, columns, guess, import,
 };
 use proptest::prelude::*;
+use std::fmt::Write as _;
 
 fn read(text: &str) -> Result<Measurement, ImportError> {
     import("rig.csv", text.as_bytes(), &ImportOptions::default())
@@ -427,18 +426,10 @@ const FAILING: [(&str, &str); 7] = [
 
 #[test]
 fn files_from_real_work_are_read() {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/failing"));
-    if !folder.is_dir() {
-        assert!(
-            std::env::var_os("CI").is_none(),
-            "{} is not there",
-            folder.display()
-        );
-        println!("skipped: {} is not there", folder.display());
-        return;
-    }
     for (name, words) in FAILING {
-        let bytes = std::fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let Some(bytes) = shared(&format!("failing/{name}")) else {
+            continue;
+        };
         let m = if words.is_empty() {
             import(name, &bytes, &ImportOptions::default()).unwrap_or_else(|e| panic!("{e}"))
         } else {

@@ -1,5 +1,7 @@
 //! What a simulation of a drive writes, read again: the gap from the motor's side.
 
+use std::fmt::Write as _;
+
 use hysteron_core::backlash::{GapEstimate, Quality, backlash_map, estimate_gap};
 use hysteron_core::drive;
 use hysteron_core::measurement::{Measurement, import_csv};
@@ -14,7 +16,7 @@ fn record(text: &str) -> (usize, Measurement) {
     let mut csv = String::from("t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]\n");
     for (i, t) in run.time.iter().enumerate() {
         let (u, x1, v1, x2) = (run.input[i], run.x1[i], run.v1[i], run.x2[i]);
-        csv += &format!("{t},{u},{x1},{v1},{x2}\n");
+        writeln!(csv, "{t},{u},{x1},{v1},{x2}").unwrap();
     }
     let measurement = import_csv("simulated.csv", csv.as_bytes(), None).unwrap();
     (run.impacts(), measurement)

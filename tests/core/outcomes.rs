@@ -1,5 +1,6 @@
 //! What becomes of a loop: one word for it, and a sentence that holds.
 
+use crate::support::shared::shared;
 use hysteron_core::limit_cycle::{LongRunResult, Outcome, Prediction, predict};
 use hysteron_core::scenario::Scenario;
 
@@ -166,19 +167,9 @@ fn noise_below_and_above_the_hysteresis() {
     }
 }
 
-/// The text of a file in a folder of the project's sibling, which is not part of it: without it the test fails in CI and
-/// says so elsewhere.
-fn shared(path: &str) -> Option<String> {
-    let file = format!("{}/../../shared/{path}", env!("CARGO_MANIFEST_DIR"));
-    let found = std::fs::read_to_string(&file).ok();
-    assert!(
-        found.is_some() || std::env::var_os("CI").is_none(),
-        "{file} is missing"
-    );
-    if found.is_none() {
-        println!("skipped: {file} is missing");
-    }
-    found
+/// The text of a file beside the project.
+fn shared_text(path: &str) -> Option<String> {
+    shared(path).map(|bytes| String::from_utf8(bytes).unwrap())
 }
 
 #[test]
@@ -199,7 +190,7 @@ fn loops_of_an_independent_check_end_as_it_says() {
         ("fig-4-noise", Outcome::NoisyLimitCycle, "in the noise"),
         ("noise1", Outcome::Chatter, "chatters"),
     ] {
-        let Some(text) = shared(&format!("theory/{file}.toml")) else {
+        let Some(text) = shared_text(&format!("theory/{file}.toml")) else {
             return;
         };
         let (_, result) = outcome(&text);

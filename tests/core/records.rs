@@ -1,6 +1,11 @@
 //! What a record tells of itself: noise and steps of its sensors however they are printed, the operating point of a process, and
 //! which ways it went.
 
+#![allow(
+    clippy::large_types_passed_by_value,
+    reason = "definitions of rigs are plain values"
+)]
+
 use std::fmt::Write as _;
 
 use crate::support::diagnosis::{classes, finish};

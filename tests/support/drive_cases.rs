@@ -118,7 +118,64 @@ pub fn drive_cases(seed: u64) -> Vec<Case> {
     cases.extend(strangers(&mut random));
     cases.extend(sparse(&mut random));
     cases.push(met_again(&mut random));
+    cases.extend(held(&mut random));
     cases
+}
+
+/// What holds the motor at a place, and friction that is none of the plain kinds.
+fn held(r: &mut Random) -> Vec<Case> {
+    let (torque, stiffness, hard) = (
+        r.between(0.06, 0.1),
+        r.between(0.04, 0.06),
+        r.between(0.02, 0.04),
+    );
+    let (share, level, half) = (
+        r.between(0.15, 0.25),
+        r.between(0.03, 0.05),
+        r.between(2.0, 4.0),
+    );
+    let cases = [
+        (
+            "gravity",
+            MULTISINE,
+            Truth::new("gravity", &["a"], torque),
+            Stranger::Gravity { torque },
+        ),
+        (
+            "spring",
+            STAIRS,
+            Truth::new("return_spring", &["k"], stiffness),
+            Stranger::Spring { stiffness },
+        ),
+        (
+            "hardening spring",
+            STAIRS,
+            Truth::new("hardening_spring", &["k3"], hard),
+            Stranger::HardeningSpring { stiffness: hard },
+        ),
+        (
+            "load-dependent friction",
+            MULTISINE,
+            Truth::new("load_dependent_friction", &["m"], share),
+            Stranger::LoadFriction { share },
+        ),
+        (
+            "flattening friction",
+            MULTISINE,
+            Truth::new("flattening_friction", &["c"], level),
+            Stranger::FlatteningFriction { level, half },
+        ),
+    ];
+    cases
+        .into_iter()
+        .map(|(name, excitation, truth, stranger)| {
+            let rig = DriveRig {
+                stranger: Some(stranger),
+                ..bare(r, excitation)
+            };
+            Case::drive(name, vec![truth], rig)
+        })
+        .collect()
 }
 
 /// A gap of which no drift tells: motor and load meet again and again.
@@ -570,11 +627,6 @@ fn strangers(r: &mut Random) -> Vec<Case> {
                 centre: 8.0,
                 width: 1.5,
             },
-        ),
-        (
-            "unknown: spring",
-            STAIRS,
-            Stranger::Spring { stiffness: 0.05 },
         ),
         (
             "unknown: warming",

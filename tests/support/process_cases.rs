@@ -64,7 +64,18 @@ pub fn process_cases(seed: u64) -> Vec<Case> {
     cases.extend(pairs(&mut random));
     cases.extend(strangers(&mut random));
     cases.extend(valve(&mut random));
+    cases.push(emptying(&mut random));
     cases
+}
+
+/// A tank that empties through a hole.
+fn emptying(r: &mut Random) -> Case {
+    let flow = r.between(0.3, 0.5);
+    let rig = ProcessRig {
+        stranger: Some(Stranger::Outflow { flow }),
+        ..bare(r, STAIRS)
+    };
+    Case::process("outflow", vec![Truth::new("outflow", &["a"], flow)], rig)
 }
 
 /// The valve opens more on one side than on the other.

@@ -19,6 +19,9 @@ const CLEAR_OF_NOISE: f64 = 6.0;
 /// Share of the moving samples that may go the other way, by noise.
 const OTHER_WAY: f64 = 0.01;
 
+/// Share of the samples at rest from which on the rests tell friction from a load.
+const AT_REST: f64 = 0.2;
+
 /// Size of an effect that is looked at, as a share of its typical size.
 const SIZE: f64 = 0.1;
 
@@ -52,6 +55,10 @@ impl OneWay {
         let (forward, back) = (count(1.0), count(-1.0));
         let rare = OTHER_WAY * (forward + back) as f64;
         if forward.min(back) as f64 > rare || forward + back == 0 {
+            return None;
+        }
+        // What holds a drive at rest is friction: there a load alone would turn it back.
+        if forward + back < data.len() - (AT_REST * data.len() as f64) as usize {
             return None;
         }
         let side = if forward > back { 1.0 } else { -1.0 };

@@ -24,7 +24,7 @@ use crate::diagnosis::{
 };
 use crate::effect::{
     self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
-    Scales, SeenGap,
+    Rubbing, Scales, SeenGap,
     baseline::{self, Baseline},
 };
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
@@ -120,7 +120,7 @@ pub(super) struct Session {
     pub scout: Data,
     pub scales: Scales,
     /// The body that moves, where the baseline had run off from it.
-    held: Option<[f64; 2]>,
+    pub held: Option<Rubbing>,
     /// Inertia and viscous friction of a drive that the screen told.
     screened_body: Option<[f64; 2]>,
     /// What models that were met leave unexplained.
@@ -155,8 +155,10 @@ impl Session {
             .unwrap_or_else(|| data.baseline.unknown());
         let screening = screen(measurement);
         let screened_body = told_body(&screening);
-        let guessed = || data.baseline.body(&guess).into();
-        let [inertia, viscous] = screened_body.unwrap_or_else(guessed);
+        // Where a regression sample by sample has run off, sizes are those that the weak form tells.
+        let guessed: [f64; 2] = data.baseline.body(&guess).into();
+        let run_off = |body: &[f64; 2]| far_apart(body[0], guessed[0]);
+        let [inertia, viscous] = screened_body.filter(run_off).unwrap_or(guessed);
         let scales = data.scales(inertia, viscous);
         let knowledge = Knowledge::of(model).with_felt_gap(gap.map(felt_gap));
         hold_back(&mut data, &knowledge, guess, &scales);
@@ -303,15 +305,17 @@ impl Session {
             return false;
         }
         if self.knowledge.find(None, baseline::INERTIA).is_none() {
+            let balanced = self.probed(fit).probe.other_body(fit.values[0]);
             let other = |body: &[f64; 2]| far_apart(body[0], fit.values[0]);
-            let balanced = || {
-                let other = self.probed(fit).probe.other_body(fit.values[0]);
-                other.map(|found| found.body)
+            let screened = || {
+                self.screened_body
+                    .filter(other)
+                    .map(|body| Rubbing { body, load: 0.0 })
             };
-            self.held = self.screened_body.filter(other).or_else(balanced);
+            self.held = balanced.or_else(screened);
         }
         let (inertia, viscous) = self.data.baseline.body(&fit.values);
-        if let Some(body) = self.held {
+        if let Some(Rubbing { body, .. }) = self.held {
             self.scales = Scales {
                 inertia_factor: HELD_FACTOR,
                 ..self.whole().scales(body[0], body[1])

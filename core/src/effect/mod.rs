@@ -73,15 +73,17 @@ pub fn registry() -> &'static [&'static dyn Effect] {
         &hardening_spring::HardeningSpring,
         &load_dependent_friction::LoadDependentFriction,
         &flattening_friction::FlatteningFriction,
-        &nonlinear_loss::NonlinearLoss,
         &outflow::Outflow,
     ]
 }
 
-/// Effects that only the screen looks for: in motion, friction that differs by direction is dry friction with a constant
-/// load, so that a diagnosis which named one of these would have to name both.
+/// Effects that only the screen looks for, since a diagnosis has them under another name: in motion, friction that differs by
+/// direction is dry friction with a constant load, and a loss that grows is a static curvature of the balance.
 fn screened_only() -> &'static [&'static dyn Effect] {
-    &[&directional_friction::DirectionalFriction]
+    &[
+        &directional_friction::DirectionalFriction,
+        &nonlinear_loss::NonlinearLoss,
+    ]
 }
 
 /// Every effect that the screen looks for, in the order in which equals are listed.

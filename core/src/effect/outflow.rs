@@ -42,7 +42,7 @@ impl Effect for Outflow {
             symbol: "a",
             label: "outflow at a level of one",
             dimension: Dimension::Outflow,
-            range: Range::Signed,
+            range: Range::NonNegative,
         }]
     }
 

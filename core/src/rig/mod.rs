@@ -177,6 +177,28 @@ pub enum Stranger {
         /// N m/rad.
         stiffness: f64,
     },
+    /// An arm that hangs down at the start, N m.
+    Gravity {
+        /// Largest torque, N m.
+        torque: f64,
+    },
+    /// A spring to the start that hardens, N m/rad^3.
+    HardeningSpring {
+        /// N m/rad^3.
+        stiffness: f64,
+    },
+    /// Teeth that rub with a share of what the motor pushes.
+    LoadFriction {
+        /// 0 to 1.
+        share: f64,
+    },
+    /// Friction that grows from 0 to its level, half of it at this speed.
+    FlatteningFriction {
+        /// N m.
+        level: f64,
+        /// rad/s.
+        half: f64,
+    },
     /// The viscous friction grows by this factor until the end of the record.
     Warming {
         /// Of the growth.

@@ -65,6 +65,11 @@ pub enum Stranger {
         /// Its time constant, s.
         time: f64,
     },
+    /// A tank that empties through a hole: this outflow, in the unit of the input, at a level of one.
+    Outflow {
+        /// In the unit of the input.
+        flow: f64,
+    },
     /// The time constant depends on the direction.
     SlowFall {
         /// Of the time constant when falling.
@@ -220,6 +225,7 @@ impl ProcessRig {
             Some(Stranger::Swing { amplitude, period }) => {
                 push += amplitude * libm::sin(std::f64::consts::TAU * t / period);
             }
+            Some(Stranger::Outflow { flow }) => push -= flow * s[0].max(0.0).sqrt(),
             Some(Stranger::GainSteps { factor }) if t > 0.5 * self.samples as f64 * SAMPLING => {
                 gain *= factor;
             }

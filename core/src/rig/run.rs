@@ -7,6 +7,9 @@ use super::{
 };
 use crate::measurement::{Channel, Kind, Measurement, Quantity};
 
+/// Speed over which friction that grows with the load turns round, rad/s.
+const BLUNT: f64 = 0.005;
+
 /// Everything that moves.
 #[derive(Clone, Copy, Default)]
 struct State {
@@ -135,7 +138,7 @@ impl DriveRig {
         out
     }
 
-    /// Torque on the motor that is in no library.
+    /// Torque on the motor beside friction, load and amplifier.
     fn strange_torque(&self, mid: &State, drive: f64, t: f64) -> f64 {
         match self.stranger {
             Some(Stranger::Pulse {
@@ -150,6 +153,14 @@ impl DriveRig {
                 width,
             }) => -mid.v1.signum() * torque * libm::exp(-((mid.v1.abs() - centre) / width).powi(2)),
             Some(Stranger::Spring { stiffness }) => -stiffness * mid.x1,
+            Some(Stranger::Gravity { torque }) => -torque * libm::sin(mid.x1),
+            Some(Stranger::HardeningSpring { stiffness }) => -stiffness * mid.x1.powi(3),
+            Some(Stranger::LoadFriction { share }) => {
+                -libm::tanh(mid.v1 / BLUNT) * share * drive.abs()
+            }
+            Some(Stranger::FlatteningFriction { level, half }) => {
+                -level * mid.v1 / (mid.v1.abs() + half)
+            }
             Some(Stranger::Warming { factor }) => {
                 -self.viscous * factor * t / (self.samples as f64 * self.sampling) * mid.v1
             }

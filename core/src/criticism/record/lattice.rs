@@ -172,7 +172,7 @@ mod tests {
         let values: Vec<f64> = (0..900)
             .map(|i| 160 + (40.0 * libm::sin(0.02 * f64::from(i))) as i32)
             .enumerate()
-            .map(|(i, k)| 0.5 * (sensor(k) + sensor(k + (i * i % 3) as i32)))
+            .map(|(i, k)| 0.5 * (sensor(k) + sensor(k + i32::try_from(i * i % 3).unwrap_or(0))))
             .collect();
         let found = lattice(&values);
         assert!((found * 32.0 - 1.0).abs() < 1e-2, "{found}");

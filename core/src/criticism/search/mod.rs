@@ -1,5 +1,6 @@
 //! Finding the best fit of one structure from several starting points.
 
+mod pair;
 mod points;
 mod screened;
 

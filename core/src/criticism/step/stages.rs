@@ -18,7 +18,11 @@ impl StepJob {
     /// The effects that the screen found, together: what shows only so is found without detours.
     pub(super) fn screened_stage(&mut self) -> Stage {
         let bare = self.model.as_ref().filter(|_| self.wanted.is_empty());
-        let searches = bare.map(|model| Search::screened(&self.session, &model.fit));
+        let searches = bare.map(|model| {
+            let held = Search::rubbing_under_load(&self.session, &model.fit);
+            let screened = Search::screened(&self.session, &model.fit);
+            held.into_iter().chain(screened).collect::<Vec<_>>()
+        });
         let searches = searches.filter(|searches| !searches.is_empty());
         searches.map_or_else(|| self.try_stage(), |all| Stage::Screened(all.into()))
     }
