@@ -84,8 +84,7 @@ fn a_spring_is_no_random_force_and_no_friction() {
                 spring,
             },
         ));
-        assert!(d.verdict.unknown, "{}", d.verdict.text);
-        assert_eq!(classes(&d), [[""; 0]; 0], "{}", d.verdict.text);
+        assert_eq!(classes(&d), [["return_spring"]], "{}", d.verdict.text);
         assert!(!d.verdict.text.contains(SAID), "{}", d.verdict.text);
     }
 }

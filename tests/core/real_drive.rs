@@ -27,8 +27,10 @@ fn the_positioning_system_has_dry_friction_and_an_offset() {
     let d = finish(DiagnosisJob::new(&measurement).unwrap());
     let found = classes(&d);
     assert_eq!(found.len(), 2, "{}", d.verdict.text);
-    assert!(found[0].contains(&"coulomb_friction"), "{}", d.verdict.text);
-    assert!(found[1].contains(&"constant_load"), "{}", d.verdict.text);
+    for effect in ["coulomb_friction", "constant_load"] {
+        let named = found.iter().any(|class| class.contains(&effect));
+        assert!(named, "{effect}: {}", d.verdict.text);
+    }
     let last = d.steps.last().unwrap();
     for (symbol, identified, tolerance) in [
         ("J1", 95.1089, 0.05),

@@ -8,8 +8,7 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{
-    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Parameter, Step, Subset,
-    Verdict,
+    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Parameter, Step, Verdict,
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
@@ -296,21 +295,6 @@ pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck) {
         verdict.text.clone_from(&check.text);
     } else {
         verdict.text = format!("{} {}", check.text, verdict.text);
-    }
-}
-
-/// Where nothing explains the rest, says what the screen finds without a simulation, the likeliest first.
-pub(super) fn add_screened(verdict: &mut Verdict, check: &InputCheck, screened: &[Subset]) {
-    let found = screened
-        .first()
-        .filter(|_| check.verdict == InputVerdict::Ok && verdict.unknown);
-    if let Some(subset) = found {
-        let _ = write!(
-            verdict.text,
-            " The balance of momentum alone would want {}, and then misses {:.0} % of the force.",
-            names(&subset.effects, " with "),
-            100.0 * subset.left
-        );
     }
 }
 

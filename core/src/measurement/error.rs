@@ -131,6 +131,11 @@ pub enum Problem {
         "the HDF5 file is damaged, or has what is not read here: {what}; save it from MATLAB with -v7"
     )]
     Hdf5Damaged { what: String },
+    #[cfg(target_arch = "wasm32")]
+    #[error(
+        "a MATLAB v7.3 file (HDF5), which the page does not read; save it with -v7, or open it in the desktop app"
+    )]
+    Hdf5OnPage,
     #[error("what begins at byte {byte} of the MAT-file is damaged; expected {expected} in it")]
     MatDamaged { byte: usize, expected: &'static str },
     #[error("the file unpacks to more than {mebibytes} MiB; save only the variables needed")]

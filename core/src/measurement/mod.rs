@@ -12,6 +12,7 @@ mod csv;
 mod error;
 mod found;
 mod guess;
+#[cfg(not(target_arch = "wasm32"))]
 mod hdf5;
 mod header;
 mod json;

@@ -8,7 +8,7 @@ use super::mapping::ImportOptions;
 use super::mat::{self, Format};
 use super::series::Table;
 use super::{Kind, MIN_SAMPLES, Measurement};
-use super::{found, hdf5, json, log, text};
+use super::{found, json, log, text};
 
 /// Reads a measurement, by what the file is and not by its name: a text with columns, JSON (an array or lines of
 /// objects, or an object of arrays), lines of names with values (`t: 0.01 u: 3`), or a file of MATLAB (`save -v6`, `-v7`
@@ -77,7 +77,10 @@ fn table(bytes: &[u8]) -> Result<Option<Table>, text::Located> {
         named: false,
     };
     match mat::format_of(bytes) {
-        Format::Hdf5 => Ok(Some(of_matlab(hdf5::read(bytes).map_err(whole)?))),
+        #[cfg(not(target_arch = "wasm32"))]
+        Format::Hdf5 => Ok(Some(of_matlab(super::hdf5::read(bytes).map_err(whole)?))),
+        #[cfg(target_arch = "wasm32")]
+        Format::Hdf5 => Err(whole(Problem::Hdf5OnPage)),
         Format::Mat4 => Err(whole(Problem::Mat4)),
         Format::Mat5 => Ok(Some(of_matlab(mat::read(bytes).map_err(whole)?))),
         Format::Other => {

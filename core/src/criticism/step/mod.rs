@@ -434,7 +434,7 @@ impl StepJob {
         let wanted = self.wanted.len().max(1) as f64;
         match &self.stage {
             Stage::Build { search, .. } => (0.1 * search.scanned(), "Fitting the model".to_owned()),
-            Stage::Screened(_) => (0.1, "Fitting what the screen found".to_owned()),
+            Stage::Screened(_) => (0.1, "Fitting the model".to_owned()),
             Stage::Record(race) | Stage::Try(race) => {
                 let (share, name) = race.progress();
                 (0.1 + 0.6 * share, format!("Trying: {name}"))

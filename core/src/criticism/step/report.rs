@@ -11,7 +11,7 @@ use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
     add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations,
-    add_input_check, add_integrating, add_limited, add_pauses, add_rest, add_screened, verdict,
+    add_input_check, add_integrating, add_limited, add_pauses, add_rest, verdict,
 };
 use crate::diagnosis::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
@@ -73,11 +73,6 @@ impl StepJob {
                 add_experiments(&mut verdict, &self.experiments);
             }
             add_input_check(&mut verdict, &self.session.input_check);
-            add_screened(
-                &mut verdict,
-                &self.session.input_check,
-                &self.session.screened,
-            );
             add_glitches(&mut verdict, self.session.whole().glitches);
             add_pauses(&mut verdict, self.session.whole().pauses);
             add_held(&mut verdict, self.session.whole());
