@@ -1,6 +1,6 @@
 //! Logs of auto-tuners in firmwares and home controllers, after their public documentation.
 //!
-//! Where a log holds the temperatures and the heater's power, it is a [`Record`]; else what its tuner read off the cycle
+//! Where a log holds the temperatures and the heater's power, it is a `Record`; else what its tuner read off the cycle
 //! is taken, never the gains that it computed, but for where nothing else is in it.
 
 mod esphome;
