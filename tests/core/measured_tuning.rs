@@ -464,7 +464,7 @@ fn heaters_of_others_give_their_models() {
         let best = &result.models[0];
         assert_eq!(best.structure, Structure::Sopdt, "{}", result.text);
         let [long, short] = [best.time_constants[0], best.time_constants[1]];
-        // The room drifts as the heater runs, which no lag has: the model is off by more than its own errors say.
+        // Within 15 %: the stated error of the time constant does not cover the known value, and why is not known yet.
         for (value, known) in [(best.gain, 135.0), (long, 568.0), (short, 42.0)] {
             assert!(
                 (value.value / known - 1.0).abs() < 0.15,
