@@ -71,7 +71,7 @@ const CRITICISM: &str = "criticism";
 const KNOWN_CIRCLES: &[&str] = &[];
 const KNOWN_UPWARD: &[(&str, &str)] = &[];
 const KNOWN_PAGES: &[&str] = &[];
-const KNOWN_EFFECTS: &[&str] = &["diagnosis"];
+const KNOWN_EFFECTS: &[&str] = &[];
 
 /// Where the app's pages stand, a folder each, and the files there that are no page.
 const PAGES: &str = "app/src/pages/";
