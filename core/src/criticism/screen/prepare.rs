@@ -199,7 +199,7 @@ impl Builder<'_> {
                 extent: &self.extent,
                 coefficients: &found.coefficients[..atom.free.len()],
             };
-            (kind_of.values)(&solved)?;
+            kind_of.read(&solved)?;
             let left = reduced.loss(&w) / unit(self.kind, &w);
             left.is_finite().then_some(left)
         };
@@ -464,7 +464,7 @@ impl Builder<'_> {
             extent: &self.extent,
             coefficients: &found.coefficients[..own.free.len()],
         };
-        if (atom.values)(&solved).is_none() {
+        if atom.read(&solved).is_none() {
             return f64::INFINITY;
         }
         reduced.loss(&w) / unit(self.kind, &w)
