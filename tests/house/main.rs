@@ -22,12 +22,14 @@ use imports::{Imports, circles, imports as imports_of};
 use tree::{Tree, crates_in};
 
 /// Rooms of core, lowest first, then those of the app: a file imports from its own room and from rooms before it.
-const ROOMS: [&str; 34] = [
+const ROOMS: [&str; 36] = [
     // small numerics, no physics
     "order",
     "sums",
     "simplex",
     "root",
+    "random",
+    "curve",
     "exponential",
     "crew",
     "packed",

@@ -93,7 +93,7 @@ fn contradiction(
     error: f64,
 ) -> Verdict {
     for c in &contradicted {
-        let unit = shown_unit(if c.unit == "1" { "" } else { &c.unit });
+        let unit = shown_unit(&c.unit);
         let _ = write!(
             text,
             "The model holds {} = {:.4e} {unit}, but these data want {}. ",
