@@ -118,7 +118,7 @@ const NOT_DRAWN: [&str; 29] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 36] = [
+const NO_TEXTS: [&str; 35] = [
     "Crew",
     "Downloads",
     "hysteron files",
@@ -147,7 +147,6 @@ const NO_TEXTS: [&str; 36] = [
     "the message of each says it",
     "no numbers",
     "MNm",
-    "the type of Atom::values",
     "the room is named after its trait",
     // Names that files give, and what the reader of JSON says, which is put into our sentence as it is.
     "sample time",

@@ -9,6 +9,7 @@
     reason = "the core neither prints nor reads files; this test does"
 )]
 
+mod guides;
 mod imports;
 mod made_up;
 mod tree;
