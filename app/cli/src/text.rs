@@ -34,6 +34,9 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     for note in notes {
         bullet(&mut out, note);
     }
+    for overruled in &diagnosis.verdict.overruled {
+        bullet(&mut out, &overruled.words());
+    }
     for noise in &diagnosis.noise {
         bullet(&mut out, &noise.words());
     }

@@ -8,7 +8,8 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{
-    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Parameter, Step, Verdict,
+    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Overruled, Parameter, Step,
+    Verdict,
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
@@ -49,7 +50,7 @@ pub(super) fn verdict(
     if !contradicted.is_empty() {
         return Verdict {
             complete,
-            ..contradiction(missing, contradicted, text, model.score.error)
+            ..contradiction(missing, contradicted, &text, model.score.error)
         };
     }
     text.push_str(match (missing.is_empty(), complete) {
@@ -72,6 +73,7 @@ pub(super) fn verdict(
         next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
         experiments: Vec::new(),
         contradicted,
+        overruled: Vec::new(),
         text,
     }
 }
@@ -89,9 +91,10 @@ fn listed(what: &str, classes: &[Vec<EffectId>], parameters: &[Parameter]) -> St
 fn contradiction(
     missing: Vec<Vec<EffectId>>,
     contradicted: Vec<Contradiction>,
-    mut text: String,
+    listed: &str,
     error: f64,
 ) -> Verdict {
+    let mut text = String::new();
     for c in &contradicted {
         let unit = shown_unit(&c.unit);
         let _ = write!(
@@ -102,6 +105,7 @@ fn contradiction(
             with_error(c.wanted, c.std_error, &unit)
         );
     }
+    text.push_str(listed);
     let released = contradicted.first().map_or(error, |c| c.error);
     if released < error {
         let _ = write!(
@@ -119,8 +123,29 @@ fn contradiction(
         next_experiment: None,
         experiments: Vec::new(),
         contradicted,
+        overruled: Vec::new(),
         text,
     }
+}
+
+/// Says first and last which values the data have overruled; what they contradict is said already.
+pub(super) fn add_overruled(verdict: &mut Verdict, overruled: Vec<Overruled>) {
+    let said = |o: &&Overruled| {
+        let mut all = verdict.contradicted.iter();
+        !all.any(|c| (c.effect, &c.name) == (o.effect, &o.name))
+    };
+    let new: Vec<&Overruled> = overruled.iter().filter(said).collect();
+    if !new.is_empty() {
+        let first: Vec<String> = new.iter().map(|o| o.words()).collect();
+        let names: Vec<&str> = new.iter().map(|o| o.name.as_str()).collect();
+        verdict.text = format!(
+            "{} {} All this holds with another value than the one that was given: {}.",
+            first.join(" "),
+            verdict.text,
+            names.join(", ")
+        );
+    }
+    verdict.overruled = overruled;
 }
 
 /// Says how much is left of what was there at `first` where that is more than plain noise, and, of a verdict that
@@ -350,6 +375,7 @@ pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
         next_experiment: None,
         experiments: Vec::new(),
         contradicted: Vec::new(),
+        overruled: Vec::new(),
         text: "Many effects help a little and none explains the rest: the model structure itself may be wrong.".to_owned(),
     }
 }
