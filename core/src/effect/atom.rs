@@ -88,6 +88,18 @@ pub enum Part {
     Input(fn(&Track, &Shape) -> Vec<f64>),
     /// Columns that depend on the course of the motion, such as the force that a second body needs.
     Motion(fn(&Track, &Shape) -> Vec<Series>),
+    /// One column: a force of a user's own formula.
+    Own(Own),
+}
+
+/// A force as a function of the moment, made while the program runs.
+#[derive(Clone, Copy)]
+pub struct Own(pub &'static (dyn Fn(&Moment) -> f64 + Sync));
+
+impl std::fmt::Debug for Own {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Own")
+    }
 }
 
 /// What a regression found of an atom.

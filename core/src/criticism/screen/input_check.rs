@@ -90,7 +90,7 @@ fn closed(made: &Controller, explained: bool) -> String {
 fn turned(signals: &Signals, widths: &[Width]) -> Option<f64> {
     let mut other = signals.clone();
     other.input.iter_mut().for_each(|u| *u = -*u);
-    let prepared = Prepared::new(&other, widths);
+    let prepared = Prepared::new(&other, widths, &[]);
     let bench = prepared.bench();
     let tried = bench.all();
     (!tried.is_empty()).then(|| left(&bench, &tried))
