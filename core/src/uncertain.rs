@@ -76,10 +76,30 @@ pub fn with_uncertainty(value: f64, error: f64) -> Option<String> {
     })
 }
 
-/// A value with its error and unit; alone where the error is not known.
+/// A value with its error and unit, alone where the error is not known; and that the record does not tell it, where it
+/// does not.
 pub fn with_error(value: f64, error: f64, unit: &str) -> String {
+    let text = in_table(value, error, unit);
+    if is_told(value, error) {
+        text
+    } else {
+        format!("{text} ({NOT_TOLD})")
+    }
+}
+
+/// The same for a table that has another place for the words.
+pub fn in_table(value: f64, error: f64, unit: &str) -> String {
     let text = with_uncertainty(value, error).unwrap_or_else(|| alone(value));
     in_unit(text, unit)
+}
+
+/// What is said of a value that is not told.
+pub const NOT_TOLD: &str = "not told by this record";
+
+/// Whether a record tells a value: its standard error is no larger than it is.
+pub fn is_told(value: f64, error: f64) -> bool {
+    // No error is known of a value that is held.
+    error.is_nan() || error <= value.abs()
 }
 
 /// A value with the digits and in the notation in which [`with_error`] writes another value and its error.
@@ -217,6 +237,18 @@ mod tests {
             interval(8.8e-4, 4.2e-9, 2.0, "kg m^2"),
             "8.799916e-4 to 8.800084e-4 kg m²"
         );
+    }
+
+    #[test]
+    fn a_value_within_its_error_is_said_not_to_be_told() {
+        assert_eq!(
+            with_error(0.54, 0.81, "s"),
+            "0.54 ± 0.81 s (not told by this record)"
+        );
+        assert_eq!(in_table(0.54, 0.81, "s"), "0.54 ± 0.81 s");
+        assert_eq!(with_error(-0.81, 0.54, "s"), "-0.81 ± 0.54 s");
+        assert_eq!(with_error(2.0, f64::NAN, "1"), "2");
+        assert!(is_told(0.0, 0.0) && !is_told(3.0, f64::INFINITY));
     }
 
     #[test]

@@ -2,10 +2,12 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::diagnosis::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
+use hysteron_core::diagnosis::{
+    Candidate, Diagnosis, InputCheck, InputVerdict, NextExperiment, Parameter, Step,
+};
 use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
-use hysteron_core::uncertain::{brief, in_words, shown_unit};
+use hysteron_core::uncertain::{NOT_TOLD, brief, in_words, shown_unit};
 
 const WIDTH: usize = 80;
 
@@ -33,6 +35,11 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     );
     for note in notes {
         bullet(&mut out, note);
+    }
+    let doubted =
+        |check: &&InputCheck| check.verdict != InputVerdict::Ok && !diagnosis.verdict.complete;
+    if let Some(check) = diagnosis.input_check.as_ref().filter(doubted) {
+        bullet(&mut out, &check.text);
     }
     for overruled in &diagnosis.verdict.overruled {
         bullet(&mut out, &overruled.words());
@@ -166,6 +173,19 @@ fn parameters(out: &mut String, list: &[&Parameter]) {
         line(
             out,
             &format!("  {n:<name$}  {l:<label$}  {v:>value$} {unit}"),
+        );
+    }
+    let untold: Vec<&str> = list
+        .iter()
+        .filter(|p| !p.is_told())
+        .map(|p| p.name.as_str())
+        .collect();
+    if !untold.is_empty() {
+        let names = untold.join(", ");
+        paragraph(
+            out,
+            "  ",
+            &format!("The errors of these are larger than they are, {NOT_TOLD}: {names}."),
         );
     }
 }

@@ -301,13 +301,14 @@ pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
 }
 
 /// Says first where the input does not explain the motion: where its sign is turned or it follows the output, no physics is
-/// named, for that would be physics of another machine. A model that leaves noise alone has explained the motion, and one with
-/// effects that help a part of it.
+/// named, for that would be physics of another machine. A model that leaves noise alone has explained the motion.
 pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck) {
     let leads = match check.verdict {
         InputVerdict::Ok => false,
-        InputVerdict::DoesNotExplain => verdict.missing.is_empty(),
-        InputVerdict::InertiaNotTold | InputVerdict::Sign | InputVerdict::ClosedLoop => true,
+        InputVerdict::DoesNotExplain
+        | InputVerdict::InertiaNotTold
+        | InputVerdict::Sign
+        | InputVerdict::ClosedLoop => true,
     };
     if verdict.complete || !leads {
         return;

@@ -98,7 +98,7 @@ pub struct Own(pub &'static (dyn Fn(&Moment) -> f64 + Sync));
 
 impl std::fmt::Debug for Own {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Own")
+        f.write_str("own")
     }
 }
 
