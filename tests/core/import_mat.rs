@@ -410,13 +410,9 @@ fn timeseries_are_read_by_the_words_of_the_message() {
         ("sig_volt", time.clone(), volt.clone()),
         ("sig_speed", time.clone(), speed.clone()),
     ]);
-    let map = "t=sig_speed.Time, u=sig_volt.Data [V], v1=sig_speed.Data [rad/s]";
+    let map = "t=sig_volt.Time [s], u=sig_volt.Data [V], v1=sig_speed.Data [rad/s]";
     refused(&bytes, "", None, &[&format!("--map \"{map}\"")]);
-    let m = read(
-        &bytes,
-        &map.replace("t=sig_speed.Time", "t=sig_speed.Time [s]"),
-        None,
-    );
+    let m = read(&bytes, map, None);
     assert_eq!((m.time, m.input.values), (time, volt));
     assert_eq!(m.outputs[0].values, speed);
 }

@@ -60,7 +60,7 @@ pub(super) fn checked(
         if tells_while_calm(signals, widths) {
             return say(InputVerdict::Ok, AT_TIMES.to_owned());
         }
-    } else if may_explain(bench) {
+    } else if changes_seldom(signals, bench) || may_explain(bench) {
         return say(InputVerdict::InertiaNotTold, TOO_LITTLE.to_owned());
     }
     let reason = late(signals, widths, left).map_or_else(
@@ -109,6 +109,17 @@ fn tells_while_calm(signals: &Signals, widths: &[Width]) -> bool {
         let fit = Fit::new(&gram, &[vec![ACCELERATION], vec![VELOCITY], vec![INPUT]]);
         fit.is_some_and(|fit| fit.w[0] > TOLD * fit.error(0))
     })
+}
+
+/// Whether the input changes in fewer blocks of the record than the body has numbers: one step says too little to test
+/// whether the output follows it.
+fn changes_seldom(signals: &Signals, bench: &Bench) -> bool {
+    let input = &signals.input;
+    let changes = (1..input.len()).filter(|i| input[*i] != input[i - 1]);
+    let mut blocks: Vec<usize> = changes.map(|i| i * BLOCKS / input.len()).collect();
+    blocks.dedup();
+    let numbers = bench.elements(&[]).len() - 1;
+    blocks.len() < numbers
 }
 
 /// Whether the input of a process, with an effect as far from the one found as chance may put it, would make as much of the
