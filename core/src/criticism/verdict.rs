@@ -13,7 +13,7 @@ use crate::diagnosis::{
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
-use crate::uncertain::{shown_unit, with_error};
+use crate::uncertain::{in_unit, with_error};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -96,13 +96,12 @@ fn contradiction(
 ) -> Verdict {
     let mut text = String::new();
     for c in &contradicted {
-        let unit = shown_unit(&c.unit);
         let _ = write!(
             text,
-            "The model holds {} = {:.4e} {unit}, but these data want {}. ",
+            "The model holds {} = {}, but these data want {}. ",
             c.name,
-            c.held,
-            with_error(c.wanted, c.std_error, &unit)
+            in_unit(format!("{:.4e}", c.held), &c.unit),
+            with_error(c.wanted, c.std_error, &c.unit)
         );
     }
     text.push_str(listed);
