@@ -1,6 +1,6 @@
 //! A fitted parameter, and how well it is known.
 
-use serde::ser::SerializeStruct as _;
+use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::effect::EffectId;
@@ -56,16 +56,16 @@ impl Parameter {
 impl Serialize for Parameter {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let fields = 7 + usize::from(!self.status.is_free());
-        let mut out = serializer.serialize_struct("Parameter", fields)?;
-        out.serialize_field("effect", &self.effect)?;
-        out.serialize_field("name", &self.name)?;
-        out.serialize_field("label", &self.label)?;
-        out.serialize_field("value", &self.value)?;
-        out.serialize_field("std_error", &self.std_error)?;
-        out.serialize_field("unit", &self.unit)?;
-        out.serialize_field("told", &self.is_told())?;
+        let mut out = serializer.serialize_map(Some(fields))?;
+        out.serialize_entry("effect", &self.effect)?;
+        out.serialize_entry("name", &self.name)?;
+        out.serialize_entry("label", &self.label)?;
+        out.serialize_entry("value", &self.value)?;
+        out.serialize_entry("std_error", &self.std_error)?;
+        out.serialize_entry("unit", &self.unit)?;
+        out.serialize_entry("told", &self.is_told())?;
         if !self.status.is_free() {
-            out.serialize_field("status", &self.status)?;
+            out.serialize_entry("status", &self.status)?;
         }
         out.end()
     }
