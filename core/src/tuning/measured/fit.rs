@@ -365,7 +365,9 @@ impl Compared {
             }
             jacobian.push(change);
         }
-        let variance = rss / n.saturating_sub(parameters).max(1) as f64 * coherence(&residuals);
+        // Residuals that hang together are few samples, and every parameter uses one of them up.
+        let free = n as f64 / coherence(&residuals) - parameters as f64;
+        let variance = rss / free.max(1.0);
         let full = inverse_gram(&jacobian)? * variance;
         // What matters outside: forced coefficients and searched parameters.
         let kept: Vec<usize> = (0..forced)
