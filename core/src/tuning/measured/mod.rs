@@ -12,6 +12,8 @@
 //! | `response` | exact responses of lags and integrators to a held input with dead time |
 //! | `structure` | lags, integrators, a zero: what a model consists of |
 //! | `least_squares` | linear least squares, residuals that hang together |
+//! | `compared` | the record as the fits see it |
+//! | `wander` | residuals that wander |
 //! | `fit` | models by least squares on the whole record |
 //! | `fourier` | the point of the Nyquist curve |
 //! | `ultimate` | ultimate gain and period, where they follow |
@@ -23,6 +25,7 @@
 //!
 //! **Amplitude** is half of peak to peak everywhere.
 
+mod compared;
 mod cycle;
 mod fit;
 mod fourier;
@@ -37,6 +40,7 @@ mod response;
 mod structure;
 mod trouble;
 mod ultimate;
+mod wander;
 
 pub use cycle::Cycle;
 pub use fourier::Point;

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use super::compared::Compared;
 use super::cycle::{self, Cycle};
-use super::fit::Compared;
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
 use super::number::{full_scale, number};
