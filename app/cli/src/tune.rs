@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use hysteron_core::measurement::{ImportOptions, Kind, Mapping, import};
+use hysteron_core::measurement::{self, ImportOptions, Mapping, Period, TorqueConstant, import};
 use hysteron_core::tuning::measured::log::{self, Log};
 use hysteron_core::tuning::measured::{
     AmplitudeConvention, FittedModel, Form, MeasuredTuning, Readings, Record, Settings, TunedGains,
@@ -12,6 +12,7 @@ use hysteron_core::tuning::measured::{
 };
 use serde_json::json;
 
+use crate::arguments::Kind;
 use crate::output::Format;
 
 /// Version of the JSON object.
@@ -31,9 +32,9 @@ pub struct Arguments {
     /// The amplitude was read from peak to peak
     #[arg(long, requires = "amplitude")]
     peak_to_peak: bool,
-    /// Period of the oscillation, s
-    #[arg(long, value_name = "S", conflicts_with = "file")]
-    period: Option<f64>,
+    /// Period of the oscillation, s; of a file without a time column its sampling period, such as 4s or 250Hz
+    #[arg(long, value_name = "PERIOD")]
+    period: Option<String>,
     /// Input while the relay is down and up
     #[arg(
         long,
@@ -57,9 +58,15 @@ pub struct Arguments {
     /// Set point of the test, in the unit of the output
     #[arg(long, value_name = "Y", allow_hyphen_values = true)]
     target: Option<f64>,
-    /// Which column is what: t, u, y, its name in the file, its unit
+    /// Drive or process; guessed from the columns if not given
+    #[arg(long, value_enum)]
+    kind: Option<Kind>,
+    /// Which column is what: t, u, y, its name in the file (- before it turns the sign), its unit
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     map: Option<Mapping>,
+    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    torque_constant: Option<TorqueConstant>,
     /// For a person or for a program
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -127,7 +134,7 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
     {
         return Err(format!("--full-scale is {scale}: it must be above 0"));
     }
-    let result = match (&arguments.file, of_numbers(arguments)) {
+    let result = match (&arguments.file, of_numbers(arguments)?) {
         (Some(file), _) => of_file(file, arguments, &settings)?,
         (None, Some(readings)) => tune_readings(&readings, &settings).map_err(|e| e.to_string())?,
         (None, None) => {
@@ -140,18 +147,49 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
     })
 }
 
-fn of_numbers(arguments: &Arguments) -> Option<Readings> {
-    Some(Readings {
-        amplitude: arguments.amplitude?,
+/// What was read off a test, where that and no file is given.
+fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
+    let (Some(amplitude), Some(period), Some(levels), None) = (
+        arguments.amplitude,
+        &arguments.period,
+        arguments.levels,
+        &arguments.file,
+    ) else {
+        return Ok(None);
+    };
+    let period = period.trim_end_matches('s').trim();
+    Ok(Some(Readings {
+        amplitude,
         convention: if arguments.peak_to_peak {
             AmplitudeConvention::PeakToPeak
         } else {
             AmplitudeConvention::Half
         },
-        period: arguments.period?,
-        levels: arguments.levels?.0,
+        period: period
+            .parse()
+            .map_err(|_| format!("--period is {period}: expected the period in s, such as 47"))?,
+        levels: levels.0,
         hysteresis: arguments.hysteresis.unwrap_or(0.0),
         half_periods: arguments.half_periods.map(|t| t.0),
+    }))
+}
+
+/// What the file does not say itself.
+fn options(arguments: &Arguments) -> Result<ImportOptions, String> {
+    let period = arguments.period.as_deref().map(str::parse::<Period>);
+    let period = period.transpose().map_err(|e| format!("--period: {e}"))?;
+    // A process, unless the user says otherwise.
+    let process = || {
+        arguments
+            .map
+            .is_none()
+            .then_some(measurement::Kind::Process)
+    };
+    Ok(ImportOptions {
+        kind: arguments.kind.map(Into::into).or_else(process),
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: arguments.torque_constant,
+        period,
     })
 }
 
@@ -171,9 +209,8 @@ fn of_file(
         .file_name()
         .unwrap_or(file.as_os_str())
         .to_string_lossy();
-    let logged = arguments
-        .map
-        .is_none()
+    let table = arguments.map.is_some() || arguments.period.is_some() || arguments.kind.is_some();
+    let logged = (!table)
         .then(|| log::read(&name, &String::from_utf8_lossy(&bytes)))
         .flatten();
     if let Some(read) = logged {
@@ -181,16 +218,11 @@ fn of_file(
         let result = with_arguments(read, arguments).tune(arguments.form.map(FormName::form));
         return result.map_err(|e| format!("{shown}: {e}"));
     }
-    let options = ImportOptions {
-        kind: arguments.map.is_none().then_some(Kind::Process),
-        mapping: arguments.map.clone().unwrap_or_default(),
-        torque_constant: None,
-        period: None,
-    };
+    let options = options(arguments)?;
     // A drive is a plant as well: what is no process may be one.
     let measurement = import(&name, &bytes, &options).or_else(|error| {
         let any = ImportOptions {
-            kind: None,
+            kind: arguments.kind.map(Into::into),
             ..options.clone()
         };
         import(&name, &bytes, &any).map_err(|_| error)

@@ -9,6 +9,9 @@ use super::wander;
 /// Most samples of the output that are compared; the input is simulated with all.
 const COMPARED: usize = 3000;
 
+/// Most changes of the input, and samples of the output, with which starting points are looked for.
+const COARSE: usize = 2000;
+
 /// Weights of the single lags in the response of several in a row: `Ti^(n-1)/prod_(j != i) (Ti - Tj)`.
 fn partial_fractions(lags: &[f64]) -> Vec<f64> {
     let others = |i: usize| {
@@ -150,6 +153,22 @@ impl Compared {
                 .for_each(|(r, x)| *r -= c * x);
         }
         Some((coefficients, residuals))
+    }
+
+    /// The same with an input that changes seldom enough for many trials; its mean from sample to sample is kept.
+    pub fn coarse(&self) -> Option<Self> {
+        if self.held.changes() <= COARSE {
+            return None;
+        }
+        let stride = self.time.len().div_ceil(COARSE).max(1);
+        let taken = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
+        let time = taken(&self.time);
+        Some(Self {
+            held: self.held.averaged(&time),
+            output: taken(&self.output),
+            time,
+            ..self.clone()
+        })
     }
 
     /// The same with all that is compared freed of a wandering level.

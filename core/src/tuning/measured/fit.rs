@@ -23,6 +23,9 @@ const GRID_DEAD_TIMES: [f64; 7] = [0.003, 0.03, 0.08, 0.15, 0.25, 0.35, 0.46];
 /// Second time constants of the grid, as shares of the first.
 const GRID_SHARES: [f64; 3] = [0.1, 0.4, 0.8];
 
+/// Points of the grid from which the search goes on.
+const STARTS: usize = 3;
+
 /// Evaluations of a simplex, and steps of the last improvement.
 const SIMPLEX_EVALUATIONS: usize = 160;
 const IMPROVEMENTS: usize = 40;
@@ -117,21 +120,26 @@ impl Compared {
 
     /// Fits one structure.
     pub fn fit(&self, structure: Structure) -> Option<Fit> {
+        let coarse = self.coarse();
+        let tried = coarse.as_ref().unwrap_or(self);
         let mut starts: Vec<(Vec<f64>, f64)> = grid(structure)
             .into_iter()
             .map(|p| {
-                let cost = self.cost(structure, &p);
+                let cost = tried.cost(structure, &p);
                 (p, cost)
             })
             .collect();
         starts.sort_by(|a, b| a.1.total_cmp(&b.1));
         let best = starts
             .into_iter()
-            .take(2)
-            .map(|(p, _)| self.descend(structure, p))
+            .take(STARTS)
+            .map(|(p, _)| {
+                let p = self.improve(structure, tried.descend(structure, p).0, IMPROVEMENTS);
+                let cost = self.cost(structure, &p);
+                (p, cost)
+            })
             .min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let p = self.improve(structure, best.0, IMPROVEMENTS);
-        self.finish(structure, &p)
+        self.finish(structure, &best.0)
     }
 
     fn descend(&self, structure: Structure, p: Vec<f64>) -> (Vec<f64>, f64) {

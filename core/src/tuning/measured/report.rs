@@ -103,7 +103,7 @@ pub struct MeasuredTuning {
 pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
     record.validate()?;
     let cycle = cycle::find(record);
-    let scale = cycle.as_ref().map_or(PART * record.span(), |c| c.period);
+    let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
     let fits = compared.fit_all();
     let point = cycle
@@ -158,6 +158,14 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     };
     result.tell();
     Ok(result)
+}
+
+/// A time in the order of the plant's, s: that of a round of the output, or a part of the record.
+fn time_of(record: &Record) -> f64 {
+    match cycle::rounds(record).len() {
+        0 | 1 => PART * record.span(),
+        rounds => record.span() / rounds as f64,
+    }
 }
 
 fn summary(cycle: &Cycle) -> Summary {
