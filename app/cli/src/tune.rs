@@ -4,11 +4,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use hysteron_core::measurement::{self, ImportOptions, Mapping, Period, TorqueConstant, import};
-use hysteron_core::tuning::measured::log::{self, Log};
+use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
 use hysteron_core::tuning::measured::{
-    AmplitudeConvention, FittedModel, Form, MeasuredTuning, Readings, Record, Settings, TunedGains,
-    tune_readings, tune_record,
+    AmplitudeConvention, FittedModel, Form, MeasuredTuning, OpenError, Readings, TunedGains,
+    Wishes, open, tune_readings,
 };
 use serde_json::json;
 
@@ -123,11 +122,11 @@ impl FromStr for Two {
 
 /// What the test tells, or one line that says what is wrong with the input.
 pub fn run(arguments: &Arguments) -> Result<String, String> {
-    let settings = Settings {
-        form: arguments.form.map_or(Form::Parallel, FormName::form),
+    let wishes = Wishes {
+        form: arguments.form.map(FormName::form),
         full_scale: arguments.full_scale,
         target: arguments.target,
-        notes: Vec::new(),
+        hysteresis: arguments.hysteresis,
     };
     if let Some(scale) = arguments.full_scale
         && !(scale.is_finite() && scale > 0.0)
@@ -135,8 +134,11 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         return Err(format!("--full-scale is {scale}: it must be above 0"));
     }
     let result = match (&arguments.file, of_numbers(arguments)?) {
-        (Some(file), _) => of_file(file, arguments, &settings)?,
-        (None, Some(readings)) => tune_readings(&readings, &settings).map_err(|e| e.to_string())?,
+        (Some(file), _) => of_file(file, arguments, &wishes)?,
+        (None, Some(readings)) => {
+            let settings = wishes.settings(Vec::new());
+            tune_readings(&readings, &settings).map_err(|e| e.to_string())?
+        }
         (None, None) => {
             return Err("expected a file, or --amplitude, --period and --levels".to_owned());
         }
@@ -178,26 +180,15 @@ fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
 fn options(arguments: &Arguments) -> Result<ImportOptions, String> {
     let period = arguments.period.as_deref().map(str::parse::<Period>);
     let period = period.transpose().map_err(|e| format!("--period: {e}"))?;
-    // A process, unless the user says otherwise.
-    let process = || {
-        arguments
-            .map
-            .is_none()
-            .then_some(measurement::Kind::Process)
-    };
     Ok(ImportOptions {
-        kind: arguments.kind.map(Into::into).or_else(process),
+        kind: arguments.kind.map(Into::into),
         mapping: arguments.map.clone().unwrap_or_default(),
         torque_constant: arguments.torque_constant,
         period,
     })
 }
 
-fn of_file(
-    file: &Path,
-    arguments: &Arguments,
-    settings: &Settings,
-) -> Result<MeasuredTuning, String> {
+fn of_file(file: &Path, arguments: &Arguments, wishes: &Wishes) -> Result<MeasuredTuning, String> {
     let shown = file.display();
     if file.is_dir() {
         return Err(format!(
@@ -209,42 +200,11 @@ fn of_file(
         .file_name()
         .unwrap_or(file.as_os_str())
         .to_string_lossy();
-    let table = arguments.map.is_some() || arguments.period.is_some() || arguments.kind.is_some();
-    let logged = (!table)
-        .then(|| log::read(&name, &String::from_utf8_lossy(&bytes)))
-        .flatten();
-    if let Some(read) = logged {
-        let read = read.map_err(|e| format!("{shown}: {e}"))?;
-        let result = with_arguments(read, arguments).tune(arguments.form.map(FormName::form));
-        return result.map_err(|e| format!("{shown}: {e}"));
-    }
-    let options = options(arguments)?;
-    // A drive is a plant as well: what is no process may be one.
-    let measurement = import(&name, &bytes, &options).or_else(|error| {
-        let any = ImportOptions {
-            kind: arguments.kind.map(Into::into),
-            ..options.clone()
-        };
-        import(&name, &bytes, &any).map_err(|_| error)
-    });
-    let measurement = measurement.map_err(|e| e.to_string())?;
-    let settings = Settings {
-        notes: measurement.warnings.clone(),
-        ..settings.clone()
-    };
-    tune_record(&Record::of(&measurement), &settings).map_err(|e| format!("{shown}: {e}"))
-}
-
-/// What the user says beats what a log does not know.
-fn with_arguments(mut read: Log, arguments: &Arguments) -> Log {
-    if let (log::Held::Readings(readings), Some(hysteresis)) =
-        (&mut read.held, arguments.hysteresis)
-    {
-        readings.hysteresis = hysteresis;
-    }
-    read.settings.full_scale = arguments.full_scale.or(read.settings.full_scale);
-    read.settings.target = arguments.target.or(read.settings.target);
-    read
+    let opened = open(&name, &bytes, &options(arguments)?).map_err(|e| match e {
+        OpenError::Log(e) => format!("{shown}: {e}"),
+        OpenError::Import(e) => e.to_string(),
+    })?;
+    opened.tune(wishes).map_err(|e| format!("{shown}: {e}"))
 }
 
 fn json(result: &MeasuredTuning) -> serde_json::Value {

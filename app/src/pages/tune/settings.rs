@@ -3,7 +3,7 @@
 use hysteron_core::tuning::{Pid, rule};
 use serde::{Deserialize, Serialize};
 
-use super::{STAGES, Tune};
+use super::{STAGES, Tune, measured};
 
 /// Phase margins that are taken, rad.
 const MARGINS: std::ops::RangeInclusive<f64> = 0.01..=1.55;
@@ -21,6 +21,8 @@ pub(super) struct Settings {
     gain_before: f64,
     /// Id of the rule.
     rule: String,
+    /// A test that was measured.
+    measured: measured::Settings,
 }
 
 impl Tune {
@@ -31,6 +33,7 @@ impl Tune {
             phase_margin: self.input.wish.phase_margin,
             gain_before: self.input.present.gain,
             rule: self.input.rule.clone(),
+            measured: self.measured.set_to(),
         }
     }
 
@@ -44,6 +47,7 @@ impl Tune {
         if !MARGINS.contains(&settings.phase_margin) {
             return Err("The phase margin must be 0.01 to 1.55 rad.".to_owned());
         }
+        self.measured.take(&settings.measured)?;
         self.stage = stage;
         self.asymmetry = settings.asymmetry;
         self.input.wish.phase_margin = settings.phase_margin;

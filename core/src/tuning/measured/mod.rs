@@ -21,6 +21,7 @@
 //! | `trouble` | why a test stalls or misleads |
 //! | `readings` | from a few numbers, without a record |
 //! | `log` | logs of firmwares |
+//! | `opened` | what is in a file |
 //! | `report` | all of it at once |
 //!
 //! **Amplitude** is half of peak to peak everywhere.
@@ -33,6 +34,7 @@ mod gains;
 mod least_squares;
 pub mod log;
 mod number;
+mod opened;
 mod readings;
 mod record;
 mod report;
@@ -44,7 +46,8 @@ mod wander;
 
 pub use cycle::Cycle;
 pub use fourier::Point;
-pub use gains::{Form, TunedGains, steps};
+pub use gains::{Form, TunedGains, alone, steps};
+pub use opened::{OpenError, Opened, Wishes, open};
 pub use readings::{AmplitudeConvention, Readings, tune_readings};
 pub use record::{Record, RecordError};
 pub use report::{Conventional, MeasuredTuning, Settings, Summary, tune_record};

@@ -198,25 +198,46 @@ impl MeasuredTuning {
 
     /// Puts it into words.
     pub(super) fn tell(&mut self) {
-        let mut sentences: Vec<String> = Vec::new();
-        if let (Some(cycle), Some(point)) = (&self.cycle, &self.point) {
-            sentences.push(format!(
-                "The cycle (period {} s, amplitude {}, half of peak to peak) shows the plant at {} rad/s: |P| {}, phase \
-                 {} degrees.",
-                number(cycle.period),
-                number(cycle.amplitude),
-                number(point.omega),
-                with_error(point.magnitude, point.std_error_magnitude, &self.gain_unit()),
-                with_error(point.phase_deg, point.std_error_phase_deg, "1"),
-            ));
-        }
+        self.text = self.sentences().join(" ");
+    }
+
+    /// The same, one by one: the point, the ultimate gain, the model, what went wrong, and notes.
+    pub fn sentences(&self) -> Vec<String> {
+        let mut sentences: Vec<String> = self.of_point().into_iter().collect();
         sentences.extend(self.of_ultimate());
         if let Some(model) = self.models.first() {
             sentences.push(self.of_model(model));
         }
         sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
         sentences.extend(self.notes.iter().cloned());
-        self.text = sentences.join(" ");
+        sentences
+    }
+
+    /// What matters most: why it stalled, else the ultimate gain, else the model.
+    pub fn headline(&self) -> String {
+        let stall = self.stall().map(str::to_owned);
+        let of_model = || self.models.first().map(|m| self.of_model(m));
+        stall
+            .or_else(|| self.of_ultimate())
+            .or_else(of_model)
+            .unwrap_or_default()
+    }
+
+    fn of_point(&self) -> Option<String> {
+        let (cycle, point) = (self.cycle.as_ref()?, self.point.as_ref()?);
+        Some(format!(
+            "The cycle (period {} s, amplitude {}, half of peak to peak) shows the plant at {} rad/s: |P| {}, phase {} \
+             degrees.",
+            number(cycle.period),
+            number(cycle.amplitude),
+            number(point.omega),
+            with_error(
+                point.magnitude,
+                point.std_error_magnitude,
+                &self.gain_unit()
+            ),
+            with_error(point.phase_deg, point.std_error_phase_deg, "1"),
+        ))
     }
 
     /// Ultimate gain and period, or why they do not follow and what would help.
