@@ -117,7 +117,7 @@ const NOT_DRAWN: [&str; 28] = [
 ];
 
 /// Literals that are no texts: names under which things are kept or drawn, and reasons for the compiler.
-const NO_TEXTS: [&str; 36] = [
+const NO_TEXTS: [&str; 61] = [
     "Crew",
     "Downloads",
     "hysteron files",
@@ -148,6 +148,32 @@ const NO_TEXTS: [&str; 36] = [
     "MNm",
     "the type of Atom::values",
     "the room is named after its trait",
+    "measured load",
+    "measured step",
+    "measured nyquist",
+    "measured gains",
+    "measured models",
+    // Words by which logs are recognised, as their tuners write them.
+    "Autotune is still running!",
+    "Autotune is still running",
+    "Frequency is not symmetrical",
+    "Oscillation Amplitude:",
+    "Oscillation Period:",
+    "Setpoint changed",
+    "Turning output to ",
+    "oscillation amplitude",
+    "Stats ",
+    "Bad heater id",
+    "PID Autotune start",
+    "Temperature too high",
+    "Autotune: raw=",
+    "PID Autotune finished!\n  ",
+    "PID Autotune",
+    "found peak:",
+    "state:   failed",
+    "state: failed",
+    "switched state: relay step ",
+    "switched state: relay",
     // Names that files give, and what the reader of JSON says, which is put into our sentence as it is.
     "sample time",
     "sample period",

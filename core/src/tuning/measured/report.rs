@@ -205,22 +205,13 @@ impl MeasuredTuning {
     pub fn sentences(&self) -> Vec<String> {
         let mut sentences: Vec<String> = self.of_point().into_iter().collect();
         sentences.extend(self.of_ultimate());
+        sentences.extend(self.of_formula());
         if let Some(model) = self.models.first() {
             sentences.push(self.of_model(model));
         }
         sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
         sentences.extend(self.notes.iter().cloned());
         sentences
-    }
-
-    /// What matters most: why it stalled, else the ultimate gain, else the model.
-    pub fn headline(&self) -> String {
-        let stall = self.stall().map(str::to_owned);
-        let of_model = || self.models.first().map(|m| self.of_model(m));
-        stall
-            .or_else(|| self.of_ultimate())
-            .or_else(of_model)
-            .unwrap_or_default()
     }
 
     fn of_point(&self) -> Option<String> {
@@ -242,16 +233,9 @@ impl MeasuredTuning {
 
     /// Ultimate gain and period, or why they do not follow and what would help.
     fn of_ultimate(&self) -> Option<String> {
-        let formula = self.conventional.map_or_else(String::new, |c| {
-            format!(
-                " (4d/(pi a) would say {} at {} s)",
-                number(c.gain),
-                number(c.period)
-            )
-        });
         if let Some(u) = &self.ultimate {
             return Some(format!(
-                "Ultimate gain {}, ultimate period {}{formula}.",
+                "Ultimate gain {}, ultimate period {}.",
                 with_error(u.gain, u.std_error_gain, "1"),
                 with_error(u.period, u.std_error_period, "s"),
             ));
@@ -274,29 +258,34 @@ impl MeasuredTuning {
                 .to_owned()
         };
         Some(format!(
-            "The ultimate gain does not follow{formula}: the phase of the cycle is {} degrees from -180, and how the \
-             curve goes on from there is not known well enough; {remedy}.",
+            "The ultimate gain does not follow: the phase of the cycle is {} degrees from -180, and how the curve goes on \
+             from there is not known well enough; {remedy}.",
             number(off.abs()),
+        ))
+    }
+
+    /// What the usual formula makes of the same cycle.
+    fn of_formula(&self) -> Option<String> {
+        let formula = self.conventional?;
+        Some(format!(
+            "4d/(pi a), which is right for a symmetric cycle without hysteresis alone, would say {} at {} s.",
+            number(formula.gain),
+            number(formula.period)
         ))
     }
 
     fn of_model(&self, model: &FittedModel) -> String {
         let seconds = |v: &Value| with_error(v.value, v.std_error, "s");
-        let times: Vec<String> = model.time_constants.iter().map(seconds).collect();
-        let zero = model
-            .zero
-            .as_ref()
-            .map_or_else(String::new, |z| format!(", zero {}", seconds(z)));
-        let lags = match times.len() {
-            0 => String::new(),
-            1 => format!(", time constant {}", times[0]),
-            _ => format!(", time constants {}", times.join(" and ")),
-        };
+        let gain = with_error(model.gain.value, model.gain.std_error, &self.gain_unit());
+        let mut parts = vec![format!("gain {gain}")];
+        let lags = model.time_constants.iter();
+        parts.extend(lags.map(|t| format!("time constant {}", seconds(t))));
+        parts.extend(model.zero.iter().map(|z| format!("zero {}", seconds(z))));
+        parts.push(format!("dead time {}", seconds(&model.dead_time)));
         format!(
-            "The record prefers {}: gain {}{lags}{zero}, dead time {}; it misses {} % of the motion.",
+            "The record prefers {}: {}. It misses {} % of the motion of the output.",
             model.structure.name(),
-            with_error(model.gain.value, model.gain.std_error, &self.gain_unit()),
-            seconds(&model.dead_time),
+            parts.join(", "),
             number(100.0 * model.left),
         )
     }

@@ -7,7 +7,10 @@ mod side;
 mod tables;
 
 use hysteron_core::measurement::Kind;
-use hysteron_core::tuning::measured::{AmplitudeConvention, Readings, TunedGains, Wishes};
+use hysteron_core::tuning::measured::{
+    AmplitudeConvention, MeasuredTuning, Readings, TunedGains, Wishes,
+};
+use hysteron_core::uncertain::with_error;
 use hysteron_work::content::Content;
 use hysteron_work::enclosed::{Enclosed, PROCESS_02};
 use hysteron_work::reading::Reading;
@@ -191,17 +194,14 @@ impl Measured {
             theme::answer_ui(ui, text);
             return;
         };
-        let headline = report.tuning.headline();
-        theme::answer_ui(ui, &headline);
+        theme::answer_ui(ui, &answer(&report.tuning));
         if self.job.is_some() {
             motion::busy_ui(ui);
         }
         for sentence in report.tuning.sentences() {
-            if sentence != headline {
-                ui.label(tr(sentence));
-            }
+            ui.label(tr(sentence));
         }
-        let half = (0.5 * height).max(230.0);
+        let half = (0.4 * height).max(200.0);
         match &report.record {
             Some(record) => beside(
                 ui,
@@ -211,18 +211,18 @@ impl Measured {
             ),
             None => plots::nyquist_ui(ui, report, half),
         }
-        tables::models_ui(ui, &report.tuning);
         tables::gains_ui(ui, &report.tuning, &mut self.chosen);
         if let Some((gains, Some(responses))) = chosen(report, self.chosen.as_deref()) {
             loops::ui(ui, gains, responses, report.alone.as_ref(), half);
         }
+        tables::models_ui(ui, &report.tuning);
     }
 
     pub fn state(&self) -> serde_json::Value {
         let tuning = self.shown.as_ref().map(|r| &r.tuning);
         serde_json::json!({
             "busy": self.job.is_some(),
-            "answer": tuning.map(hysteron_core::tuning::measured::MeasuredTuning::headline),
+            "answer": tuning.map(answer),
             "text": tuning.map(|t| &t.text),
             "ultimate": tuning.and_then(|t| t.ultimate.map(|u| u.gain)),
             "gains": tuning.map(|t| t.gains.len()),
@@ -274,6 +274,23 @@ impl Measured {
         let curve = (!report.nyquist.is_empty())
             .then(|| Table::curve("Nyquist curve of the model", titles, &report.nyquist));
         record.into_iter().chain(curve).collect()
+    }
+}
+
+/// What matters most.
+fn answer(tuning: &MeasuredTuning) -> String {
+    match (&tuning.ultimate, tuning.stall(), &tuning.point) {
+        (_, Some(_), _) => "The test stalled.".to_owned(),
+        (Some(u), _, _) => format!(
+            "The ultimate gain is {}, the ultimate period {}.",
+            with_error(u.gain, u.std_error_gain, "1"),
+            with_error(u.period, u.std_error_period, "s")
+        ),
+        (None, None, Some(point)) => format!(
+            "No ultimate gain follows: the cycle shows the plant at {} degrees.",
+            with_error(point.phase_deg, point.std_error_phase_deg, "1")
+        ),
+        (None, None, None) => "There is no cycle, but there may be a model.".to_owned(),
     }
 }
 

@@ -47,10 +47,12 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
     let reach = tuning
         .point
         .map_or_else(|| largest(&report.nyquist), |p| REACH * p.magnitude);
+    // As wide as it is high needs it, the origin to the right.
+    let wide = 1.3 * reach * f64::from(ui.available_width() / (height - CAPTION).max(1.0));
     chart
         .with(|plot| {
             plot.data_aspect(1.0)
-                .default_x_bounds(-reach, 0.4 * reach)
+                .default_x_bounds(-0.7 * wide, 0.3 * wide)
                 .default_y_bounds(-0.9 * reach, 0.4 * reach)
         })
         .show(ui, |plot| {

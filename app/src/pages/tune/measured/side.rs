@@ -107,7 +107,7 @@ impl Measured {
         egui::Grid::new("readings").num_columns(2).show(ui, |ui| {
             number_ui(ui, "amplitude", &mut readings.amplitude, "");
             ui.label("");
-            ui.horizontal_wrapped(|ui| {
+            ui.vertical(|ui| {
                 if ui.radio(half, tr("half of peak to peak")).clicked() {
                     readings.convention = AmplitudeConvention::Half;
                 }

@@ -3,6 +3,7 @@
 use hysteron_core::tuning::measured::{
     FittedModel, Form, MeasuredTuning, Structure, TunedGains, Value,
 };
+use hysteron_core::uncertain::with_error;
 
 use super::super::draw::{maybe, number, table};
 use super::side::form_name;
@@ -31,17 +32,13 @@ pub fn models_ui(ui: &mut egui::Ui, tuning: &MeasuredTuning) {
     ui.small(tr("Missed: what the model leaves of the motion of the output. A gain that is not known to half its value is left out."));
 }
 
-/// Relative standard error from which a value is not told.
-const VAGUE: f64 = 0.5;
+/// Relative standard errors from which a gain, and any other value, is not told.
+const VAGUE_GAIN: f64 = 0.5;
+const VAGUE: f64 = 10.0;
 
-fn told(value: &Value) -> String {
-    if value.std_error < VAGUE * value.value.abs() {
-        format!("{} ± {}", number(value.value), number(value.std_error))
-    } else if value.value.abs() <= value.std_error {
-        format!(
-            "below {}",
-            number(value.value.abs() + 2.0 * value.std_error)
-        )
+fn told(value: &Value, vague: f64) -> String {
+    if value.std_error < vague * value.value.abs() {
+        with_error(value.value, value.std_error, "1")
     } else {
         "-".to_owned()
     }
@@ -54,13 +51,18 @@ fn row_ui(ui: &mut egui::Ui, model: &FittedModel) {
     } else {
         ui.label(tr(name));
     }
-    let gain = &model.gain;
-    let known = gain.std_error < VAGUE * gain.value.abs();
-    ui.label(tr(if known { told(gain) } else { "-".to_owned() }));
-    let lags: Vec<String> = model.time_constants.iter().map(|t| tr(told(t))).collect();
+    ui.label(tr(told(&model.gain, VAGUE_GAIN)));
+    let lags: Vec<String> = model
+        .time_constants
+        .iter()
+        .map(|t| tr(told(t, VAGUE)))
+        .collect();
     ui.label(lags.join("; "));
-    ui.label(tr(model.zero.as_ref().map_or_else(|| "-".to_owned(), told)));
-    ui.label(tr(told(&model.dead_time)));
+    ui.label(tr(model
+        .zero
+        .as_ref()
+        .map_or_else(|| "-".to_owned(), |z| told(z, VAGUE))));
+    ui.label(tr(told(&model.dead_time, VAGUE)));
     ui.label(tr_number(format!("{:.2}", 100.0 * model.left)));
     ui.end_row();
 }
