@@ -11,7 +11,14 @@ use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
 use hysteron::GivenFile;
 
 /// Numbers that have no unit: the loop of Explore is in units of its own signals, the rest are ratios.
-const PLAIN: [&str; 14] = [
+const PLAIN: [&str; 20] = [
+    // As they were read off a test, in the units of its controller.
+    "amplitude",
+    "hysteresis",
+    "input while down",
+    "input while up",
+    "full scale of the input",
+    "set point of the test",
     "gain k",
     "hysteresis ε",
     "asymmetry a",

@@ -92,3 +92,40 @@ fn the_table_of_rules_has_room_in_a_smaller_window() {
         assert!(last.rect().right() <= 1024.0, "{:?}", last.rect());
     }
 }
+
+#[test]
+fn a_measured_test_shows_its_point_models_and_gains() {
+    let mut harness = app("tune", WIDE);
+    show(
+        &mut harness,
+        "v1;tune;tune.measured.from=record;tune.measured.file=process-02",
+    );
+    finish(&mut harness);
+    let said = state(&harness);
+    assert!(said["message"].is_null(), "{said}");
+    assert!(said["gains"].as_u64().is_some_and(|n| n >= 6), "{said}");
+    // The rig's plant: gain 2, lag 30 s, dead time 6 s, hence Ku = 4.4 at 22 s.
+    assert!(
+        said["ultimate"]
+            .as_f64()
+            .is_some_and(|k| (k - 4.4).abs() < 0.3),
+        "{said}"
+    );
+    picture(&mut harness, "tune_measured");
+    click(&mut harness, "Ziegler-Nichols PI");
+    picture(&mut harness, "tune_measured_chosen");
+}
+
+#[test]
+fn only_numbers_give_a_point_and_what_would_help() {
+    let mut harness = app("tune", WIDE);
+    click(&mut harness, "Only numbers");
+    finish(&mut harness);
+    let said = state(&harness);
+    assert!(said["ultimate"].is_null(), "{said}");
+    assert!(
+        answer(&harness).starts_with("No ultimate gain follows"),
+        "{said}"
+    );
+    picture(&mut harness, "tune_numbers");
+}

@@ -44,6 +44,7 @@ mod simulation;
 mod slow_and_short;
 mod surroundings;
 mod tuning;
+mod tuning_coverage;
 mod tuning_logs;
 mod tuning_loop;
 mod user_model;
