@@ -11,7 +11,7 @@ use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
 use hysteron::GivenFile;
 
 /// Numbers that have no unit: the loop of Explore is in units of its own signals, the rest are ratios.
-const PLAIN: [&str; 20] = [
+const PLAIN: [&str; 21] = [
     // As they were read off a test, in the units of its controller.
     "amplitude",
     "hysteresis",
@@ -25,6 +25,7 @@ const PLAIN: [&str; 20] = [
     "noise σ",
     "restitution",
     "gain before",
+    "half gap β",
     "relay gain k",
     "plant gain, times",
     "time constants, times",
@@ -37,14 +38,15 @@ const PLAIN: [&str; 20] = [
 ];
 
 /// Axes and columns that have no unit, but for those of the measurements, which are named by their columns.
-const PLAIN_AXES: [&str; 24] = [
+const PLAIN_AXES: [&str; 25] = [
     "real part",
     "imaginary part",
     "output y",
     "output y, input u",
     "output y, set point 1",
     "output y, load 1",
-    "step n",
+    "runs of the relay",
+    "-H(-1), plant sampled every h",
     "error of the amplitude, log10",
     "hysteresis ε",
     "relay gain k",

@@ -17,6 +17,7 @@ mod few_stretches;
 mod figures;
 mod fingerprints;
 mod gap;
+mod gap_coverage;
 mod hidden_effects;
 mod import;
 mod import_mat;
