@@ -36,6 +36,12 @@ pub const MEASUREMENT: Filter = Filter {
     endings: &["csv", "txt", "tsv", "mat"],
 };
 
+/// A relay test: a measurement, or the log of an auto-tuner.
+pub const TEST: Filter = Filter {
+    words: "Relay test",
+    endings: &["csv", "txt", "tsv", "mat", "log"],
+};
+
 /// What the user knows of a model.
 pub const MODEL: Filter = Filter {
     words: "Model",

@@ -216,7 +216,7 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
         harmonics: exact.map_or_else(Vec::new, |c| harmonics(plant, relay, c, HARMONICS)),
         ultimate: exact
             .map(|c| c.cycle)
-            .or(simulated)
+            .or(long_run.of_two_levels())
             .map(|c| relay_gain(plant, relay, &c)),
         text: long_run.text,
         outcome: long_run.outcome,

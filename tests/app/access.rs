@@ -11,13 +11,21 @@ use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
 use hysteron::GivenFile;
 
 /// Numbers that have no unit: the loop of Explore is in units of its own signals, the rest are ratios.
-const PLAIN: [&str; 14] = [
+const PLAIN: [&str; 21] = [
+    // As they were read off a test, in the units of its controller.
+    "amplitude",
+    "hysteresis",
+    "input while down",
+    "input while up",
+    "full scale of the input",
+    "set point of the test",
     "gain k",
     "hysteresis ε",
     "asymmetry a",
     "noise σ",
     "restitution",
     "gain before",
+    "half gap β",
     "relay gain k",
     "plant gain, times",
     "time constants, times",
@@ -30,14 +38,15 @@ const PLAIN: [&str; 14] = [
 ];
 
 /// Axes and columns that have no unit, but for those of the measurements, which are named by their columns.
-const PLAIN_AXES: [&str; 24] = [
+const PLAIN_AXES: [&str; 25] = [
     "real part",
     "imaginary part",
     "output y",
     "output y, input u",
     "output y, set point 1",
     "output y, load 1",
-    "step n",
+    "runs of the relay",
+    "-H(-1), plant sampled every h",
     "error of the amplitude, log10",
     "hysteresis ε",
     "relay gain k",

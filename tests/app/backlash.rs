@@ -36,6 +36,14 @@ fn the_page_opens_on_a_drive_whose_gap_the_motor_finds() {
     );
 }
 
+/// Fig. 8 and equations (10) and (11) stand below the plots: in the first second the motor is in the gap, then it hits.
+#[test]
+fn the_structure_of_the_drive_lights_up_by_mode() {
+    let mut harness = app("backlash", [1280.0, 1500.0]);
+    show(&mut harness, "v1;backlash;backlash.paused=1");
+    picture(&mut harness, "backlash_structure");
+}
+
 #[test]
 fn figs_7_10_11_and_12_check_their_claims_on_screen() {
     let mut harness = page(WIDE);

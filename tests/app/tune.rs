@@ -1,6 +1,8 @@
 //! The tuning page, as a user works it: from the relay to the tuned loop.
 
-use crate::support::ui::{App, NARROW, WIDE, answer, app, click, finish, picture, show, state};
+use crate::support::ui::{
+    App, NARROW, WIDE, answer, app, click, finish, picture, show, state, texts,
+};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::language::Language;
 
@@ -11,7 +13,7 @@ fn page(size: [f32; 2]) -> App {
 }
 
 /// The paper's third-order lag under the relay k = 1, eps = 0.1: period 4.788 s and amplitude 0.2857
-/// exactly, hence `Ku = 4/(pi sqrt(a^2 - eps^2)) = 4.758`; true are 8 and `2 pi/sqrt(3) = 3.628` s.
+/// exactly, hence `Ku = 4/(pi a) = 4.457`; true are 8 and `2 pi/sqrt(3) = 3.628` s.
 #[test]
 fn the_experiment_leads_step_by_step_from_the_relay_to_the_tuned_loop() {
     let mut harness = page(WIDE);
@@ -49,6 +51,23 @@ fn the_experiment_leads_step_by_step_from_the_relay_to_the_tuned_loop() {
         "there is no step after the last"
     );
     picture(&mut harness, "tune_loops");
+}
+
+#[test]
+fn the_secant_law_and_steffensens_step_are_gone_through_by_hand() {
+    let mut harness = page(WIDE);
+    click(&mut harness, "3 Phase margin");
+    click(&mut harness, "First step");
+    let rows = |harness: &App| {
+        let all = texts(harness);
+        ["0", "1", "2"].map(|n| all.iter().any(|t| t == n))
+    };
+    assert_eq!(rows(&harness), [true, false, false]);
+    click(&mut harness, "One step on");
+    assert_eq!(rows(&harness), [true, true, false]);
+    click(&mut harness, "All steps");
+    assert_eq!(rows(&harness), [true, true, true]);
+    assert!(texts(&harness).iter().any(|t| t.contains("1.62 in theory")));
 }
 
 #[test]
@@ -91,4 +110,41 @@ fn the_table_of_rules_has_room_in_a_smaller_window() {
         let last = last.into_iter().flatten().next().expect("the last column");
         assert!(last.rect().right() <= 1024.0, "{:?}", last.rect());
     }
+}
+
+#[test]
+fn a_measured_test_shows_its_point_models_and_gains() {
+    let mut harness = app("tune", WIDE);
+    show(
+        &mut harness,
+        "v1;tune;tune.measured.from=record;tune.measured.file=process-02",
+    );
+    finish(&mut harness);
+    let said = state(&harness);
+    assert!(said["message"].is_null(), "{said}");
+    assert!(said["gains"].as_u64().is_some_and(|n| n >= 6), "{said}");
+    // The rig's plant: gain 2, lag 30 s, dead time 6 s, hence Ku = 4.4 at 22 s.
+    assert!(
+        said["ultimate"]
+            .as_f64()
+            .is_some_and(|k| (k - 4.4).abs() < 0.3),
+        "{said}"
+    );
+    picture(&mut harness, "tune_measured");
+    click(&mut harness, "Ziegler-Nichols PI");
+    picture(&mut harness, "tune_measured_chosen");
+}
+
+#[test]
+fn only_numbers_give_a_point_and_what_would_help() {
+    let mut harness = app("tune", WIDE);
+    click(&mut harness, "Only numbers");
+    finish(&mut harness);
+    let said = state(&harness);
+    assert!(said["ultimate"].is_null(), "{said}");
+    assert!(
+        answer(&harness).starts_with("No ultimate gain follows"),
+        "{said}"
+    );
+    picture(&mut harness, "tune_numbers");
 }

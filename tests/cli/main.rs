@@ -3,4 +3,6 @@
 mod batch;
 mod commands;
 mod scenarios;
+#[path = "../support/shared.rs"]
+mod shared;
 mod tune;

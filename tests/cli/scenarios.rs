@@ -116,6 +116,53 @@ fn a_describing_function_that_fails_is_called_so() {
     );
 }
 
+/// Relay tests of which tuners told an ultimate gain: the phase that the cycle shows, `1/|P|` there, and a word of the
+/// remedy. The plant's own is 0.1694 at 31.65 s.
+#[test]
+fn reported_relay_tests_say_what_their_cycle_shows() {
+    for (name, phase, shown, remedy) in [
+        (
+            "relay-hysteresis-ku",
+            -157.0,
+            0.0883,
+            "Less hysteresis comes nearer",
+        ),
+        (
+            "asymmetric-heating-ku",
+            -140.0,
+            0.0556,
+            "A symmetric relay with less hysteresis",
+        ),
+        (
+            "dead-time-ideal-relay",
+            -177.5,
+            0.1581,
+            "36 more of this family",
+        ),
+    ] {
+        let Some(bytes) = crate::shared::shared(&format!("failing/{name}.toml")) else {
+            return;
+        };
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.toml"));
+        std::fs::write(&file, bytes).unwrap();
+        let said = text(&hysteron("limit-cycle", &file, &[]));
+        assert!(said.contains(remedy), "{name}: {said}");
+        assert!(said.lines().count() < 20, "{name}: {said}");
+        let json = text(&hysteron("limit-cycle", &file, &["--format", "json"]));
+        let ultimate = &serde_json::from_str::<Value>(&json).unwrap()["ultimate"];
+        let of = |key: &str| ultimate[key].as_f64().unwrap();
+        assert!((of("phase_deg") - phase).abs() < 0.5, "{name}: {ultimate}");
+        assert!(
+            (of("gain_shown") / shown - 1.0).abs() < 0.001,
+            "{name}: {ultimate}"
+        );
+        assert!(
+            (of("gain_true") / 0.1694 - 1.0).abs() < 0.001,
+            "{name}: {ultimate}"
+        );
+    }
+}
+
 #[test]
 fn simulate_writes_what_diagnose_reads() {
     let csv = Path::new(env!("CARGO_TARGET_TMPDIR")).join("simulated.csv");

@@ -93,6 +93,35 @@ fn a_record_gives_what_the_contract_says() {
 }
 
 #[test]
+fn a_record_without_times_takes_a_sampling_period_and_columns() {
+    let whole = json(&[&written("with-times.csv", &record()), "--format", "json"]);
+    let without: String = record()
+        .lines()
+        .map(|line| line.split_once(',').unwrap().1.to_owned() + "\n")
+        .collect();
+    let file = written(
+        "without-times.csv",
+        &without.replace("u [%],y [°C]", "heater,room"),
+    );
+    let asked = [
+        &file,
+        "--period",
+        "10Hz",
+        "--map",
+        "u=heater [%], y=room [°C]",
+        "--format",
+        "json",
+    ];
+    let found = json(&asked);
+    let close = |pointer: &str| {
+        let of = |v: &Value| v.pointer(pointer).and_then(Value::as_f64).unwrap();
+        assert!((of(&found) / of(&whole) - 1.0).abs() < 1e-9, "{pointer}");
+    };
+    close("/point/magnitude");
+    close("/models/0/time_constant");
+}
+
+#[test]
 fn numbers_with_hysteresis_give_a_point_and_the_remedy() {
     let numbers = [
         "--amplitude",

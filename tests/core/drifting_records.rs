@@ -57,6 +57,18 @@ fn the_shipped_drifting_drive_has_its_gap() {
     close(&estimate_gap(&measurement).unwrap(), 0.019);
 }
 
+/// Its load has no dry friction, and is carried along by touches too light to be seen.
+#[test]
+fn the_shipped_late_and_compliant_drive_has_its_gap() {
+    let (_, measurement) = record(include_str!(
+        "../../assets/scenarios/drive-late-compliant.toml"
+    ));
+    let estimate = estimate_gap(&measurement).unwrap();
+    close(&estimate, 0.012);
+    let [low, high] = estimate.interval.unwrap();
+    assert!(low < 0.012 && 0.012 < high, "{}", estimate.text);
+}
+
 #[test]
 fn no_contact_is_claimed_where_a_sampled_relay_never_met_the_load() {
     // Switches inside the samples, on them, and in every fourth part of them.

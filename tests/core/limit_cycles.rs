@@ -3,6 +3,7 @@
 use hysteron_core::explore::{ExploreInput, compute};
 use hysteron_core::limit_cycle::{
     describing_function, exact_cycle, exact_cycles, exact_symmetric, predict,
+    pulse_transfer_at_minus_one, z_form,
 };
 use hysteron_core::plant::TransferFunction;
 use hysteron_core::relay::Relay;
@@ -74,7 +75,7 @@ fn last_cycle(run: &Trajectory) -> (f64, f64) {
 #[test]
 fn equation_3_agrees_with_the_reference_to_nine_digits() {
     let (rows, more) = (table(), more());
-    assert_eq!([rows.len(), more.len()], [12, 18]);
+    assert_eq!([rows.len(), more.len()], [12, 30]);
     for row in rows.into_iter().chain(more) {
         let guess = describing_function(&row.plant, &row.relay)
             .first()
@@ -417,4 +418,31 @@ fn an_asymmetric_relay_still_oscillates() {
         exact.amplitude,
         1e-6,
     );
+}
+
+/// Equation (3) in the z-form: the pulse transfer function at -1, sampled with the exact half period, is `-eps/k`.
+#[test]
+fn equation_3_in_the_z_form_has_the_same_half_periods() {
+    for row in table().into_iter().chain(more()) {
+        let space = row.plant.state_space();
+        let value =
+            pulse_transfer_at_minus_one(&space, row.plant.dead_time, 0.5 * row.period).unwrap();
+        let wanted = -row.relay.hysteresis / row.relay.gain;
+        let size = row.amplitude / row.relay.gain;
+        assert!(
+            (value - wanted).abs() < 1e-12 * size.max(1.0),
+            "{}: {value}, {wanted}",
+            row.name
+        );
+    }
+    // 1/(s + 1) by hand: H_h(z) = (1 - e^-h)/(z - e^-h).
+    let lag = TransferFunction::new(&[1.0], &[1.0, 1.0], 0.0).state_space();
+    let h = 0.7_f64;
+    let value = pulse_transfer_at_minus_one(&lag, 0.0, h).unwrap();
+    let exact = -(1.0 - (-h).exp()) / (1.0 + (-h).exp());
+    assert!((value - exact).abs() < 1e-14, "{value}, {exact}");
+    // The curve goes through it, and a time that is none has no curve.
+    let curve = z_form(&lag, 0.0, h);
+    assert!(curve.len() > 100 && curve[0][0] < h);
+    assert!(z_form(&lag, 0.0, -1.0).is_empty() && z_form(&lag, f64::NAN, h).is_empty());
 }

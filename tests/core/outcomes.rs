@@ -3,6 +3,7 @@
 use crate::support::shared::shared;
 use hysteron_core::limit_cycle::{LongRunResult, Outcome, Prediction, predict};
 use hysteron_core::scenario::Scenario;
+use hysteron_core::tuning::stability_limits;
 
 /// Prediction and outcome of a loop in a file.
 fn outcome(text: &str) -> (Prediction, LongRunResult) {
@@ -243,4 +244,43 @@ fn the_unstable_cycles_of_a_dead_time_have_no_gaps() {
         assert!((ratio - 2.0 * n as f64).abs() < 0.1, "{n}: {ratio}");
     }
     assert!(exact.len() >= 39, "{}", exact.len());
+}
+
+#[test]
+fn no_gain_is_told_by_a_continuum_or_a_relay_that_slides() {
+    let (_, continuum) = of("formula = \"1/s^2\"", "gain = 1");
+    assert!(continuum.cycle.is_some() && continuum.of_two_levels().is_none());
+    let (_, sliding) = outcome(include_str!("../../assets/scenarios/sliding.toml"));
+    assert!(sliding.slides > 0.0 && sliding.of_two_levels().is_none());
+    let (_, cycle) = of("formula = \"1/(s+1)^3\"", "gain = 1\nhysteresis = 0.1");
+    assert!(cycle.of_two_levels().is_some());
+}
+
+#[test]
+fn a_loop_without_limits_of_stability_is_said_to_be_what_it_is_at_every_gain() {
+    for (formula, said) in [
+        ("1/(s+1)", "stable at every gain"),
+        ("s/(s^2+0.1s+1)", "stable at every gain"),
+        ("1/((s^2+1)*(s+1))", "no gain makes the loop stable"),
+        ("1/(s^2-0.2s+1)", "no gain makes the loop stable"),
+        ("1/s^2", "on the limit of stability"),
+    ] {
+        let text = format!("[plant]\nformula = \"{formula}\"\n[relay]\ngain = 1\n");
+        let plant = Scenario::from_toml(&text).unwrap().plant;
+        let limits = stability_limits(&plant);
+        assert!(limits.lower.is_none() && limits.upper.is_none());
+        assert!(limits.text().contains(said), "{formula}: {}", limits.text());
+    }
+}
+
+#[test]
+fn the_scatter_in_noise_has_two_digits() {
+    let (_, result) = outcome(include_str!("../../assets/scenarios/fig-4-noise.toml"));
+    assert!(
+        result
+            .text
+            .contains("period 4.602 ± 0.077 s, amplitude 0.2639 ± 0.0075"),
+        "{}",
+        result.text
+    );
 }

@@ -123,11 +123,20 @@ PLANTS = [
 ]
 RELAYS = [("1", "0"), ("1", "0.08"), ("2.5", "0.2")]
 
+# A fifth lag, a zero on either side of the axis, and a resonance behind a dead time.
+MORE_PLANTS = [
+    ("lag_5", ["1"], ["1", "5", "10", "10", "5", "1"], "0"),
+    ("lead", ["0.1", "1"], ["1", "3", "3", "1"], "0"),
+    ("inverse_response", ["-0.4", "1"], ["1", "3", "3", "1"], "0"),
+    ("resonance_dead_time", ["1"], ["1", "0.6", "1"], "0.4"),
+]
+MORE_RELAYS = [("1", "0"), ("0.8", "0.03"), ("3", "0.5")]
+
 if __name__ == "__main__":
     print("name,numerator,denominator,dead_time_s,k,epsilon,period_s,amplitude,check")
-    for name, num, den, lag in PLANTS:
-        for k, eps in RELAYS:
-            at = guess(num, den, mp.mpf(lag), mp.mpf(k), mp.mpf(eps))
-            period, amplitude = solve(num, den, lag, k, eps, at)
-            row = [f"{name}_k{k}_eps{eps}", " ".join(num), " ".join(den), lag, k, eps]
-            print(",".join(row + [mp.nstr(period, 15), mp.nstr(amplitude, 15), "valid"]))
+    loops = [(p, r) for p in PLANTS for r in RELAYS] + [(p, r) for p in MORE_PLANTS for r in MORE_RELAYS]
+    for (name, num, den, lag), (k, eps) in loops:
+        at = guess(num, den, mp.mpf(lag), mp.mpf(k), mp.mpf(eps))
+        period, amplitude = solve(num, den, lag, k, eps, at)
+        row = [f"{name}_k{k}_eps{eps}", " ".join(num), " ".join(den), lag, k, eps]
+        print(",".join(row + [mp.nstr(period, 15), mp.nstr(amplitude, 15), "valid"]), flush=True)

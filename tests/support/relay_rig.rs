@@ -101,6 +101,8 @@ pub struct Test {
     pub step: f64,
     /// Drift of the load, in input levels over the whole test.
     pub drift: f64,
+    /// Standard deviation, at the end of the test, of a load that wanders at random, in input levels.
+    pub wander: f64,
     /// Least time up and down, in periods without it.
     pub least_time: f64,
     /// Samples of a period, and periods.
@@ -118,6 +120,7 @@ pub fn tests() -> Vec<Test> {
         noise,
         step,
         drift,
+        wander: 0.0,
         least_time: 0.0,
         samples: 100.0,
         periods: 10.0,
@@ -183,6 +186,7 @@ struct Relay {
     noise: f64,
     step: f64,
     drift: f64,
+    wander: f64,
     /// Samples.
     least_time: usize,
 }
@@ -202,22 +206,11 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
     let (mut time, mut input, mut output) = (Vec::new(), Vec::new(), Vec::new());
     // Counts of a sensor do not lie on the set point.
     let offset = relay.step * random.uniform();
+    let mut wandered = 0.0;
     for i in 0..count {
-        let delayed = |inputs: &[f64]| {
-            inputs
-                .len()
-                .checked_sub(late)
-                .and_then(|k| inputs.get(k))
-                .copied()
-                .unwrap_or(0.0)
-        };
-        let now = inputs
-            .len()
-            .checked_sub(late + 1)
-            .and_then(|k| inputs.get(k))
-            .copied()
-            .unwrap_or(0.0);
-        let mut seen = motion.output(now) + relay.noise * random.normal();
+        // The input that acted in the last step.
+        let acted = (inputs.len().checked_sub(late + 1)).map_or(0.0, |k| inputs[k]);
+        let mut seen = motion.output(acted) + relay.noise * random.normal();
         if relay.step > 0.0 {
             seen = ((seen - offset) / relay.step).round() * relay.step + offset;
         }
@@ -230,15 +223,13 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
         time.push(i as f64 * sampling);
         input.push(u);
         output.push(seen);
+        if relay.wander > 0.0 {
+            wandered += relay.wander * random.normal() / (count as f64).sqrt();
+        }
         for _ in 0..STEPS {
-            let load = relay.drift * inputs.len() as f64 / (count * STEPS) as f64;
+            let load = wandered + relay.drift * inputs.len() as f64 / (count * STEPS) as f64;
             inputs.push(u - relay.holds - load);
-            let acting = delayed(&inputs[..inputs.len()]);
-            let acting = if late == 0 {
-                u - relay.holds - load
-            } else {
-                acting
-            };
+            let acting = (inputs.len().checked_sub(late + 1)).map_or(0.0, |k| inputs[k]);
             motion.step(acting, h);
         }
     }
@@ -257,7 +248,13 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
     let mut random = Random::new(seed);
     let [_, period] = plant.ultimate();
     let samples = test.samples * random.between(0.7, 1.3);
-    let sampling = period / samples;
+    // A whole number of steps of the integration fits into the dead time.
+    let step = period / samples / STEPS as f64;
+    let step = match (plant.dead_time / step).ceil() {
+        0.0 => step,
+        late => plant.dead_time / late,
+    };
+    let sampling = step * STEPS as f64;
     let mut relay = Relay {
         levels: test.levels,
         holds: test.holds,
@@ -265,6 +262,7 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
         noise: 0.0,
         step: 0.0,
         drift: 0.0,
+        wander: 0.0,
         least_time: 0,
     };
     // Tried once without noise, to know what amplitude there will be.
@@ -284,6 +282,7 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
     relay.noise = test.noise * amplitude;
     relay.step = test.step * amplitude;
     relay.drift = test.drift;
+    relay.wander = test.wander;
     relay.least_time = (test.least_time * samples) as usize;
     run(
         plant,

@@ -23,7 +23,7 @@ pub const NARROW: [f32; 2] = [420.0, 800.0];
 pub const TALL: [f32; 2] = [1600.0, 2400.0];
 
 /// Where the app can be, so that all its pages, their steps, and what they say in several cases are seen.
-pub const PLACES: [&str; 35] = [
+pub const PLACES: [&str; 39] = [
     "v1;mystery",
     "v1;mystery;mystery.by_hand=true;mystery.experiment=relay",
     "v1;start",
@@ -48,6 +48,10 @@ pub const PLACES: [&str; 35] = [
     "v1;tune;tune.step=model;tune.asymmetry=0",
     "v1;tune;tune.step=rules",
     "v1;tune;tune.step=loops",
+    "v1;tune;tune.measured.from=record",
+    "v1;tune;tune.measured.from=record;tune.measured.file=process-02",
+    "v1;tune;tune.measured.from=numbers",
+    "v1;tune;tune.measured.from=numbers;tune.measured.readings.hysteresis=0",
     "v1;backlash",
     "v1;backlash;backlash.figure=7",
     "v1;backlash;backlash.figure=10",

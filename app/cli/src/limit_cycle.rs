@@ -70,7 +70,7 @@ fn report(scenario: &Scenario) -> Result<Report, String> {
     let exact = prediction.exact.iter().find(stable).map(|c| c.cycle);
     Ok(Report {
         ultimate: exact
-            .or(long_run.cycle)
+            .or(long_run.of_two_levels())
             .map(|c| relay_gain(plant, relay, &c)),
         limits: stability_limits(plant),
         prediction,
@@ -132,7 +132,7 @@ fn json(report: &Report) -> serde_json::Value {
 
 fn ultimate_json(report: &Report) -> serde_json::Value {
     let relay = report.ultimate.as_ref();
-    let StabilityLimits { lower, upper } = report.limits;
+    let StabilityLimits { lower, upper, .. } = report.limits;
     let finite = |period: f64| Some(period).filter(|p| p.is_finite());
     json!({
         "gain_relay": relay.map(|u| u.by_relay.gain),
@@ -149,24 +149,27 @@ fn ultimate_json(report: &Report) -> serde_json::Value {
 fn text(report: &Report) -> String {
     let p = &report.prediction;
     let mut out = format!("{}\n\n", report.sentences());
-    let _ = writeln!(
-        out,
-        "{:<22} {:>16} {:>16}   stable",
-        "", "period [s]", "amplitude"
-    );
     let describing: Vec<Cycle> = p.describing_function.iter().map(|i| i.cycle).collect();
-    rows(&mut out, "describing function", &describing);
     let exact: Vec<Cycle> = p.exact.iter().map(|c| c.cycle).collect();
-    rows(&mut out, "exact", &exact);
+    let mut table = String::new();
+    rows(&mut table, "describing function", &describing);
+    rows(&mut table, "exact", &exact);
     rows(
-        &mut out,
+        &mut table,
         "one of a continuum",
         p.continuum.as_deref().unwrap_or_default(),
     );
     if let Some(cycle) = report.long_run.cycle {
-        row(&mut out, "simulated", &cycle);
+        row(&mut table, "simulated", &cycle);
     }
-    out.push_str("Amplitude: half of peak to peak.\n");
+    // Where nothing oscillates there is no table.
+    if !table.is_empty() {
+        let _ = writeln!(
+            out,
+            "{:<22} {:>16} {:>16}   stable\n{table}Amplitude: half of peak to peak.",
+            "", "period [s]", "amplitude"
+        );
+    }
     let ultimate = report.ultimate.as_ref().map(|u| u.text.as_str());
     let limits = report.limits.text();
     let _ = writeln!(out, "{}", ultimate.unwrap_or(limits.trim_start()));

@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use hysteron_core::measurement::{ImportOptions, Kind, Mapping, import};
-use hysteron_core::tuning::measured::log::{self, Log};
+use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
 use hysteron_core::tuning::measured::{
-    AmplitudeConvention, FittedModel, Form, MeasuredTuning, Readings, Record, Settings, TunedGains,
-    tune_readings, tune_record,
+    AmplitudeConvention, FittedModel, Form, MeasuredTuning, OpenError, Readings, TunedGains,
+    Wishes, open, tune_readings,
 };
 use serde_json::json;
 
+use crate::arguments::Kind;
 use crate::output::Format;
 
 /// Version of the JSON object.
@@ -31,9 +31,9 @@ pub struct Arguments {
     /// The amplitude was read from peak to peak
     #[arg(long, requires = "amplitude")]
     peak_to_peak: bool,
-    /// Period of the oscillation, s
-    #[arg(long, value_name = "S", conflicts_with = "file")]
-    period: Option<f64>,
+    /// Period of the oscillation, s; of a file without a time column its sampling period, such as 4s or 250Hz
+    #[arg(long, value_name = "PERIOD")]
+    period: Option<String>,
     /// Input while the relay is down and up
     #[arg(
         long,
@@ -57,9 +57,15 @@ pub struct Arguments {
     /// Set point of the test, in the unit of the output
     #[arg(long, value_name = "Y", allow_hyphen_values = true)]
     target: Option<f64>,
-    /// Which column is what: t, u, y, its name in the file, its unit
+    /// Drive or process; guessed from the columns if not given
+    #[arg(long, value_enum)]
+    kind: Option<Kind>,
+    /// Which column is what: t, u, y, its name in the file (- before it turns the sign), its unit
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     map: Option<Mapping>,
+    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    torque_constant: Option<TorqueConstant>,
     /// For a person or for a program
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -116,20 +122,23 @@ impl FromStr for Two {
 
 /// What the test tells, or one line that says what is wrong with the input.
 pub fn run(arguments: &Arguments) -> Result<String, String> {
-    let settings = Settings {
-        form: arguments.form.map_or(Form::Parallel, FormName::form),
+    let wishes = Wishes {
+        form: arguments.form.map(FormName::form),
         full_scale: arguments.full_scale,
         target: arguments.target,
-        notes: Vec::new(),
+        hysteresis: arguments.hysteresis,
     };
     if let Some(scale) = arguments.full_scale
         && !(scale.is_finite() && scale > 0.0)
     {
         return Err(format!("--full-scale is {scale}: it must be above 0"));
     }
-    let result = match (&arguments.file, of_numbers(arguments)) {
-        (Some(file), _) => of_file(file, arguments, &settings)?,
-        (None, Some(readings)) => tune_readings(&readings, &settings).map_err(|e| e.to_string())?,
+    let result = match (&arguments.file, of_numbers(arguments)?) {
+        (Some(file), _) => of_file(file, arguments, &wishes)?,
+        (None, Some(readings)) => {
+            let settings = wishes.settings(Vec::new());
+            tune_readings(&readings, &settings).map_err(|e| e.to_string())?
+        }
         (None, None) => {
             return Err("expected a file, or --amplitude, --period and --levels".to_owned());
         }
@@ -140,26 +149,46 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
     })
 }
 
-fn of_numbers(arguments: &Arguments) -> Option<Readings> {
-    Some(Readings {
-        amplitude: arguments.amplitude?,
+/// What was read off a test, where that and no file is given.
+fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
+    let (Some(amplitude), Some(period), Some(levels), None) = (
+        arguments.amplitude,
+        &arguments.period,
+        arguments.levels,
+        &arguments.file,
+    ) else {
+        return Ok(None);
+    };
+    let period = period.trim_end_matches('s').trim();
+    Ok(Some(Readings {
+        amplitude,
         convention: if arguments.peak_to_peak {
             AmplitudeConvention::PeakToPeak
         } else {
             AmplitudeConvention::Half
         },
-        period: arguments.period?,
-        levels: arguments.levels?.0,
+        period: period
+            .parse()
+            .map_err(|_| format!("--period is {period}: expected the period in s, such as 47"))?,
+        levels: levels.0,
         hysteresis: arguments.hysteresis.unwrap_or(0.0),
         half_periods: arguments.half_periods.map(|t| t.0),
+    }))
+}
+
+/// What the file does not say itself.
+fn options(arguments: &Arguments) -> Result<ImportOptions, String> {
+    let period = arguments.period.as_deref().map(str::parse::<Period>);
+    let period = period.transpose().map_err(|e| format!("--period: {e}"))?;
+    Ok(ImportOptions {
+        kind: arguments.kind.map(Into::into),
+        mapping: arguments.map.clone().unwrap_or_default(),
+        torque_constant: arguments.torque_constant,
+        period,
     })
 }
 
-fn of_file(
-    file: &Path,
-    arguments: &Arguments,
-    settings: &Settings,
-) -> Result<MeasuredTuning, String> {
+fn of_file(file: &Path, arguments: &Arguments, wishes: &Wishes) -> Result<MeasuredTuning, String> {
     let shown = file.display();
     if file.is_dir() {
         return Err(format!(
@@ -171,48 +200,11 @@ fn of_file(
         .file_name()
         .unwrap_or(file.as_os_str())
         .to_string_lossy();
-    let logged = arguments
-        .map
-        .is_none()
-        .then(|| log::read(&name, &String::from_utf8_lossy(&bytes)))
-        .flatten();
-    if let Some(read) = logged {
-        let read = read.map_err(|e| format!("{shown}: {e}"))?;
-        let result = with_arguments(read, arguments).tune(arguments.form.map(FormName::form));
-        return result.map_err(|e| format!("{shown}: {e}"));
-    }
-    let options = ImportOptions {
-        kind: arguments.map.is_none().then_some(Kind::Process),
-        mapping: arguments.map.clone().unwrap_or_default(),
-        torque_constant: None,
-        period: None,
-    };
-    // A drive is a plant as well: what is no process may be one.
-    let measurement = import(&name, &bytes, &options).or_else(|error| {
-        let any = ImportOptions {
-            kind: None,
-            ..options.clone()
-        };
-        import(&name, &bytes, &any).map_err(|_| error)
-    });
-    let measurement = measurement.map_err(|e| e.to_string())?;
-    let settings = Settings {
-        notes: measurement.warnings.clone(),
-        ..settings.clone()
-    };
-    tune_record(&Record::of(&measurement), &settings).map_err(|e| format!("{shown}: {e}"))
-}
-
-/// What the user says beats what a log does not know.
-fn with_arguments(mut read: Log, arguments: &Arguments) -> Log {
-    if let (log::Held::Readings(readings), Some(hysteresis)) =
-        (&mut read.held, arguments.hysteresis)
-    {
-        readings.hysteresis = hysteresis;
-    }
-    read.settings.full_scale = arguments.full_scale.or(read.settings.full_scale);
-    read.settings.target = arguments.target.or(read.settings.target);
-    read
+    let opened = open(&name, &bytes, &options(arguments)?).map_err(|e| match e {
+        OpenError::Log(e) => format!("{shown}: {e}"),
+        OpenError::Import(e) => e.to_string(),
+    })?;
+    opened.tune(wishes).map_err(|e| format!("{shown}: {e}"))
 }
 
 fn json(result: &MeasuredTuning) -> serde_json::Value {

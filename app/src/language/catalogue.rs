@@ -22,11 +22,12 @@ use super::number::with_comma;
 const DEEPEST: usize = 8;
 
 /// Words that are the same in every language: units, names of functions and of parameters.
-const SAME: [&str; 54] = [
+const SAME: [&str; 59] = [
     "rad", "mrad", "deg", "rev", "ms", "us", "µs", "kg", "mm", "um", "mN", "kN", "mA", "mV", "Hz",
     "rpm", "min", "Ti", "Td", "Tf", "Ms", "cos", "sin", "exp", "sgn", "ln", "sqrt", "tau", "phi",
     "beta", "dt", "dy", "du", "dx", "dv", "log", "Hysteron", "csv", "toml", "abs", "rms", "kHz",
-    "max", "counts", "dw", "tanh", "dc", "Ku", "Tu", "µrad", "µm", "µN", "µV", "ambient",
+    "max", "counts", "dw", "tanh", "dc", "Ku", "Tu", "µrad", "µm", "µN", "µV", "ambient", "kp",
+    "ki", "kd", "ti", "td",
 ];
 
 /// What joins parts that are translated one by one, English and translated; the loosest first.

@@ -5,6 +5,7 @@ pub mod content;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cores;
 pub mod enclosed;
+mod measured;
 pub mod packed;
 pub mod reading;
 pub mod tasks;

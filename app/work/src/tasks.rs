@@ -8,7 +8,8 @@ use hysteron_core::effect::EffectId;
 use hysteron_core::maps::{MapInput, Tile};
 use hysteron_core::measurement::{FoundColumn, Measurement};
 use hysteron_core::mystery::{Answer, Mystery, Request, Reveal};
-use hysteron_core::tuning::{TuningInput, TuningReport};
+use hysteron_core::tuning::measured::{MeasuredTuning, Readings, Record, Wishes};
+use hysteron_core::tuning::{Response, TuningInput, TuningReport};
 use hysteron_core::user_model::UserModel;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -138,6 +139,44 @@ pub struct TuneTask(pub TuningInput);
 impl Task for TuneTask {
     const NAME: &'static str = "tune";
     type Report = TuningReport;
+}
+
+/// Tells what a measured relay test tells.
+#[derive(Serialize, Deserialize)]
+pub struct MeasuredTask {
+    /// What there is of it.
+    pub test: MeasuredTest,
+    /// What the user wants besides.
+    pub wishes: Wishes,
+}
+
+/// What there is of a relay test that was measured.
+#[derive(Serialize, Deserialize)]
+pub enum MeasuredTest {
+    /// A record, or the log of an auto-tuner.
+    File(Box<ReadTask>),
+    /// What was read off it.
+    Readings(Readings),
+}
+
+/// What a measured relay test tells, and what is drawn of it.
+#[derive(Serialize, Deserialize)]
+pub struct MeasuredReport {
+    /// All that it tells.
+    pub tuning: MeasuredTuning,
+    /// The record, or some of its samples where there are very many.
+    pub record: Option<Record>,
+    /// Nyquist curve of the preferred model, real and imaginary parts.
+    pub nyquist: Vec<[f64; 2]>,
+    /// With each of the gains: what a step of the set point and one of the load do to the model.
+    pub loops: Vec<Option<[Response; 2]>>,
+    /// What the load does where no controller answers.
+    pub alone: Option<Response>,
+}
+
+impl Task for MeasuredTask {
+    const NAME: &'static str = "measured";
+    type Report = MeasuredReport;
 }
 
 /// Estimates a gap from the motor's columns alone.

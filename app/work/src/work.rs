@@ -55,7 +55,7 @@ impl Work for ReadTask {
 }
 
 /// The bytes of a file.
-fn bytes_of(content: &Content) -> Cow<'_, [u8]> {
+pub(crate) fn bytes_of(content: &Content) -> Cow<'_, [u8]> {
     match content {
         Content::Plain(bytes) => Cow::Borrowed(bytes),
         Content::Packed(bytes) => Cow::Owned(unpack(bytes).unwrap_or_default()),

@@ -29,8 +29,14 @@ const LEAST_RISE: usize = 2;
 /// Share of a cycle up to which the same is looked at.
 const LEADING: f64 = 0.35;
 
-/// Step of the search for the begin, samples.
+/// Step of the search for the begin, and how far before the first sample of a contact it starts, samples.
 const BEGIN_STEP: f64 = 0.125;
+const BEFORE: f64 = 2.5;
+
+/// Begins are alike whose squares differ by less than this of the noise (95 % of a normal distribution), or than this share
+/// of the change where there is none.
+const ALIKE: f64 = 2.0;
+const ROUND_OFF: f64 = 1e-6;
 
 /// Pause before a contact, in cycles, after which the load was free and not still touched.
 const FREE: f64 = 0.25;
@@ -120,7 +126,7 @@ pub(super) fn touches(
             } else {
                 0.5 * DIFFERENCE as f64
             };
-            let begin = begin(&flat, *span, leading)? + early;
+            let begin = begin(&flat, *span, leading, motor.noise)? + early;
             let change = flat[span.1] - flat[span.0];
             Some(Touch {
                 begin,
@@ -138,6 +144,7 @@ pub(super) fn touches(
         })
         .collect();
     touches.sort_by(|a, b| a.begin.total_cmp(&b.begin));
+    touches.retain(|touch| !flips_at(record, touch.begin));
     loop {
         weigh(&flat, cycles, motor.noise, &mut touches);
         for touch in &mut touches {
@@ -161,6 +168,20 @@ pub(super) fn touches(
         drop_marked(&mut touches, &doubtful);
     }
 }
+
+/// Whether the asymmetry flips where a touch begins: what is unexplained there is the flip, which comes too seldom to be placed
+/// by what is usual.
+fn flips_at(record: &Record, begin: f64) -> bool {
+    let from = (begin - AT_FLIP).max(0.0) as usize;
+    let to = ((begin + AT_FLIP).ceil().max(0.0) as usize + 1).min(record.len());
+    let part = record.input.get(from..to).unwrap_or_default();
+    part.windows(2)
+        .any(|u| u[0] * u[1] > 0.0 && (u[1] - u[0]).abs() > FLIPS * u[0].abs())
+}
+
+/// Samples about a flip of the asymmetry, and the least change of the torque without a change of its sign that is one.
+const AT_FLIP: f64 = 1.0;
+const FLIPS: f64 = 0.1;
 
 /// Whether the unexplained force acts within the contacts and not about them: a load is touched at one end
 /// of the cycle, while a force that depends on position, speed or time acts all through it.
@@ -238,20 +259,19 @@ fn cumulative_sum(values: &[f64], sign: f64, noise: f64, wait: usize) -> Vec<(us
 /// Begin of a contact between the samples `span`, between samples: its leading edge is a broken line.
 ///
 /// Hinkley 1969, "Inference about the intersection in two-phase regression", Biometrika 56. A damped
-/// contact pushes at once, so that the velocity falls linearly at first.
-fn begin(values: &[f64], span: (usize, usize), leading: usize) -> Option<f64> {
+/// contact pushes at once, so that the velocity falls linearly at first. Of begins that explain the edge alike the middle
+/// one is taken: of a hard impact only the sample is seen in which it was.
+fn begin(values: &[f64], span: (usize, usize), leading: usize, noise: f64) -> Option<f64> {
     let from = span.0.saturating_sub(AROUND);
     let change = values[span.1] - values[span.0];
     let rise = (span.0..span.1)
         .find(|i| (values[*i] - values[span.0]) / change >= RISE)
         .unwrap_or(span.1)
-        .clamp(span.0 + LEAST_RISE, span.0 + leading.max(LEAST_RISE));
+        .clamp(span.0 + 1, span.0 + leading.max(LEAST_RISE));
     let part = values.get(from..=rise)?;
     let mean = part.iter().sum::<f64>() / part.len() as f64;
-    let mut best: Option<(f64, f64)> = None;
-    let last = rise as f64 - LEAST_RISE as f64 + 1.0;
-    let mut begin = span.0 as f64 - 2.5;
-    while begin <= last {
+    // What a line from a begin on explains of the squares, if it goes the right way.
+    let explained = |begin: f64| {
         let form = |k: usize| ((from + k) as f64 - begin).max(0.0);
         let middle = (0..part.len()).map(form).sum::<f64>() / part.len() as f64;
         let (mut own, mut with) = (0.0, 0.0);
@@ -260,18 +280,24 @@ fn begin(values: &[f64], span: (usize, usize), leading: usize) -> Option<f64> {
             own += f * f;
             with += f * (v - mean);
         }
-        // What the line explains of the squares, if it goes the right way.
-        let explained = if own > 0.0 && with * change > 0.0 {
+        if own > 0.0 && with * change > 0.0 {
             with * with / own
         } else {
             0.0
-        };
-        if explained > best.map_or(0.0, |b| b.1) {
-            best = Some((begin, explained));
         }
-        begin += BEGIN_STEP;
-    }
-    best.map(|b| b.0)
+    };
+    let first = span.0 as f64 - BEFORE;
+    let count = ((rise as f64 - first) / BEGIN_STEP) as usize;
+    let tried: Vec<(f64, f64)> = (0..count)
+        .map(|k| first + k as f64 * BEGIN_STEP)
+        .map(|begin| (begin, explained(begin)))
+        .collect();
+    let best = tried.iter().fold(0.0_f64, |b, t| b.max(t.1));
+    let alike = (ALIKE * noise).powi(2).max(ROUND_OFF * change * change);
+    let mut good = tried.iter().filter(|t| t.1 > 0.0 && t.1 >= best - alike);
+    let first = good.next()?.0;
+    let last = good.next_back().map_or(first, |t| t.0);
+    Some(0.5 * (first + last))
 }
 
 /// Samples from `begin` to the centre of the push between the samples `span`.

@@ -1,7 +1,7 @@
 //! The gap from the motor's columns.
 
 use crate::measurement::Measurement;
-use crate::model::{SeenContact, SeenLoad, Sharpness};
+use crate::model::{SeenContact, SeenLoad, Sharpness, Turn};
 use crate::order::{drop_marked, median, quantile, range};
 
 use super::contacts::{FEWEST_CONTACTS, Touch, touches};
@@ -16,11 +16,17 @@ use super::verdict;
 /// Standard normal quantile of a two-sided 95 % interval.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// Systematic error of a contact's place, as share of the way that the motor goes in a sample at the
-/// speed of its cycle: the shape of a contact is not known better.
-const PLACE_SHARE: f64 = 0.25;
-/// The same where the velocity was not measured.
-const POSITION_PLACE_SHARE: f64 = 0.5;
+/// Systematic error of a contact's begin where the velocity was measured, samples, and as share of how long it lasts: a
+/// straight edge is found up to so much early or late at a hard, a soft, a little and a much damped contact (damping ratio
+/// 0.1 to 0.6).
+const PLACE: f64 = 0.1;
+const PLACE_SHARE: f64 = 0.06;
+
+/// Share of the way that the load flies during a traverse by which that may be wrong: no law of friction is right to more
+/// digits.
+const FLIGHT: f64 = 0.03;
+/// The same in samples where the velocity was not measured.
+const POSITION_PLACE: f64 = 0.5;
 
 /// Relative standard errors up to which an estimate is good, fair, and stated at all.
 const GOOD: f64 = 0.03;
@@ -41,6 +47,9 @@ const STRAY: f64 = 0.5;
 const RATTLE_CYCLES: f64 = 20.0;
 const RATTLES: usize = 20;
 const RATTLE_ERROR: f64 = 0.05;
+
+/// Cycles after and before a contact that are left to it.
+const MARGIN: f64 = 0.5;
 
 /// Speed at the start, of the cycle's, up to which the motor starts at rest.
 const AT_REST: f64 = 0.1;
@@ -115,32 +124,30 @@ fn look(measurement: &Measurement) -> Result<(GapEstimate, Option<Felt>), GapErr
         .iter()
         .map(|t| Contact {
             time: record.time(t.begin),
-            position: record.position_at(t.begin),
+            position: record.reaching(t.begin).0,
             side: t.side,
             velocity_loss: t.jump,
         })
         .collect();
-    let share = if record.has_velocity {
-        PLACE_SHARE
-    } else {
-        POSITION_PLACE_SHARE
-    };
-    let place_error = share * record.step * cycles.speed;
+    let place_error = place_error(&touches, &record, cycles.speed);
     let both = [Side::Positive, Side::Negative]
         .iter()
         .all(|side| touches.iter().any(|t| t.side == *side));
     let mut felt = None;
-    let events: Vec<SeenContact> = touches.iter().map(|t| seen(t, &record)).collect();
+    let mut events: Vec<SeenContact> = touches.iter().map(|t| seen(t, &record)).collect();
+    between(&mut events, &record, &cycles);
     let (low, high) = range(&record.position);
     let scales = Scales {
         step: record.step,
         speed: cycles.speed,
         acceleration: motor.acceleration,
         travel: high - low,
+        unseen: false,
     };
     if both {
         let period = cycles.length * record.step;
-        let load = two_sided(&mut estimate, events, &scales, period, place_error);
+        let turned = |events: &mut Vec<SeenContact>| between(events, &record, &cycles);
+        let load = two_sided(&mut estimate, events, turned, &scales, period, place_error);
         felt = load.map(Felt::AtBothEnds);
     } else if touches.len() >= FEWEST_CONTACTS {
         one_sided(&mut estimate, &record, &cycles, place_error);
@@ -182,6 +189,7 @@ fn nothing(record: &Record, quality: Quality) -> GapEstimate {
 fn two_sided(
     estimate: &mut GapEstimate,
     mut events: Vec<SeenContact>,
+    turned: impl Fn(&mut Vec<SeenContact>),
     scales: &Scales,
     period: f64,
     place_error: f64,
@@ -191,15 +199,22 @@ fn two_sided(
     let stray = strays(&estimate.contacts, &fit);
     if stray.contains(&true) {
         drop_marked(&mut events, &stray);
+        turned(&mut events);
         drop_marked(&mut estimate.contacts, &stray);
         fit = likelihood::fit(&events, scales, None)?;
+    }
+    if let Some(again) = pushed_unseen(&estimate.contacts, &events, &fit, scales) {
+        fit = again;
     }
     estimate.traverses = traverses(&estimate.contacts, &fit);
     let gap = 2.0 * fit.play.half_gap;
     let rattles = rattles(&estimate.traverses, period);
     let systematic = if rattles { RATTLE_ERROR * gap } else { 0.0 };
-    let error = libm::hypot(libm::hypot(2.0 * fit.error, 2.0 * place_error), systematic);
-    let agree = disagreement(&estimate.traverses, gap) < AGREE;
+    let flight = FLIGHT * flight(&estimate.traverses, gap);
+    let error = [2.0 * fit.error, 2.0 * place_error, systematic, flight]
+        .into_iter()
+        .fold(0.0, libm::hypot);
+    let agree = !disagree(&estimate.contacts, &fit);
     if !(error < STATED * gap && gap < 2.0 * scales.travel && agree) {
         return None;
     }
@@ -221,6 +236,40 @@ fn two_sided(
     seen_load(events, &fit, place_error)
 }
 
+/// How far the load usually flies during a traverse, rad or m.
+fn flight(traverses: &[Traverse], gap: f64) -> f64 {
+    let mut ways: Vec<f64> = traverses
+        .iter()
+        .map(|t| ((t.to.position - t.from.position).abs() - gap).abs())
+        .collect();
+    if ways.is_empty() {
+        return 0.0;
+    }
+    median(&mut ways)
+}
+
+/// Whether the traverses of a fit are not of one gap.
+fn disagree(contacts: &[Contact], fit: &Fit) -> bool {
+    disagreement(&traverses(contacts, fit), 2.0 * fit.play.half_gap) >= AGREE
+}
+
+/// Where the traverses disagree touches too light to be seen may have pushed the load along: the fit that counts with it.
+fn pushed_unseen(
+    contacts: &[Contact],
+    events: &[SeenContact],
+    fit: &Fit,
+    scales: &Scales,
+) -> Option<Fit> {
+    if !disagree(contacts, fit) {
+        return None;
+    }
+    let scales = Scales {
+        unseen: true,
+        ..*scales
+    };
+    likelihood::fit(events, &scales, None)
+}
+
 /// Contacts at one end of the gap between two at the other from which the motor did not go anything like the gap: what
 /// else disturbed the motor there was no load.
 fn strays(contacts: &[Contact], fit: &Fit) -> Vec<bool> {
@@ -228,7 +277,9 @@ fn strays(contacts: &[Contact], fit: &Fit) -> Vec<bool> {
     let off: Vec<bool> = contacts
         .windows(2)
         .zip(&fit.innovations)
-        .map(|(pair, i)| pair[0].side != pair[1].side && i.value.abs() > least + i.deviation)
+        .map(|(pair, i)| {
+            !i.lost && pair[0].side != pair[1].side && i.value.abs() > least + i.deviation
+        })
         .collect();
     let at = |pair: Option<usize>| pair.and_then(|k| off.get(k)).copied().unwrap_or(false);
     (0..contacts.len())
@@ -244,18 +295,62 @@ fn seen_load(events: Vec<SeenContact>, fit: &Fit, place_error: f64) -> Option<Se
     SeenLoad::new(events, fit.play, sharpness, fit.load_errors)
 }
 
+/// Systematic error of the place of a contact, rad or m.
+fn place_error(touches: &[Touch], record: &Record, speed: f64) -> f64 {
+    let mut lengths: Vec<f64> = touches.iter().map(|t| t.length).collect();
+    if touches.is_empty() {
+        return 0.0;
+    }
+    let samples = if record.has_velocity {
+        libm::hypot(PLACE, PLACE_SHARE * median(&mut lengths))
+    } else {
+        POSITION_PLACE
+    };
+    samples * record.step * speed
+}
+
 /// A touch in SI units.
 fn seen(touch: &Touch, record: &Record) -> SeenContact {
+    let (position, velocity) = record.reaching(touch.begin);
     SeenContact {
         begin: record.time(touch.begin),
         end: record.time(touch.begin + touch.length),
         centre: touch.centre * record.step,
-        position: record.position_at(touch.begin),
-        velocity: record.velocity_at(touch.begin),
+        position,
+        velocity,
         side: touch.side.sign(),
         jump: touch.jump,
         jump_noise: touch.jump_noise,
         free: touch.free,
+        turns: [None; 2],
+    }
+}
+
+/// Writes down where the motor was farthest between the contacts.
+fn between(events: &mut [SeenContact], record: &Record, cycles: &Cycles) {
+    let length = cycles.length;
+    let sample = |time: f64| (time - record.start) / record.step;
+    for k in 1..events.len() {
+        let from = sample(events[k - 1].end) + MARGIN * length;
+        let to = sample(events[k].begin) - MARGIN * length;
+        events[k].turns = [None; 2];
+        if to - from < length {
+            continue;
+        }
+        let (from, to) = (from.ceil() as usize, to as usize);
+        let place = |i: &usize, j: &usize| record.position[*i].total_cmp(&record.position[*j]);
+        let turn = |at: usize, side: f64| Turn {
+            time: record.time(at as f64),
+            position: record.position[at],
+            side,
+        };
+        let high = (from..to).max_by(place).map(|at| turn(at, 1.0));
+        let low = (from..to).min_by(place).map(|at| turn(at, -1.0));
+        events[k].turns = [high, low];
+        events[k].turns.sort_by(|a, b| {
+            a.map_or(0.0, |t| t.time)
+                .total_cmp(&b.map_or(0.0, |t| t.time))
+        });
     }
 }
 
@@ -296,7 +391,7 @@ fn traverses(contacts: &[Contact], fit: &Fit) -> Vec<Traverse> {
     contacts
         .windows(2)
         .zip(&fit.innovations)
-        .filter(|(pair, _)| pair[0].side != pair[1].side)
+        .filter(|(pair, i)| pair[0].side != pair[1].side && !i.lost)
         .map(|(pair, innovation)| Traverse {
             from: pair[0],
             to: pair[1],

@@ -16,6 +16,10 @@ const LAGS: (usize, usize) = (FRICTION_LAGS, 14);
 /// Times the median change anywhere that the median one at a switch may be unexplained if the torque is as written.
 const AT_SWITCHES: f64 = 3.0;
 
+/// Share of the velocity's swing to which a free motor is known at best: no equation of a motor is right to more digits, and
+/// a record without noise would show the error of ours instead.
+const DISCREPANCY: f64 = 3e-4;
+
 /// Rounds of reweighting; the weights settle within a few.
 const ROUNDS: usize = 8;
 
@@ -79,8 +83,6 @@ impl FreeMotor {
     fn unsure_of(self, spread: &[f64], cycles: &Cycles, step: f64) -> Self {
         let per_torque = self.acceleration * step / cycles.gain;
         Self {
-            // Placed switches leave more than the sensor's noise, from which a contact must stand out.
-            noise: self.noise.max(calm(&self.unexplained, cycles)),
             unsure: spread.iter().map(|s| s * per_torque).collect(),
             ..self
         }
@@ -235,7 +237,9 @@ impl Rows {
         let total: f64 = solution.iter().take(self.inputs).sum();
         Some(FreeMotor {
             unsure: Vec::new(),
-            noise: noise(record, &unexplained, cycles),
+            noise: noise(record, &unexplained, cycles)
+                .max(calm(&unexplained, cycles))
+                .max(DISCREPANCY * 2.0 * cycles.speed),
             unexplained,
             acceleration: (total / record.step).abs(),
         })

@@ -4,7 +4,7 @@ use rand::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
 use rand_pcg::Pcg64;
 
-use crate::model::{LoadState, Play, SeenContact, Sharpness, Slowing};
+use crate::model::{LoadState, Play, SeenContact, Sharpness, Slowing, Surprise};
 use crate::simplex::minimise;
 
 /// Unknowns: logarithms of half gap, motor inertia over load inertia, viscous and dry slowing of the
@@ -63,6 +63,8 @@ pub(super) struct Scales {
     pub acceleration: f64,
     /// Travel in the record, rad or m.
     pub travel: f64,
+    /// Whether touches too light to be seen may have pushed the load along.
+    pub unseen: bool,
 }
 
 /// How far a contact lies from where the load was expected.
@@ -71,6 +73,8 @@ pub(super) struct Innovation {
     /// Measured minus expected position of the motor.
     pub value: f64,
     pub deviation: f64,
+    /// Whether the load was lost before, so that nothing was expected.
+    pub lost: bool,
 }
 
 /// The best explanation.
@@ -112,7 +116,15 @@ pub(super) fn fit(
             1.0,
         ],
     };
-    let errors = (SLOW * scales.speed, LATE * scales.step);
+    let errors = Errors {
+        slow: SLOW * scales.speed,
+        late: LATE * scales.step,
+        unseen: scales.unseen,
+        unknown: Surprise {
+            value: 0.0,
+            variance: scales.travel * scales.travel,
+        },
+    };
     let cost = |point: &Point| {
         let plain = plain(point);
         let prior: f64 = (0..UNKNOWNS)
@@ -163,7 +175,7 @@ pub(super) fn fit(
     let point = posterior.mean;
     let mut innovations = Vec::new();
     filter(events, &point, errors, Some(&mut innovations));
-    let (play, sharpness) = meaning(&point, errors.1);
+    let (play, sharpness) = meaning(&point, errors.late);
     // The logarithm of each as a sum of the unknowns: that of the ratio is the first two together, and the frictions
     // stand there divided by the load's inertia.
     let relative = |weights: Point| {
@@ -208,14 +220,27 @@ fn plain(point: &Point) -> Point {
     plain
 }
 
+/// How well a contact is seen.
+#[derive(Clone, Copy)]
+struct Errors {
+    /// Of the relative speed at its begin, rad/s or m/s.
+    slow: f64,
+    /// Of its begin, s.
+    late: f64,
+    /// Whether touches too light to be seen may have pushed the load along.
+    unseen: bool,
+    /// Where nothing is known of the load: the travel.
+    unknown: Surprise,
+}
+
 /// Minus the logarithm of the likelihood of the innovations, up to a constant.
 fn filter(
     events: &[SeenContact],
     point: &Point,
-    (slow, late): (f64, f64),
+    errors: Errors,
     mut innovations: Option<&mut Vec<Innovation>>,
 ) -> f64 {
-    let (play, sharpness) = meaning(point, late);
+    let (play, sharpness) = meaning(point, errors.late);
     let Some(first) = events.first() else {
         return 0.0;
     };
@@ -224,13 +249,29 @@ fn filter(
     for (k, event) in events.iter().enumerate() {
         if k > 0 {
             let before = &events[k - 1];
-            state.fly(&play.slowing, event.begin - before.begin - before.centre);
-            let surprise = state.surprise(event, play.half_gap, &sharpness);
+            let mut now = before.begin + before.centre;
+            let mut lost = false;
+            for turn in event.turns.iter().flatten() {
+                // At the other end a load is hit before it is pushed along, and that is seen.
+                if errors.unseen && turn.time > now && turn.side * before.side > 0.0 {
+                    state.fly(&play.slowing, turn.time - now);
+                    lost |= state.is_passed(turn, play.half_gap, &sharpness);
+                    now = turn.time;
+                }
+            }
+            state.fly(&play.slowing, event.begin - now);
+            let mut surprise = state.surprise(event, play.half_gap, &sharpness);
+            if lost {
+                // It may be met anywhere, and is found again.
+                surprise = errors.unknown;
+                state = LoadState::at_rest(event.load_at(play.half_gap), &sharpness);
+            }
             let (value, variance) = (surprise.value, surprise.variance);
             if let Some(list) = innovations.as_deref_mut() {
                 list.push(Innovation {
                     value,
                     deviation: variance.sqrt(),
+                    lost,
                 });
             }
             if event.free {
@@ -239,8 +280,10 @@ fn filter(
                     + 0.5 * (FREEDOM + 1.0) * libm::log1p(square / FREEDOM);
                 // What is random is when they meet, not where: density in time, not in position.
                 let approach = event.side * (event.velocity - state.v);
-                total -= libm::log(slow * softplus(approach / slow));
-                state.meet(&surprise);
+                total -= libm::log(errors.slow * softplus(approach / errors.slow));
+                if !lost {
+                    state.meet(&surprise);
+                }
             }
         }
         state.fly(&play.slowing, event.centre);

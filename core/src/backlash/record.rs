@@ -100,14 +100,21 @@ impl Record {
         self.start + sample * self.step
     }
 
-    /// Position between two samples.
-    pub fn position_at(&self, sample: f64) -> f64 {
-        between(&self.position, sample)
-    }
-
-    /// Velocity between two samples.
-    pub fn velocity_at(&self, sample: f64) -> f64 {
-        between(&self.velocity, sample)
+    /// Position and velocity between two samples, as they went on from the ones before: something happens there.
+    pub fn reaching(&self, sample: f64) -> (f64, f64) {
+        let last = self.len() - 1;
+        let i = (sample.max(0.0) as usize).min(last);
+        let share = (sample - i as f64).clamp(0.0, 1.0);
+        if !self.has_velocity || share == 0.0 {
+            return (
+                between(&self.position, sample),
+                between(&self.velocity, sample),
+            );
+        }
+        let v = self.velocity[i];
+        let reached = v + share * (v - self.velocity[i.saturating_sub(1)]);
+        let way = 0.5 * (v + reached) * share * self.step;
+        (self.position[i] + way, reached)
     }
 }
 

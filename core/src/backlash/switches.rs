@@ -9,8 +9,9 @@
 use super::record::Record;
 use crate::order::median;
 
-/// Share of the usual change of the slope that a switch must show in the samples next to it.
-const SHOWN: f64 = 0.5;
+/// Share by which the change of the slope at a switch may differ from the usual one before something else must have
+/// happened next to it; the line on the other side then places the switch.
+const AS_USUAL: f64 = 0.25;
 
 /// How far outside of its sample the lines may meet, in samples, before something else must have happened in it.
 const OUTSIDE: f64 = 0.25;
@@ -74,10 +75,16 @@ impl Switches {
         let usual = median(&mut bends);
         for i in alone {
             spread[i] = 0.0;
-            if bend(i) / change(i) < SHOWN * usual {
-                continue;
-            }
-            let old = (v[i + 2] - 2.0 * v[i + 1] + v[i]) / bend(i);
+            let within = v[i + 1] - v[i];
+            let [before, after] = [v[i] - v[i - 1], v[i + 2] - v[i + 1]];
+            let expected = usual * change(i);
+            let old = if (bend(i) / expected - 1.0).abs() <= AS_USUAL {
+                (after - within) / bend(i)
+            } else if (before - usual * u[i]).abs() < (after - usual * u[i + 1]).abs() {
+                1.0 - (within - before) / expected
+            } else {
+                (after - within) / expected
+            };
             let old = if (-OUTSIDE..=1.0 + OUTSIDE).contains(&old) {
                 old.clamp(0.0, 1.0)
             } else {

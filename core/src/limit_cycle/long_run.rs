@@ -40,6 +40,8 @@ pub struct LongRunResult {
     pub cycle: Option<Cycle>,
     /// Standard deviations of period (s) and amplitude from cycle to cycle, with noise.
     pub scatter: Option<[f64; 2]>,
+    /// How long the output slides along the threshold in each cycle, s: the relay is then not one of two levels.
+    pub slides: f64,
     /// In a sentence or two.
     pub text: String,
 }
@@ -218,16 +220,25 @@ fn noisy_result(
             stable: None,
         }),
         scatter: Some([found.period[1], found.amplitude[1]]),
+        slides: 0.0,
         text: words::noisy(found, relay, noise, prediction),
     }
 }
 
 impl LongRunResult {
+    /// The cycle of which equation (9) speaks: not one of a continuum, of which each has another gain, and none whose relay
+    /// slides.
+    pub fn of_two_levels(&self) -> Option<Cycle> {
+        let told = self.outcome != Some(Outcome::Continuum) && self.slides == 0.0;
+        self.cycle.filter(|_| told)
+    }
+
     fn of(outcome: Option<Outcome>, text: String) -> Self {
         Self {
             outcome,
             cycle: None,
             scatter: None,
+            slides: 0.0,
             text,
         }
     }
@@ -375,12 +386,11 @@ impl<'a> View<'a> {
         if slid > 0.0 {
             text += &words::slides_within(slid);
         }
-        Some(LongRunResult::cycle(
-            Outcome::LimitCycle,
-            last,
-            stable,
-            text,
-        ))
+        let found = LongRunResult::cycle(Outcome::LimitCycle, last, stable, text);
+        Some(LongRunResult {
+            slides: slid,
+            ..found
+        })
     }
 
     fn growing(&self, cycles: &[OneCycle]) -> Option<LongRunResult> {

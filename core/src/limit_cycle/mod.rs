@@ -14,6 +14,7 @@ mod pattern;
 mod prediction;
 mod stability;
 mod words;
+mod z_form;
 
 use std::f64::consts::PI;
 
@@ -31,6 +32,7 @@ pub use harmonics::{Harmonic, harmonics};
 pub use long_run::{LongRun, LongRunResult};
 pub use outcome::Outcome;
 pub use prediction::{PredictError, Prediction, Trust, dominant, predict};
+pub use z_form::{pulse_transfer_at_minus_one, z_form};
 
 /// Typical angular frequency of a plant, rad/s: the geometric mean of its poles, or of what its
 /// coefficients show where some are at 0.

@@ -69,6 +69,10 @@ const MAX_DELAY: f64 = 1e9;
 /// Share by which period or amplitude may be off for the describing function to be called reliable.
 const TRUSTED_ERROR: f64 = 0.05;
 
+/// What is said of one that can be trusted, with noise and without.
+const IS_GOOD: &str = "The describing function is good here:";
+const GOOD_WITHOUT_NOISE: &str = "Without noise the describing function is good:";
+
 /// Guesses closer than this ratio share a scan, which reaches a factor of five to either side.
 const SAME_SCAN: f64 = 4.0;
 
@@ -109,7 +113,12 @@ pub fn predict(plant: &TransferFunction, relay: &Relay) -> Result<Prediction, Pr
 impl Prediction {
     /// How far the describing function can be trusted, now that the loop's outcome is known.
     pub fn trust_after(&self, plant: &TransferFunction, relay: &Relay, outcome: Outcome) -> Trust {
-        trust(self, plant, relay, Some(outcome))
+        let mut trust = trust(self, plant, relay, Some(outcome));
+        if matches!(outcome, Outcome::NoisyLimitCycle | Outcome::Chatter) {
+            // The exact cycle, with which it is compared, knows no noise.
+            trust.text = trust.text.replace(IS_GOOD, GOOD_WITHOUT_NOISE);
+        }
+        trust
     }
 }
 
@@ -182,10 +191,16 @@ fn trust(
     };
     let Some(main) = dominant(&prediction.describing_function) else {
         return match exact.first() {
-            Some(c) => untrusted(format!(
-                "The describing function sees no oscillation; exactly there is one of period {:.4} s: do not trust it here.",
-                c.cycle.period
-            )),
+            Some(c) => {
+                let kind = match c.cycle.stable {
+                    Some(false) => "an unstable one",
+                    _ => "one",
+                };
+                untrusted(format!(
+                    "The describing function sees no oscillation; exactly there is {kind} of period {:.4} s: do not trust it here.",
+                    c.cycle.period
+                ))
+            }
             None if keeps_switching => untrusted(
                 "The describing function sees no oscillation, though the relay keeps switching: do not trust it here."
                     .to_owned(),
@@ -228,7 +243,7 @@ fn trust(
         100.0 * main.distortion
     );
     let text = match (accurate, smooth) {
-        (true, true) => format!("The describing function is good here: {differences}."),
+        (true, true) => format!("{IS_GOOD} {differences}."),
         (true, false) => format!(
             "Do not trust the describing function here, although {differences}: {harmonics}."
         ),

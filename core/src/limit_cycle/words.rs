@@ -28,6 +28,15 @@ fn significant(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A mean with its scatter: two significant digits of this, and as many decimals of the mean.
+fn uncertain([mean, spread]: [f64; 2]) -> String {
+    if !(spread > 0.0 && spread.is_finite() && spread < mean.abs()) {
+        return format!("{} ± {}", significant(mean), significant(spread));
+    }
+    let decimals = (1.0 - libm::floor(libm::log10(spread))).clamp(0.0, 12.0) as usize;
+    format!("{mean:.decimals$} ± {spread:.decimals$}")
+}
+
 fn values([period, amplitude]: &OneCycle) -> String {
     let [period, amplitude] = [*period, *amplitude].map(significant);
     format!("period {period} s, amplitude {amplitude}")
@@ -202,8 +211,7 @@ pub(super) fn noisy(
     noise: Noise,
     prediction: &Prediction,
 ) -> String {
-    let [period, amplitude] = [found.period, found.amplitude]
-        .map(|[mean, spread]| format!("{} ± {}", significant(mean), significant(spread)));
+    let [period, amplitude] = [found.period, found.amplitude].map(uncertain);
     if found.chatters() {
         return format!(
             "The relay chatters in the noise: {:.0} switches in a cycle where two would do. Make its hysteresis ({}) larger \

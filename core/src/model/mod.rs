@@ -38,7 +38,7 @@ pub use followed::{FollowedNoise, load_torque};
 pub use load::{Coupling, Load};
 pub(crate) use replay::LoadBegin;
 pub use replay::{Excitation, FollowedLoad, Sensor, Start};
-pub(crate) use seen_load::{LoadState, Play, SeenContact, SeenLoad, Sharpness};
+pub(crate) use seen_load::{LoadState, Play, SeenContact, SeenLoad, Sharpness, Surprise, Turn};
 pub(crate) use smoothed::smoothed;
 pub use state::State;
 

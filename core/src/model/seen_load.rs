@@ -27,6 +27,8 @@ pub struct SeenContact {
     pub jump_noise: f64,
     /// Whether the load flew before, so that its place is told by the begin; else the push goes on.
     pub free: bool,
+    /// Where the motor was farthest on either side since the contact before, in order of time.
+    pub turns: [Option<Turn>; 2],
 }
 
 impl SeenContact {
@@ -82,6 +84,20 @@ pub struct LoadState {
     /// Covariance.
     pub covariance: [f64; 3],
 }
+
+/// Where the motor turned round between two contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// When, s.
+    pub time: f64,
+    /// The motor's position there.
+    pub position: f64,
+    /// 1 where it turned at its largest position, -1 at its smallest.
+    pub side: f64,
+}
+
+/// Standard deviations of its place by which a load must lie within the way of the motor to have been pushed along.
+const PASSED: f64 = 3.0;
 
 /// How far a contact lies from where the load was expected.
 #[derive(Clone, Copy, Debug)]
@@ -143,6 +159,13 @@ impl LoadState {
         let [xx, xv, vv] = self.covariance;
         self.covariance = [xx - gx * xx, xv - gx * xv, vv - gv * xv];
         [gx, gv]
+    }
+
+    /// Whether the motor went through the load, which cannot be: touches too light to be seen pushed it along, and it is
+    /// lost. What is within the noise of places is no such thing.
+    pub fn is_passed(&self, turn: &Turn, half_gap: f64, sharpness: &Sharpness) -> bool {
+        let within = turn.side * (turn.position - self.x) - half_gap;
+        within > PASSED * (self.covariance[0] + sharpness.place.powi(2)).sqrt()
     }
 
     /// Takes up the momentum of a contact.
@@ -406,6 +429,7 @@ mod tests {
             jump,
             jump_noise: 1e-4,
             free: true,
+            turns: [None; 2],
         }
     }
 

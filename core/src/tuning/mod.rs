@@ -54,6 +54,6 @@ pub use report::{
 pub use rules::{Identified, RULES, Rule, Wish, rule};
 pub use ultimate::{
     AMPLITUDE_CONVENTION, Crossing, RelayGain, ShownPoint, StabilityLimits, Ultimate,
-    UltimateReport, compare, crossings, gain_on_real_axis, relay_gain, stability_limits,
+    UltimateReport, Without, compare, crossings, gain_on_real_axis, relay_gain, stability_limits,
     true_ultimate, ultimate_gain,
 };

@@ -136,6 +136,8 @@ pub struct PointReport {
 pub struct PhaseMarginReport {
     /// The adaptation, equations (7) and (8).
     pub adaptation: Adaptation,
+    /// The same by the plain secant law (8), one run a step; `None` where it does not get there.
+    pub secant: Option<Adaptation>,
     /// True phase margin, rad, of the proportional controller found; the describing function's error is
     /// its difference from the required one.
     pub true_phase_margin: Option<f64>,
@@ -308,7 +310,9 @@ fn phase_margin(
     // The first run has the amplitude of the user's relay.
     let first = test.relay.gain / design.gain;
     let adaptation = adapt(plant, &design, input.adaptation, first)?;
+    let secant = adapt(plant, &design, AdaptationMethod::Secant, first).ok();
     Ok(PhaseMarginReport {
+        secant,
         true_phase_margin: margins(plant, &Pid::p(adaptation.gain)).phase_margin,
         adaptation,
     })

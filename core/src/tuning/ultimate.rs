@@ -107,6 +107,21 @@ pub struct StabilityLimits {
     pub lower: Option<Ultimate>,
     /// Above it the loop is unstable: the ultimate gain.
     pub upper: Option<Ultimate>,
+    /// What the loop is at every gain where there is no limit.
+    pub without: Without,
+}
+
+/// A loop whose stability does not depend on the gain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Without {
+    /// Stable at every gain.
+    #[default]
+    Stable,
+    /// Unstable at every gain.
+    Unstable,
+    /// On the limit of stability at every gain, as `1/s^2` is.
+    OnTheLimit,
 }
 
 impl StabilityLimits {
@@ -130,9 +145,18 @@ impl StabilityLimits {
                 " The loop is stable above a gain only: that lower limit is {}; there is no true Ku.",
                 at(lower)
             ),
-            (None, None) => {
-                " The plant has no true Ku: no gain brings it to the limit of stability.".to_owned()
+            (None, None) => match self.without {
+                Without::Stable => {
+                    " With a proportional controller the loop is stable at every gain: the plant has no true Ku."
+                }
+                Without::Unstable => {
+                    " With a proportional controller no gain makes the loop stable: the plant has no true Ku."
+                }
+                Without::OnTheLimit => {
+                    " With a proportional controller every gain leaves the loop on the limit of stability: the plant has no Ku of its own."
+                }
             }
+            .to_owned(),
         }
     }
 }
@@ -177,8 +201,50 @@ pub fn stability_limits(plant: &TransferFunction) -> StabilityLimits {
             _ => {}
         }
     }
+    if limits.lower.is_none() {
+        limits.without = without_limit(plant, stable);
+    }
     limits
 }
+
+/// What a loop without limits is, by its poles at a gain of the plant's size; with a dead time it has none that could be
+/// computed, and is what it is at a small gain.
+fn without_limit(plant: &TransferFunction, stable_at_small_gain: bool) -> Without {
+    if plant.dead_time > 0.0 {
+        return if stable_at_small_gain {
+            Without::Stable
+        } else {
+            Without::Unstable
+        };
+    }
+    let frequency = typical_frequency(plant);
+    let gain = 1.0 / plant.response(frequency).norm();
+    let gain = if gain.is_finite() && gain > 0.0 {
+        gain
+    } else {
+        1.0
+    };
+    let (num, mut den) = (&plant.numerator, plant.denominator.clone());
+    let shift = den.len().saturating_sub(num.len());
+    for (d, n) in den.iter_mut().skip(shift).zip(num) {
+        *d += gain * n;
+    }
+    let closed = TransferFunction::new(&[1.0], &den, 0.0).poles();
+    let right = closed
+        .iter()
+        .map(|p| p.re)
+        .fold(f64::NEG_INFINITY, f64::max);
+    if right.abs() <= ON_AXIS * frequency {
+        Without::OnTheLimit
+    } else if right < 0.0 {
+        Without::Stable
+    } else {
+        Without::Unstable
+    }
+}
+
+/// Real part of a pole, as share of the typical frequency, that is none but round-off; a double root has half of the digits.
+const ON_AXIS: f64 = 1e-7;
 
 /// Share of the typical frequency at which a Nyquist curve leaves frequency 0.
 const NEAR_ZERO: f64 = 1e-4;

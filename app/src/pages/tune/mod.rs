@@ -4,6 +4,7 @@ mod adaptation;
 mod controls;
 mod draw;
 mod loops;
+mod measured;
 mod model;
 mod oscillation;
 mod rules;
@@ -24,6 +25,7 @@ use crate::motion;
 use crate::page::{Hint, Offer, Page, View};
 use crate::theme;
 use hysteron_work::tasks::TuneTask;
+use measured::{From, Measured};
 use stage::{Seen, Stage};
 
 /// The experiment, in its order.
@@ -48,6 +50,8 @@ pub struct Tune {
     asked: Option<TuningInput>,
     job: Option<Job<TuneTask>>,
     message: Option<String>,
+    /// A test that was measured, where that is wanted.
+    measured: Measured,
 }
 
 impl Default for Tune {
@@ -61,17 +65,22 @@ impl Default for Tune {
             asked: None,
             job: None,
             message: None,
+            measured: Measured::default(),
         }
     }
 }
 
 /// The page as the registry has it.
 pub fn page() -> Page {
-    Page::new("tune", "Tune", Tune::default())
+    let mut view = Tune::default();
+    let door = (view.measured.files)
+        .door("Drop the record of a relay test, or the log of an auto-tuner, to get gains from it");
+    Page::new("tune", "Tune", view).with_door(door)
 }
 
 impl View for Tune {
     fn update(&mut self, _ctx: &egui::Context) {
+        self.measured.update();
         match (ended(&mut self.job, |_, _| ()), &self.asked) {
             (Some(Ok(report)), Some(asked)) => {
                 self.shown = Some((asked.clone(), Box::new(report)));
@@ -86,11 +95,14 @@ impl View for Tune {
         if ui.available_width() < layout::NARROW {
             egui::CentralPanel::default().show(ui, |ui| {
                 theme::scroll("tune").show(ui, |ui| {
-                    egui::CollapsingHeader::new(tr("Plant, relay and wishes"))
-                        .show(ui, |ui| self.controls_ui(ui, desk));
-                    self.ask(ui.ctx(), desk);
-                    self.steps_ui(ui, desk);
-                    self.stage_ui(ui, 260.0);
+                    self.measured.from_ui(ui, desk);
+                    let name = if self.is_measured() {
+                        "Test and gains"
+                    } else {
+                        "Plant, relay and wishes"
+                    };
+                    egui::CollapsingHeader::new(tr(name)).show(ui, |ui| self.side_ui(ui, desk));
+                    self.main_ui(ui, desk, 520.0);
                 });
             });
             return;
@@ -99,19 +111,25 @@ impl View for Tune {
             .exact_size(layout::side(ui, 350.0))
             .resizable(false)
             .show(ui, |ui| {
-                theme::scroll("tune_side").show(ui, |ui| self.controls_ui(ui, desk));
+                theme::scroll("tune_side").show(ui, |ui| {
+                    ui.add_space(4.0);
+                    self.measured.from_ui(ui, desk);
+                    ui.separator();
+                    self.side_ui(ui, desk);
+                });
             });
         egui::CentralPanel::default().show(ui, |ui| {
-            self.ask(ui.ctx(), desk);
             theme::scroll("tune").show(ui, |ui| {
-                self.steps_ui(ui, desk);
-                let height = (ui.max_rect().bottom() - ui.cursor().top() - 150.0).max(280.0);
-                self.stage_ui(ui, height);
+                let height = (ui.max_rect().bottom() - ui.cursor().top() - 190.0).max(280.0);
+                self.main_ui(ui, desk, height);
             });
         });
     }
 
     fn hook_state(&self) -> serde_json::Value {
+        if self.is_measured() {
+            return self.measured.state();
+        }
         let stage = STAGES.get(self.stage);
         serde_json::json!({
             "busy": self.job.is_some(),
@@ -123,6 +141,9 @@ impl View for Tune {
     }
 
     fn offer(&self) -> Offer<'_> {
+        if self.is_measured() {
+            return self.measured.offer();
+        }
         Offer::new(self.hint(), self.table_names(), || self.tables())
     }
 }
@@ -176,6 +197,30 @@ impl Tune {
 }
 
 impl Tune {
+    /// Whether the test is not simulated.
+    fn is_measured(&self) -> bool {
+        self.measured.from != From::Simulation
+    }
+
+    fn side_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        if self.is_measured() {
+            self.measured.side_ui(ui, desk);
+        } else {
+            self.controls_ui(ui, desk);
+        }
+    }
+
+    fn main_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk, height: f32) {
+        if self.is_measured() {
+            self.measured.ask(ui.ctx());
+            self.measured.ui(ui, height);
+            return;
+        }
+        self.ask(ui.ctx(), desk);
+        self.steps_ui(ui, desk);
+        self.stage_ui(ui, height);
+    }
+
     /// Whether the step in view is that of the closed loops.
     fn shows_loops(&self) -> bool {
         let stage = STAGES.get(self.stage);

@@ -3,7 +3,7 @@
 use hysteron_core::tuning::{Pid, rule};
 use serde::{Deserialize, Serialize};
 
-use super::{STAGES, Tune};
+use super::{STAGES, Tune, measured};
 use crate::desk::Desk;
 use crate::page::Settable;
 
@@ -23,6 +23,8 @@ pub struct Settings {
     gain_before: f64,
     /// Id of the rule.
     rule: String,
+    /// A test that was measured.
+    measured: measured::Settings,
 }
 
 impl Settable for Tune {
@@ -35,6 +37,7 @@ impl Settable for Tune {
             phase_margin: self.input.wish.phase_margin,
             gain_before: self.input.present.gain,
             rule: self.input.rule.clone(),
+            measured: self.measured.set_to(),
         }
     }
 
@@ -53,6 +56,7 @@ impl Settable for Tune {
         if !MARGINS.contains(&settings.phase_margin) {
             return Err("The phase margin must be 0.01 to 1.55 rad.".to_owned());
         }
+        self.measured.take(&settings.measured)?;
         self.stage = stage;
         self.asymmetry = settings.asymmetry;
         self.input.wish.phase_margin = settings.phase_margin;

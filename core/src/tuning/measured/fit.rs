@@ -3,20 +3,18 @@
 //! Gain, operating point, initial state and what acted before the record enter linearly and are solved for; only time
 //! constants and dead time are searched (separable least squares, Golub and Pereyra 1973): on a grid, by a simplex, then
 //! by Gauss and Newton with the damping of Levenberg and Marquardt. Standard errors come from the Jacobian of all
-//! parameters; residuals that hang together count as fewer samples.
+//! parameters; residuals that hang together count as fewer samples, and by how much the parameters move when the slow part
+//! of the residuals is weighed less is added.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
 
-use super::least_squares::{coherence, damped, inverse_gram, least_squares};
-use super::record::Record;
-use super::response::Held;
+use super::compared::Compared;
+use super::least_squares::{coherence, damped, inverse_gram};
 use super::structure::{FittedModel, LARGEST_SHARE, Structure, Value, physical, response, times};
+use super::wander;
 use crate::simplex::minimise;
 use crate::sums::dot;
-
-/// Most samples of the output that are compared; the input is simulated with all.
-const COMPARED: usize = 3000;
 
 /// Time constants and dead times of the grid, in periods of the cycle.
 const GRID_TIMES: [f64; 9] = [0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.56, 5.12, 10.24];
@@ -25,9 +23,15 @@ const GRID_DEAD_TIMES: [f64; 7] = [0.003, 0.03, 0.08, 0.15, 0.25, 0.35, 0.46];
 /// Second time constants of the grid, as shares of the first.
 const GRID_SHARES: [f64; 3] = [0.1, 0.4, 0.8];
 
+/// Points of the grid from which the search goes on.
+const STARTS: usize = 3;
+
 /// Evaluations of a simplex, and steps of the last improvement.
 const SIMPLEX_EVALUATIONS: usize = 160;
 const IMPROVEMENTS: usize = 40;
+
+/// Steps from the one estimate to the other; the first is as good as all in the limit of many samples.
+const STEPS_OTHERWISE: usize = 3;
 
 /// A time constant of more than this many lengths of the record is an integrator's.
 const LONGEST: f64 = 20.0;
@@ -97,142 +101,7 @@ impl Fit {
     }
 }
 
-/// Weights of the single lags in the response of several in a row: `Ti^(n-1)/prod_(j != i) (Ti - Tj)`.
-fn partial_fractions(lags: &[f64]) -> Vec<f64> {
-    let others = |i: usize| {
-        lags.iter()
-            .enumerate()
-            .filter(move |(j, _)| *j != i)
-            .map(|(_, t)| *t)
-    };
-    (0..lags.len())
-        .map(|i| others(i).map(|t| lags[i] / (lags[i] - t)).product())
-        .collect()
-}
-
-/// Sum of series with weights.
-fn weighted(weights: &[f64], series: &[Vec<f64>]) -> Vec<f64> {
-    let mut sum = vec![0.0; series.first().map_or(0, Vec::len)];
-    for (w, values) in weights.iter().zip(series) {
-        sum.iter_mut().zip(values).for_each(|(s, v)| *s += w * v);
-    }
-    sum
-}
-
-/// The record as the fits see it.
-pub(super) struct Compared {
-    held: Held,
-    /// Mean of the input, which the simulated input goes without.
-    origin: f64,
-    pub time: Vec<f64>,
-    pub output: Vec<f64>,
-    /// Root mean square of the output about its mean.
-    motion: f64,
-    span: f64,
-    scale: f64,
-    /// Whether the load may change steadily.
-    drifts: bool,
-}
-
 impl Compared {
-    /// `scale` is a time in the order of the plant's, s.
-    pub fn new(record: &Record, scale: f64) -> Self {
-        let stride = record.time.len().div_ceil(COMPARED).max(1);
-        let taken = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
-        let (time, output) = (taken(&record.time), taken(&record.output));
-        let origin = record.input.iter().sum::<f64>() / record.input.len() as f64;
-        let mean = output.iter().sum::<f64>() / output.len() as f64;
-        let motion =
-            (output.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / output.len() as f64).sqrt();
-        Self {
-            held: Held::new(&record.time, &record.input),
-            origin,
-            time,
-            output,
-            motion,
-            span: record.span(),
-            scale,
-            drifts: false,
-        }
-    }
-
-    /// Columns of the linear problem: forced responses, operating point, of an integrator its slope, free motions, what
-    /// acted before the record, and the drift.
-    fn columns(&self, structure: Structure, p: &[f64]) -> Vec<Vec<f64>> {
-        let (all, dead_time) = times(structure, p, self.scale);
-        let lags = &all[..structure.lags()];
-        let start = self.time[0];
-        let since = || self.time.iter().map(move |t| t - start);
-        // Another input before the record acts until the dead time is over.
-        let early = |t: f64| -> Vec<f64> {
-            since()
-                .map(|s| {
-                    let over = (s - dead_time).max(0.0);
-                    (1.0 - libm::exp(-(s - over) / t)) * libm::exp(-over / t)
-                })
-                .collect()
-        };
-        let forced: Vec<Vec<f64>> = lags
-            .iter()
-            .map(|t| self.held.lag(&self.time, *t, self.origin, dead_time))
-            .collect();
-        let before: Vec<Vec<f64>> = lags.iter().map(|t| early(*t)).collect();
-        let weights = partial_fractions(lags);
-        let mut columns = Vec::with_capacity(8);
-        let acted;
-        if structure.integrates() {
-            // 1/(s (T s + 1)) = 1/s - T/(T s + 1).
-            let through: Vec<f64> = std::iter::once(1.0)
-                .chain(lags.iter().map(|t| -t))
-                .collect();
-            let own = |first: Vec<f64>, rest: Vec<Vec<f64>>| {
-                let all: Vec<Vec<f64>> = std::iter::once(first).chain(rest).collect();
-                weighted(&through, &all)
-            };
-            columns.push(own(
-                self.held.integral(&self.time, self.origin, dead_time),
-                forced,
-            ));
-            acted = own(since().map(|s| s.min(dead_time)).collect(), before);
-        } else if structure == Structure::SopdtZero {
-            acted = weighted(&weights, &before);
-            columns.extend(forced);
-        } else {
-            acted = weighted(&weights, &before);
-            columns.push(weighted(&weights, &forced));
-        }
-        columns.push(vec![1.0; self.time.len()]);
-        if structure.integrates() {
-            columns.push(since().map(|s| s / self.span).collect());
-        }
-        columns.extend(
-            lags.iter()
-                .map(|t| since().map(|s| libm::exp(-s / t)).collect::<Vec<f64>>()),
-        );
-        if self.time.partition_point(|t| t - start < dead_time) > 2 {
-            columns.push(acted);
-        }
-        // A steady change of the load: behind lags a slope, behind an integrator a parabola.
-        if self.drifts {
-            let power = if structure.integrates() { 2 } else { 1 };
-            columns.push(since().map(|s| (s / self.span).powi(power)).collect());
-        }
-        columns
-    }
-
-    /// Coefficients and residuals at the searched parameters.
-    fn solve(&self, columns: &[Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let coefficients = least_squares(columns, &self.output)?;
-        let mut residuals = self.output.clone();
-        for (c, column) in coefficients.iter().zip(columns) {
-            residuals
-                .iter_mut()
-                .zip(column)
-                .for_each(|(r, x)| *r -= c * x);
-        }
-        Some((coefficients, residuals))
-    }
-
     fn cost(&self, structure: Structure, p: &[f64]) -> f64 {
         let allowed = {
             let (lags, dead_time) = times(structure, p, self.scale);
@@ -251,21 +120,26 @@ impl Compared {
 
     /// Fits one structure.
     pub fn fit(&self, structure: Structure) -> Option<Fit> {
+        let coarse = self.coarse();
+        let tried = coarse.as_ref().unwrap_or(self);
         let mut starts: Vec<(Vec<f64>, f64)> = grid(structure)
             .into_iter()
             .map(|p| {
-                let cost = self.cost(structure, &p);
+                let cost = tried.cost(structure, &p);
                 (p, cost)
             })
             .collect();
         starts.sort_by(|a, b| a.1.total_cmp(&b.1));
         let best = starts
             .into_iter()
-            .take(2)
-            .map(|(p, _)| self.descend(structure, p))
+            .take(STARTS)
+            .map(|(p, _)| {
+                let p = self.improve(structure, tried.descend(structure, p).0, IMPROVEMENTS);
+                let cost = self.cost(structure, &p);
+                (p, cost)
+            })
             .min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let p = self.improve(structure, best.0);
-        self.finish(structure, &p)
+        self.finish(structure, &best.0)
     }
 
     fn descend(&self, structure: Structure, p: Vec<f64>) -> (Vec<f64>, f64) {
@@ -297,11 +171,11 @@ impl Compared {
     }
 
     /// Levenberg-Marquardt on the searched parameters, the others solved for.
-    fn improve(&self, structure: Structure, mut p: Vec<f64>) -> Vec<f64> {
+    fn improve(&self, structure: Structure, mut p: Vec<f64>, steps: usize) -> Vec<f64> {
         let residuals = |p: &[f64]| self.solve(&self.columns(structure, p)).map(|s| s.1);
         let Some(mut r) = residuals(&p) else { return p };
         let mut damping = 1e-3;
-        for _ in 0..IMPROVEMENTS {
+        for _ in 0..steps {
             let cost = dot(&r, &r);
             let mut jacobian: Vec<Vec<f64>> = Vec::new();
             for i in 0..p.len() {
@@ -365,14 +239,22 @@ impl Compared {
             }
             jacobian.push(change);
         }
-        let variance = rss / n.saturating_sub(parameters).max(1) as f64 * coherence(&residuals);
+        // Residuals that hang together are few samples, and every parameter uses one of them up.
+        let free = n as f64 / coherence(&residuals) - parameters as f64;
+        let variance = rss / free.max(1.0);
         let full = inverse_gram(&jacobian)? * variance;
         // What matters outside: forced coefficients and searched parameters.
         let kept: Vec<usize> = (0..forced)
             .chain(columns.len()..columns.len() + p.len())
             .collect();
-        let covariance = DMatrix::from_fn(kept.len(), kept.len(), |i, j| full[(kept[i], kept[j])]);
         let theta: Vec<f64> = coefficients[..forced].iter().chain(p).copied().collect();
+        let mut covariance =
+            DMatrix::from_fn(kept.len(), kept.len(), |i, j| full[(kept[i], kept[j])]);
+        if let Some(other) = self.weighed_otherwise(structure, p, &residuals) {
+            let moved =
+                DVector::from_iterator(theta.len(), (theta.iter().zip(&other)).map(|(a, b)| b - a));
+            covariance += &moved * moved.transpose();
+        }
         let values = physical(structure, &theta, self.scale);
         let errors = errors(structure, &theta, self.scale, &covariance);
         let value = |i: usize| Value {
@@ -417,6 +299,26 @@ impl Compared {
             scale: self.scale,
             parameters,
         })
+    }
+
+    /// Forced coefficients and searched parameters where the residuals' wandering is taken off first. A model that is right
+    /// gives the same; what it does not is an error of the model (Hausman 1978).
+    fn weighed_otherwise(
+        &self,
+        structure: Structure,
+        p: &[f64],
+        residuals: &[f64],
+    ) -> Option<Vec<f64>> {
+        let other = self.following(wander::share(residuals)?);
+        let p = other.improve(structure, p.to_vec(), STEPS_OTHERWISE);
+        let (coefficients, _) = other.solve(&other.columns(structure, &p))?;
+        Some(
+            coefficients[..structure.forced()]
+                .iter()
+                .chain(&p)
+                .copied()
+                .collect(),
+        )
     }
 
     /// Fits all structures, the one that the data prefer first: by Schwarz's criterion, where residuals that hang together

@@ -10,8 +10,9 @@ use std::f64::consts::PI;
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
+use super::compared::Compared;
 use super::cycle::Cycle;
-use super::fit::{Compared, Fit};
+use super::fit::Fit;
 use super::least_squares::{coherence, inverse_gram, least_squares};
 use super::record::Record;
 use super::response::Held;

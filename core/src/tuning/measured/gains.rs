@@ -348,3 +348,17 @@ pub fn steps(
     let of = |disturbance| respond(&plant, &gains.pid, disturbance, horizon, horizon / 400.0);
     Ok([of(Disturbance::SetPoint)?, of(Disturbance::Load)?])
 }
+
+/// What a step of the load does where no controller answers, over `horizon` s.
+///
+/// # Errors
+/// A horizon that is not above 0.
+pub fn alone(model: &FittedModel, horizon: f64) -> Result<Response, TuningError> {
+    respond(
+        &model.plant(),
+        &Pid::p(0.0),
+        Disturbance::Load,
+        horizon,
+        horizon / 400.0,
+    )
+}

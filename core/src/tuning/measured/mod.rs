@@ -12,6 +12,8 @@
 //! | `response` | exact responses of lags and integrators to a held input with dead time |
 //! | `structure` | lags, integrators, a zero: what a model consists of |
 //! | `least_squares` | linear least squares, residuals that hang together |
+//! | `compared` | the record as the fits see it |
+//! | `wander` | residuals that wander |
 //! | `fit` | models by least squares on the whole record |
 //! | `fourier` | the point of the Nyquist curve |
 //! | `ultimate` | ultimate gain and period, where they follow |
@@ -19,10 +21,12 @@
 //! | `trouble` | why a test stalls or misleads |
 //! | `readings` | from a few numbers, without a record |
 //! | `log` | logs of firmwares |
+//! | `opened` | what is in a file |
 //! | `report` | all of it at once |
 //!
 //! **Amplitude** is half of peak to peak everywhere.
 
+mod compared;
 mod cycle;
 mod fit;
 mod fourier;
@@ -30,6 +34,7 @@ mod gains;
 mod least_squares;
 pub mod log;
 mod number;
+mod opened;
 mod readings;
 mod record;
 mod report;
@@ -37,10 +42,12 @@ mod response;
 mod structure;
 mod trouble;
 mod ultimate;
+mod wander;
 
 pub use cycle::Cycle;
 pub use fourier::Point;
-pub use gains::{Form, TunedGains, steps};
+pub use gains::{Form, TunedGains, alone, steps};
+pub use opened::{OpenError, Opened, Wishes, open};
 pub use readings::{AmplitudeConvention, Readings, tune_readings};
 pub use record::{Record, RecordError};
 pub use report::{Conventional, MeasuredTuning, Settings, Summary, tune_record};

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use super::compared::Compared;
 use super::cycle::{self, Cycle};
-use super::fit::Compared;
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
 use super::number::{full_scale, number};
@@ -103,7 +103,7 @@ pub struct MeasuredTuning {
 pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
     record.validate()?;
     let cycle = cycle::find(record);
-    let scale = cycle.as_ref().map_or(PART * record.span(), |c| c.period);
+    let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
     let fits = compared.fit_all();
     let point = cycle
@@ -160,6 +160,14 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     Ok(result)
 }
 
+/// A time in the order of the plant's, s: that of a round of the output, or a part of the record.
+fn time_of(record: &Record) -> f64 {
+    match cycle::rounds(record).len() {
+        0 | 1 => PART * record.span(),
+        rounds => record.span() / rounds as f64,
+    }
+}
+
 fn summary(cycle: &Cycle) -> Summary {
     Summary {
         period: cycle.period,
@@ -190,39 +198,44 @@ impl MeasuredTuning {
 
     /// Puts it into words.
     pub(super) fn tell(&mut self) {
-        let mut sentences: Vec<String> = Vec::new();
-        if let (Some(cycle), Some(point)) = (&self.cycle, &self.point) {
-            sentences.push(format!(
-                "The cycle (period {} s, amplitude {}, half of peak to peak) shows the plant at {} rad/s: |P| {}, phase \
-                 {} degrees.",
-                number(cycle.period),
-                number(cycle.amplitude),
-                number(point.omega),
-                with_error(point.magnitude, point.std_error_magnitude, &self.gain_unit()),
-                with_error(point.phase_deg, point.std_error_phase_deg, "1"),
-            ));
-        }
+        self.text = self.sentences().join(" ");
+    }
+
+    /// The same, one by one: the point, the ultimate gain, the model, what went wrong, and notes.
+    pub fn sentences(&self) -> Vec<String> {
+        let mut sentences: Vec<String> = self.of_point().into_iter().collect();
         sentences.extend(self.of_ultimate());
+        sentences.extend(self.of_formula());
         if let Some(model) = self.models.first() {
             sentences.push(self.of_model(model));
         }
         sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
         sentences.extend(self.notes.iter().cloned());
-        self.text = sentences.join(" ");
+        sentences
+    }
+
+    fn of_point(&self) -> Option<String> {
+        let (cycle, point) = (self.cycle.as_ref()?, self.point.as_ref()?);
+        Some(format!(
+            "The cycle (period {} s, amplitude {}, half of peak to peak) shows the plant at {} rad/s: |P| {}, phase {} \
+             degrees.",
+            number(cycle.period),
+            number(cycle.amplitude),
+            number(point.omega),
+            with_error(
+                point.magnitude,
+                point.std_error_magnitude,
+                &self.gain_unit()
+            ),
+            with_error(point.phase_deg, point.std_error_phase_deg, "1"),
+        ))
     }
 
     /// Ultimate gain and period, or why they do not follow and what would help.
     fn of_ultimate(&self) -> Option<String> {
-        let formula = self.conventional.map_or_else(String::new, |c| {
-            format!(
-                " (4d/(pi a) would say {} at {} s)",
-                number(c.gain),
-                number(c.period)
-            )
-        });
         if let Some(u) = &self.ultimate {
             return Some(format!(
-                "Ultimate gain {}, ultimate period {}{formula}.",
+                "Ultimate gain {}, ultimate period {}.",
                 with_error(u.gain, u.std_error_gain, "1"),
                 with_error(u.period, u.std_error_period, "s"),
             ));
@@ -245,29 +258,34 @@ impl MeasuredTuning {
                 .to_owned()
         };
         Some(format!(
-            "The ultimate gain does not follow{formula}: the phase of the cycle is {} degrees from -180, and how the \
-             curve goes on from there is not known well enough; {remedy}.",
+            "The ultimate gain does not follow: the phase of the cycle is {} degrees from -180, and how the curve goes on \
+             from there is not known well enough; {remedy}.",
             number(off.abs()),
+        ))
+    }
+
+    /// What the usual formula makes of the same cycle.
+    fn of_formula(&self) -> Option<String> {
+        let formula = self.conventional?;
+        Some(format!(
+            "4d/(pi a), which is right for a symmetric cycle without hysteresis alone, would say {} at {} s.",
+            number(formula.gain),
+            number(formula.period)
         ))
     }
 
     fn of_model(&self, model: &FittedModel) -> String {
         let seconds = |v: &Value| with_error(v.value, v.std_error, "s");
-        let times: Vec<String> = model.time_constants.iter().map(seconds).collect();
-        let zero = model
-            .zero
-            .as_ref()
-            .map_or_else(String::new, |z| format!(", zero {}", seconds(z)));
-        let lags = match times.len() {
-            0 => String::new(),
-            1 => format!(", time constant {}", times[0]),
-            _ => format!(", time constants {}", times.join(" and ")),
-        };
+        let gain = with_error(model.gain.value, model.gain.std_error, &self.gain_unit());
+        let mut parts = vec![format!("gain {gain}")];
+        let lags = model.time_constants.iter();
+        parts.extend(lags.map(|t| format!("time constant {}", seconds(t))));
+        parts.extend(model.zero.iter().map(|z| format!("zero {}", seconds(z))));
+        parts.push(format!("dead time {}", seconds(&model.dead_time)));
         format!(
-            "The record prefers {}: gain {}{lags}{zero}, dead time {}; it misses {} % of the motion.",
+            "The record prefers {}: {}. It misses {} % of the motion of the output.",
             model.structure.name(),
-            with_error(model.gain.value, model.gain.std_error, &self.gain_unit()),
-            seconds(&model.dead_time),
+            parts.join(", "),
             number(100.0 * model.left),
         )
     }

@@ -22,6 +22,34 @@ impl Held {
         Self { times, values }
     }
 
+    /// How often it changes.
+    pub fn changes(&self) -> usize {
+        self.times.len()
+    }
+
+    /// With its mean from each of the `edges` to the next; the last value stays.
+    pub fn averaged(&self, edges: &[f64]) -> Self {
+        let (mut times, mut values) = (Vec::new(), Vec::new());
+        let mut next = 0;
+        for edge in edges.windows(2) {
+            let (mut from, mut area) = (edge[0], 0.0);
+            let mut value = self.at(from);
+            next += self.times[next..].partition_point(|t| *t <= from);
+            while next < self.times.len() && self.times[next] < edge[1] {
+                area += value * (self.times[next] - from);
+                (from, value) = (self.times[next], self.values[next]);
+                next += 1;
+            }
+            times.push(edge[0]);
+            values.push((area + value * (edge[1] - from)) / (edge[1] - edge[0]));
+        }
+        if let Some(last) = edges.last() {
+            times.push(*last);
+            values.push(self.at(*last));
+        }
+        Self { times, values }
+    }
+
     /// Calls `step(duration, value)` for the stretches with a constant input after the dead time, and `sample(i)` at
     /// each of the `samples`, in order; before the first sample the input had its first value.
     fn walk(&self, samples: &[f64], dead_time: f64, mut step: impl FnMut(Part)) {

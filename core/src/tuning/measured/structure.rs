@@ -125,6 +125,18 @@ pub struct FittedModel {
 }
 
 impl FittedModel {
+    /// Real and imaginary part of the response at `omega` rad/s.
+    pub fn response(&self, omega: f64) -> [f64; 2] {
+        let s = Complex::new(0.0, omega);
+        let one = Complex::new(1.0, 0.0);
+        let pole = if self.structure.integrates() { s } else { one };
+        let lags = (self.time_constants.iter()).fold(pole, |p, t| p * (s * t.value + 1.0));
+        let lead = self.zero.map_or(one, |z| s * z.value + 1.0);
+        let (sin, cos) = libm::sincos(-omega * self.dead_time.value);
+        let value = lead * self.gain.value * Complex::new(cos, sin) / lags;
+        [value.re, value.im]
+    }
+
     /// As a plant.
     pub fn plant(&self) -> TransferFunction {
         let mut denominator = if self.structure.integrates() {

@@ -174,15 +174,22 @@ fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             false,
             level,
             format!(
-                "The relay flickers {} times at each switch: the noise ({} {}) is of the size of the hysteresis ({}). \
+                "The relay flickers {} times at each switch: the noise ({}) is of the size of the hysteresis ({}). \
                  Three times the noise as hysteresis, or a filter, ends it.",
                 n(flickers),
-                n(level),
-                e.record.output_unit,
+                of_unit(level, &e.record.output_unit),
                 n(cycle.hysteresis.max(0.0)),
             ),
         )
     })
+}
+
+/// A value with its unit.
+fn of_unit(value: f64, unit: &str) -> String {
+    match unit {
+        "1" => n(value),
+        unit => format!("{} {unit}", n(value)),
+    }
 }
 
 /// Least distance of two different values.
@@ -245,21 +252,16 @@ fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     } else {
         ("mean output", &e.record.output_unit, y, shares[1])
     };
-    let unit = if unit == "1" {
-        String::new()
-    } else {
-        format!(" {unit}")
-    };
     (share.abs() > DRIFT).then(|| {
         trouble(
             TroubleKind::Drift,
             false,
             share,
             format!(
-                "From the first to the last period the {word} drifts from {} to {}{unit}, {} % of its swing: the plant was not \
+                "From the first to the last period the {word} drifts from {} to {}, {} % of its swing: the plant was not \
                  settled when the test began, or something else acts on it.",
                 n(ends.0),
-                n(ends.1),
+                of_unit(ends.1, unit),
                 n(100.0 * share.abs()),
             ),
         )
@@ -286,22 +288,30 @@ fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             && others
             && high - low > SCATTERS * level.max(sensor_step(&e.record.output))
         {
-            let word = if up { "on" } else { "off" };
             return Some(trouble(
                 TroubleKind::MinimumTime,
                 false,
                 least,
-                format!(
-                    "Every time {word} lasts {} s, whatever the output is at its end ({} to {}): a minimum time {word} \
-                     holds the relay, so the cycle is not that of its thresholds.",
-                    n(least),
-                    n(low),
-                    n(high),
-                ),
+                held_text(up, least, low, high),
             ));
         }
     }
     None
+}
+
+fn held_text(up: bool, least: f64, low: f64, high: f64) -> String {
+    let (least, low, high) = (n(least), n(low), n(high));
+    if up {
+        format!(
+            "Every time on lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time on holds \
+             the relay, so the cycle is not that of its thresholds."
+        )
+    } else {
+        format!(
+            "Every time off lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time off holds \
+             the relay, so the cycle is not that of its thresholds."
+        )
+    }
 }
 
 fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
@@ -386,9 +396,17 @@ fn stalled(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
     let (low, high) = range(&record.output[since..]);
     let reached = if up { high } else { low };
     let word = if up { "up" } else { "down" };
-    let wanted = e.target.map_or_else(String::new, |t| {
-        format!(", {} short of the target of {}", n((t - ends).abs()), n(t))
-    });
+    let where_to = e.target.map_or_else(
+        || n(ends),
+        |t| {
+            format!(
+                "{}, {} short of the target of {}",
+                n(ends),
+                n((t - ends).abs()),
+                n(t)
+            )
+        },
+    );
     if let Some(target) = e.target
         && ((up && ends > target) || (!up && ends < target))
     {
@@ -400,11 +418,10 @@ fn stalled(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
         true,
         ends,
         format!(
-            "The input stays {word} for the last {seconds} s while the output has reached {} and levels off at {}{wanted}: \
+            "The input stays {word} for the last {seconds} s while the output has reached {} and levels off at {where_to}: \
              the relay waits for a threshold that this input cannot reach. A lower target, or a stronger input, lets it \
              switch.",
             n(reached),
-            n(ends),
         ),
     ))
 }

@@ -76,19 +76,32 @@ pub(super) fn candidate(
 ) -> Option<MeasuredUltimate> {
     let best = fits.first()?;
     let sign = best.model.gain.value.signum();
-    let not_ruled_out =
-        |f: &&Fit| f.score - best.score <= SCORE || f.model.left <= MISSED * best.model.left;
+    // Models that the record cannot rule out disagree in full. The others stand for orders that were not tried: these
+    // would change the answer as the last ones did, in proportion to the squared error that is left to them.
+    let weight = |f: &Fit| {
+        if f.score - best.score <= SCORE || f.model.left <= MISSED * best.model.left {
+            1.0
+        } else {
+            (best.model.left / f.model.left).powi(2)
+        }
+    };
     let of =
         |fit: &Fit, change: (f64, f64)| through(&|w| fit.response(w), sign, point, omega, change);
     let (gain, period) = of(best, (1.0, 0.0))?;
     let mut variances = [0.0; 2];
     let mut widest = [0.0_f64; 2];
-    for other in fits.iter().skip(1).filter(not_ruled_out) {
-        // A model without such a point disagrees as much as can be.
-        let (g, p) = of(other, (1.0, 0.0))?;
+    for other in fits.iter().skip(1) {
+        let weight = weight(other);
+        let Some((g, p)) = of(other, (1.0, 0.0)) else {
+            // A model without such a point disagrees as much as can be.
+            if weight >= 1.0 {
+                return None;
+            }
+            continue;
+        };
         widest = [
-            widest[0].max((g - gain).abs()),
-            widest[1].max((p - period).abs()),
+            widest[0].max(weight * (g - gain).abs()),
+            widest[1].max(weight * (p - period).abs()),
         ];
     }
     for (variance, wide) in variances.iter_mut().zip(widest) {

@@ -11,6 +11,7 @@ mod mycodo;
 mod source;
 
 use super::gains::Form;
+use super::opened::Wishes;
 use super::readings::tune_readings;
 use super::report::{MeasuredTuning, Settings, tune_record};
 
@@ -71,6 +72,17 @@ pub fn read(name: &str, text: &str) -> Option<Result<Log, LogError>> {
 }
 
 impl Log {
+    /// What the user says beats what a log does not know.
+    #[must_use]
+    pub fn with(mut self, wishes: &Wishes) -> Self {
+        if let (Held::Readings(readings), Some(hysteresis)) = (&mut self.held, wishes.hysteresis) {
+            readings.hysteresis = hysteresis;
+        }
+        self.settings.full_scale = wishes.full_scale.or(self.settings.full_scale);
+        self.settings.target = wishes.target.or(self.settings.target);
+        self
+    }
+
     /// What it tells, with gains in `form`, or in that of its owner.
     ///
     /// # Errors

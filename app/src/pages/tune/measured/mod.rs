@@ -1,0 +1,316 @@
+//! What does a measured relay test tell? A record, the log of an auto-tuner, or what was read off it.
+
+mod loops;
+mod plots;
+mod settings;
+mod side;
+mod tables;
+
+use hysteron_core::measurement::Kind;
+use hysteron_core::tuning::measured::{
+    AmplitudeConvention, MeasuredTuning, Readings, TunedGains, Wishes,
+};
+use hysteron_core::uncertain::with_error;
+use hysteron_work::content::Content;
+use hysteron_work::enclosed::{Enclosed, PROCESS_02};
+use hysteron_work::reading::Reading;
+use hysteron_work::tasks::{MeasuredReport, MeasuredTask, MeasuredTest, ReadTask};
+
+use super::draw::beside;
+use crate::export::{Table, Tables};
+use crate::files::{Files, Held};
+use crate::jobs::{Job, News};
+use crate::language::tr;
+use crate::motion;
+use crate::page::{Hint, Offer};
+use crate::theme;
+
+pub use settings::{From, Settings};
+
+/// The test that comes with the page.
+const BUILT_IN: Enclosed = PROCESS_02;
+
+/// Name of what was pasted.
+const PASTED: &str = "pasted text";
+
+/// What a report is of.
+#[derive(Clone, PartialEq)]
+struct Asked {
+    /// Which file, counted as they came; nothing for numbers.
+    file: Option<u64>,
+    readings: Option<Readings>,
+    wishes: Wishes,
+}
+
+/// What is open, what was read off, and what is told of it.
+pub struct Measured {
+    /// Where the test comes from.
+    pub from: From,
+    pub files: Files,
+    file: Option<Held>,
+    /// Files that were opened.
+    opened: u64,
+    readings: Readings,
+    wishes: Wishes,
+    /// What stands in the field for pasted text.
+    pasted: String,
+    /// Rule and controller in view.
+    chosen: Option<String>,
+    asked: Option<Asked>,
+    job: Option<Job<MeasuredTask>>,
+    shown: Option<Box<MeasuredReport>>,
+    message: Option<String>,
+}
+
+impl Default for Measured {
+    fn default() -> Self {
+        Self {
+            from: From::Simulation,
+            files: Files::default(),
+            file: None,
+            opened: 0,
+            readings: Readings {
+                amplitude: 1.2,
+                convention: AmplitudeConvention::Half,
+                period: 47.0,
+                levels: [0.0, 100.0],
+                hysteresis: 0.5,
+                half_periods: None,
+            },
+            wishes: Wishes::default(),
+            pasted: String::new(),
+            chosen: None,
+            asked: None,
+            job: None,
+            shown: None,
+            message: None,
+        }
+    }
+}
+
+impl Measured {
+    /// Takes what jobs and files have brought.
+    pub fn update(&mut self) {
+        while let Some(arrival) = self.files.arrived() {
+            match arrival.bytes {
+                Ok(bytes) => self.open(Held {
+                    name: arrival.name,
+                    kind: Kind::Process,
+                    content: Content::Plain(bytes.into()),
+                    reading: arrival.reading,
+                }),
+                Err(error) => {
+                    self.message = Some(format!("{}: cannot be read ({error})", arrival.name));
+                }
+            }
+        }
+        let news = self.job.as_mut().map(Job::news).unwrap_or_default();
+        for said in news {
+            match said {
+                News::Report(report) => self.take_report(report),
+                News::Failed(text) => {
+                    self.message = Some(text);
+                    self.job = None;
+                }
+                News::Progress(..) => {}
+            }
+        }
+    }
+
+    fn take_report(&mut self, report: Box<MeasuredReport>) {
+        self.job = None;
+        self.message = None;
+        if let (From::Record, Some(file)) = (self.from, &self.file) {
+            self.files.taken(&file.name, &file.reading);
+            self.files.hold(file.clone());
+        }
+        self.shown = Some(report);
+    }
+
+    /// Opens a record or a log.
+    fn open(&mut self, file: Held) {
+        self.from = From::Record;
+        self.file = Some(file);
+        self.opened += 1;
+        self.message = None;
+    }
+
+    /// Opens what stands in the field.
+    fn open_pasted(&mut self) {
+        self.open(Held {
+            name: PASTED.to_owned(),
+            kind: Kind::Process,
+            content: Content::Plain(self.pasted.clone().into_bytes().into()),
+            reading: Reading::default(),
+        });
+    }
+
+    /// Has it told what is set now, where that is not known or asked yet.
+    pub fn ask(&mut self, ctx: &egui::Context) {
+        if self.job.is_some() {
+            return;
+        }
+        let numbers = (self.from == From::Numbers).then(|| self.readings.clone());
+        let file = (self.from == From::Record).then_some(self.opened);
+        let asked = Asked {
+            file,
+            readings: numbers,
+            wishes: self.wishes.clone(),
+        };
+        if self.asked.as_ref() == Some(&asked) {
+            return;
+        }
+        let test = match (self.from, &self.file) {
+            (From::Numbers, _) => MeasuredTest::Readings(self.readings.clone()),
+            (From::Record, Some(file)) => MeasuredTest::File(Box::new(ReadTask {
+                file: file.name.clone(),
+                content: file.content.clone(),
+                reading: file.reading.clone(),
+            })),
+            _ => return,
+        };
+        let another = self.asked.as_ref().map(|a| (a.file, a.readings.is_some()))
+            != Some((asked.file, asked.readings.is_some()));
+        if another {
+            // Another test: what was told is of no use.
+            self.shown = None;
+            self.chosen = None;
+        }
+        self.asked = Some(asked);
+        let wishes = self.wishes.clone();
+        self.job = Some(Job::run(ctx, MeasuredTask { test, wishes }));
+    }
+
+    pub fn ui(&mut self, ui: &mut egui::Ui, height: f32) {
+        if let Some(message) = &self.message {
+            theme::tell(&ui.colored_label(ui.visuals().warn_fg_color, tr(message)));
+        }
+        let Some(report) = &self.shown else {
+            let text = match (self.job.is_some(), self.from) {
+                (true, _) => "Reading the test ...",
+                (_, From::Record) => "Drop a record, or the log of an auto-tuner, on this window.",
+                _ => "These numbers tell nothing yet.",
+            };
+            theme::answer_ui(ui, text);
+            return;
+        };
+        theme::answer_ui(ui, &answer(&report.tuning));
+        if self.job.is_some() {
+            motion::busy_ui(ui);
+        }
+        for sentence in report.tuning.sentences() {
+            ui.label(tr(sentence));
+        }
+        let half = (0.4 * height).max(200.0);
+        match &report.record {
+            Some(record) => beside(
+                ui,
+                half,
+                |ui, height| plots::nyquist_ui(ui, report, height),
+                |ui, height| plots::record_ui(ui, record, &report.tuning, height),
+            ),
+            None => plots::nyquist_ui(ui, report, half),
+        }
+        tables::gains_ui(ui, &report.tuning, &mut self.chosen);
+        if let Some((gains, Some(responses))) = chosen(report, self.chosen.as_deref()) {
+            loops::ui(ui, gains, responses, report.alone.as_ref(), half);
+        }
+        tables::models_ui(ui, &report.tuning);
+    }
+
+    pub fn state(&self) -> serde_json::Value {
+        let tuning = self.shown.as_ref().map(|r| &r.tuning);
+        serde_json::json!({
+            "busy": self.job.is_some(),
+            "answer": tuning.map(answer),
+            "text": tuning.map(|t| &t.text),
+            "ultimate": tuning.and_then(|t| t.ultimate.map(|u| u.gain)),
+            "gains": tuning.map(|t| t.gains.len()),
+            "file": self.file.as_ref().map(|f| &f.name),
+            "message": self.message,
+        })
+    }
+
+    pub fn offer(&self) -> Offer<'_> {
+        Offer {
+            hint: Some(self.hint()),
+            tables: Tables::new(self.table_names(), || self.tables()),
+        }
+    }
+
+    fn hint(&self) -> Hint {
+        match self.from {
+            From::Record => Hint {
+                sentence: "Is the model all there is to the plant? Drop the file on Compare too."
+                    .to_owned(),
+                commands: vec![crate::command::Command::Go("compare")],
+            },
+            _ => Hint::say(
+                "The record of the test tells more than its numbers: drop it on this window.",
+            ),
+        }
+    }
+
+    fn table_names(&self) -> Vec<&'static str> {
+        let Some(report) = &self.shown else {
+            return Vec::new();
+        };
+        let record = report.record.as_ref().map(|_| "measured test");
+        let curve = (!report.nyquist.is_empty()).then_some("Nyquist curve of the model");
+        record.into_iter().chain(curve).collect()
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let Some(report) = &self.shown else {
+            return Vec::new();
+        };
+        let record = report.record.as_ref().map(|r| {
+            Table::new("measured test")
+                .with("time [s]", r.time.iter().copied())
+                .with("input u", r.input.iter().copied())
+                .with("output y", r.output.iter().copied())
+        });
+        let titles = ["real part", "imaginary part"];
+        let curve = (!report.nyquist.is_empty())
+            .then(|| Table::curve("Nyquist curve of the model", titles, &report.nyquist));
+        record.into_iter().chain(curve).collect()
+    }
+}
+
+/// What matters most.
+fn answer(tuning: &MeasuredTuning) -> String {
+    match (&tuning.ultimate, tuning.stall(), &tuning.point) {
+        (_, Some(_), _) => "The test stalled.".to_owned(),
+        (Some(u), _, _) => format!(
+            "The ultimate gain is {}, the ultimate period {}.",
+            with_error(u.gain, u.std_error_gain, "1"),
+            with_error(u.period, u.std_error_period, "s")
+        ),
+        (None, None, Some(point)) => format!(
+            "No ultimate gain follows: the cycle shows the plant at {} degrees.",
+            with_error(point.phase_deg, point.std_error_phase_deg, "1")
+        ),
+        (None, None, None) => "There is no cycle, but there may be a model.".to_owned(),
+    }
+}
+
+/// How a choice among gains is called.
+fn key(gains: &TunedGains) -> String {
+    format!("{} {}", gains.rule, gains.controller)
+}
+
+/// The gains in view: those that were chosen, else the last of Skogestad's, else the first.
+fn chosen<'a>(
+    report: &'a MeasuredReport,
+    name: Option<&str>,
+) -> Option<(
+    &'a TunedGains,
+    Option<&'a [hysteron_core::tuning::Response; 2]>,
+)> {
+    let gains = &report.tuning.gains;
+    let named = gains.iter().position(|g| Some(key(g).as_str()) == name);
+    let simc = || gains.iter().rposition(|g| g.rule == "simc" && g.stable);
+    let index = named.or_else(simc).unwrap_or(0);
+    let responses = report.loops.get(index).and_then(Option::as_ref);
+    gains.get(index).map(|g| (g, responses))
+}
