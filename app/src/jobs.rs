@@ -22,6 +22,31 @@ impl<T: platform::Runs> Job<T> {
     pub fn news(&mut self) -> Vec<News<T::Report>> {
         self.0.news()
     }
+
+    /// What it has come to, once it has ended. Until then `progress` is told the share that is done, and what it is doing.
+    pub fn end(
+        &mut self,
+        mut progress: impl FnMut(f64, String),
+    ) -> Option<Result<T::Report, String>> {
+        self.news().into_iter().find_map(|news| match news {
+            News::Progress(share, text) => {
+                progress(share, text);
+                None
+            }
+            News::Report(report) => Some(Ok(*report)),
+            News::Failed(text) => Some(Err(text)),
+        })
+    }
+}
+
+/// [`Job::end`] of the job in a place, which is free then.
+pub fn ended<T: platform::Runs>(
+    place: &mut Option<Job<T>>,
+    progress: impl FnMut(f64, String),
+) -> Option<Result<T::Report, String>> {
+    let end = place.as_mut()?.end(progress)?;
+    *place = None;
+    Some(end)
 }
 
 impl Job {

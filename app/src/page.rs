@@ -1,11 +1,14 @@
 //! What a page is to the app around it.
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::Tables;
+use crate::export::{Table, Tables};
 use crate::files::Door;
+use crate::link::parsed;
 
 /// A page, and what is known of it whatever is on it.
 pub struct Page {
@@ -40,7 +43,7 @@ impl Page {
 }
 
 /// What a page does.
-pub trait View: Settable {
+pub trait View: Kept {
     /// Takes in what its jobs and files have brought; also called while another page is in front.
     fn update(&mut self, _ctx: &egui::Context) {}
     /// Draws it.
@@ -55,6 +58,24 @@ pub trait View: Settable {
 
 /// What is set on a page, as a plain value: what links, undo and the autosave keep.
 pub trait Settable {
+    /// All that can be set.
+    type Settings: Serialize + DeserializeOwned;
+    /// What is set.
+    fn set_to(&self) -> Self::Settings;
+    /// Sets it.
+    ///
+    /// # Errors
+    /// One sentence where it cannot be; then nothing is changed.
+    fn take(
+        &mut self,
+        ctx: &egui::Context,
+        settings: Self::Settings,
+        desk: &Desk,
+    ) -> Result<(), String>;
+}
+
+/// [`Settable`] as the app around a page knows it, whatever its settings are.
+pub trait Kept {
     /// What is set.
     fn settings(&self) -> Value;
     /// Sets it.
@@ -64,6 +85,16 @@ pub trait Settable {
     fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), String>;
 }
 
+impl<T: Settable> Kept for T {
+    fn settings(&self) -> Value {
+        serde_json::json!(self.set_to())
+    }
+
+    fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), String> {
+        self.take(ctx, parsed(settings)?, desk)
+    }
+}
+
 /// What the app around a page offers for it.
 #[derive(Default)]
 pub struct Offer<'a> {
@@ -71,6 +102,20 @@ pub struct Offer<'a> {
     pub hint: Option<Hint>,
     /// The numbers behind what it shows.
     pub tables: Tables<'a>,
+}
+
+impl<'a> Offer<'a> {
+    /// A hint, and tables of these names, in the order in which `numbers` gives them.
+    pub fn new(
+        hint: impl Into<Option<Hint>>,
+        names: impl Into<Vec<&'static str>>,
+        numbers: impl Fn() -> Vec<Table> + 'a,
+    ) -> Self {
+        Self {
+            hint: hint.into(),
+            tables: Tables::new(names, numbers),
+        }
+    }
 }
 
 /// What to try next: a sentence, and what does it at a press; some things only the user can do.

@@ -9,6 +9,7 @@
 //! | [`crew`] | who does the parts of a computation? |
 //! | [`progress`] | how far has a computation come? |
 //! | [`uncertain`] | how sure is a value, in words? |
+//! | [`curve`] | which points of a curve does a picture need? |
 //! | [`measurement`] | what was measured? |
 //! | [`relay`] | what does the relay do? |
 //! | [`plant`] | what does it act on? |
@@ -34,6 +35,7 @@
 pub mod backlash;
 pub mod crew;
 pub mod criticism;
+pub mod curve;
 pub mod diagnosis;
 pub mod drive;
 pub mod effect;
@@ -49,6 +51,7 @@ mod order;
 mod packed;
 pub mod plant;
 pub mod progress;
+mod random;
 pub mod relay;
 pub mod report;
 pub mod rig;

@@ -1,4 +1,4 @@
-//! Roots of functions of one variable between points where the signs differ.
+//! Roots of functions of one variable between points where the signs differ, and the maximum of one that has one.
 
 use std::cmp::Ordering;
 
@@ -74,6 +74,50 @@ pub(crate) fn falsi(h: f64, f0: f64, fh: f64, f: impl Fn(f64) -> f64) -> f64 {
     b
 }
 
+/// Golden sections that leave less of an interval than a double resolves.
+pub(crate) const SECTIONS: usize = 80;
+
+/// A maximum, found by [`golden_section`].
+pub(crate) struct Peak {
+    /// The middle of what is left of the interval.
+    pub at: f64,
+    /// The largest value seen, and where it was.
+    pub best: (f64, f64),
+}
+
+/// The one maximum of `f` between `low` and `high` by so many golden sections (Kiefer 1953); a value above `enough` ends
+/// the search.
+pub(crate) fn golden_section(
+    (mut low, mut high): (f64, f64),
+    sections: usize,
+    enough: f64,
+    f: impl Fn(f64) -> f64,
+) -> Peak {
+    let golden = 0.5 * (5_f64.sqrt() - 1.0);
+    let mut best = (low, f64::NEG_INFINITY);
+    for _ in 0..sections {
+        let (left, right) = (high - golden * (high - low), low + golden * (high - low));
+        let (at_left, at_right) = (f(left), f(right));
+        for (at, value) in [(left, at_left), (right, at_right)] {
+            if value > best.1 {
+                best = (at, value);
+            }
+        }
+        if best.1 > enough {
+            break;
+        }
+        if at_left < at_right {
+            low = left;
+        } else {
+            high = right;
+        }
+    }
+    Peak {
+        at: 0.5 * (low + high),
+        best,
+    }
+}
+
 /// Most steps of Newton's method.
 const MAX_NEWTON: usize = 80;
 
@@ -138,6 +182,17 @@ mod tests {
         for root in found {
             assert!((root - 2.0_f64.sqrt()).abs() < 1e-12, "{root}");
         }
+    }
+
+    #[test]
+    fn golden_sections_come_to_the_maximum() {
+        let f = |x: f64| 2.0 - (x - 0.3).powi(2);
+        let peak = golden_section((0.0, 1.0), 80, f64::INFINITY, f);
+        // A parabola is flat over the root of what a double resolves.
+        assert!((peak.at - 0.3).abs() < 1e-7, "{}", peak.at);
+        assert!((peak.best.1 - 2.0).abs() < 1e-15, "{}", peak.best.1);
+        let soon = golden_section((0.0, 1.0), 80, 1.9, f).best;
+        assert!(soon.1 > 1.9 && soon.1 < 2.0 - 1e-6, "{soon:?}");
     }
 
     #[test]

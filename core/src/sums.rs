@@ -18,6 +18,19 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// The values in the runs (first place and the place after the last of each) without their mean there; 0 elsewhere.
+pub(crate) fn centred(values: &[f64], runs: &[(usize, usize)]) -> Vec<f64> {
+    let used = || runs.iter().flat_map(|(from, to)| &values[*from..*to]);
+    let mean = used().sum::<f64>() / used().count().max(1) as f64;
+    let mut centred = vec![0.0; values.len()];
+    for (from, to) in runs {
+        for (c, v) in centred[*from..*to].iter_mut().zip(&values[*from..*to]) {
+            *c = v - mean;
+        }
+    }
+    centred
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -76,10 +76,30 @@ pub fn with_uncertainty(value: f64, error: f64) -> Option<String> {
     })
 }
 
-/// A value with its error and unit; alone where the error is not known.
+/// A value with its error and unit, alone where the error is not known; and that the record does not tell it, where it
+/// does not.
 pub fn with_error(value: f64, error: f64, unit: &str) -> String {
+    let text = in_table(value, error, unit);
+    if is_told(value, error) {
+        text
+    } else {
+        format!("{text} ({NOT_TOLD})")
+    }
+}
+
+/// The same for a table that has another place for the words.
+pub fn in_table(value: f64, error: f64, unit: &str) -> String {
     let text = with_uncertainty(value, error).unwrap_or_else(|| alone(value));
     in_unit(text, unit)
+}
+
+/// What is said of a value that is not told.
+pub const NOT_TOLD: &str = "not told by this record";
+
+/// Whether a record tells a value: its standard error is no larger than it is.
+pub fn is_told(value: f64, error: f64) -> bool {
+    // No error is known of a value that is held.
+    error.is_nan() || error <= value.abs()
 }
 
 /// A value with the digits and in the notation in which [`with_error`] writes another value and its error.
@@ -130,17 +150,52 @@ fn alone(value: f64) -> String {
     }
 }
 
-fn in_unit(text: String, unit: &str) -> String {
-    if unit == "1" {
-        text
-    } else {
-        format!("{text} {}", shown_unit(unit))
+/// A value as text with its unit; a plain number has none.
+pub fn in_unit(text: impl Into<String>, unit: &str) -> String {
+    let (mut text, unit) = (text.into(), shown_unit(unit));
+    if !unit.is_empty() {
+        text.push(' ');
+        text.push_str(&unit);
+    }
+    text
+}
+
+/// The name of an axis or of a column with its unit, as `v1 [rad/s]`; a plain number has none.
+pub fn titled(name: &str, unit: &str) -> String {
+    match shown_unit(unit) {
+        unit if unit.is_empty() => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
     }
 }
 
-/// A unit as it is shown: files and JSON have `kg m^2`, which is easier to type than `kg m²`.
+/// A unit as it is shown, nothing for a plain number: files and JSON have `kg m^2`, which is easier to type than `kg m²`.
 pub fn shown_unit(unit: &str) -> String {
-    unit.replace("^2", "²")
+    match unit {
+        "1" => String::new(),
+        unit => unit.replace("^2", "²"),
+    }
+}
+
+/// A value with its error, or in words that its error, or even the value, is not known.
+pub fn in_words(value: f64, error: f64) -> String {
+    with_uncertainty(value, error).unwrap_or_else(|| {
+        if value.is_finite() {
+            format!("{value} (uncertainty unknown)")
+        } else {
+            "unknown".to_owned()
+        }
+    })
+}
+
+/// A number with three digits that count, and no power of ten within the usual range.
+pub fn brief(value: f64) -> String {
+    match value.abs() {
+        size if !size.is_finite() => "unknown".to_owned(),
+        size if size > 0.0 && !PLAIN.contains(&size) => format!("{value:.2e}"),
+        size if size >= 99.95 => format!("{value:.0}"),
+        size if size >= 9.995 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
 }
 
 #[cfg(test)]
@@ -182,6 +237,47 @@ mod tests {
             interval(8.8e-4, 4.2e-9, 2.0, "kg m^2"),
             "8.799916e-4 to 8.800084e-4 kg m²"
         );
+    }
+
+    #[test]
+    fn a_value_within_its_error_is_said_not_to_be_told() {
+        assert_eq!(
+            with_error(0.54, 0.81, "s"),
+            "0.54 ± 0.81 s (not told by this record)"
+        );
+        assert_eq!(in_table(0.54, 0.81, "s"), "0.54 ± 0.81 s");
+        assert_eq!(with_error(-0.81, 0.54, "s"), "-0.81 ± 0.54 s");
+        assert_eq!(with_error(2.0, f64::NAN, "1"), "2");
+        assert!(is_told(0.0, 0.0) && !is_told(3.0, f64::INFINITY));
+    }
+
+    #[test]
+    fn a_unit_stands_behind_and_a_plain_number_has_none() {
+        assert_eq!(in_unit("3.0", "kg m^2"), "3.0 kg m²");
+        assert_eq!(in_unit("3.0", "1"), "3.0");
+        assert_eq!(titled("v1", "rad/s"), "v1 [rad/s]");
+        assert_eq!(titled("gain", "1"), "gain");
+    }
+
+    #[test]
+    fn where_no_uncertainty_is_known_it_says_so() {
+        assert_eq!(in_words(0.3, 0.02), "0.300 ± 0.020");
+        assert_eq!(in_words(0.3, f64::NAN), "0.3 (uncertainty unknown)");
+        assert_eq!(in_words(f64::NAN, 0.1), "unknown");
+    }
+
+    #[test]
+    fn a_brief_number_has_three_digits() {
+        for (value, text) in [
+            (0.0, "0.00"),
+            (1.234, "1.23"),
+            (99.96, "100"),
+            (1234.5, "1234"),
+            (2.5e-4, "2.50e-4"),
+            (f64::NAN, "unknown"),
+        ] {
+            assert_eq!(brief(value), text);
+        }
     }
 
     #[test]

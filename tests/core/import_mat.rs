@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use crate::support::mat::{element, file};
+use crate::support::mat::{element, file, timeseries};
 use hysteron_core::measurement::{
     ImportOptions, Kind, Mapping, Measurement, Motion, Quantity, Role, TorqueConstant, columns,
     guess, import,
@@ -398,6 +398,23 @@ fn every_type_of_number_and_both_byte_orders_are_read() {
         )*};
     }
     check!(1 i8, 2 u8, 3 i16, 4 u16, 5 i32, 6 u32, 7 f32, 9 f64, 12 i64, 13 u64);
+}
+
+/// Two timeseries of Simulink, whose values stand apart from their names.
+#[test]
+fn timeseries_are_read_by_the_words_of_the_message() {
+    let time: Vec<f64> = (0..60).map(|k| 0.01 * f64::from(k)).collect();
+    let volt: Vec<f64> = (0..60).map(|k| f64::from(k / 20 % 2)).collect();
+    let speed: Vec<f64> = (0..60).map(|k| 0.3 * f64::from(k)).collect();
+    let bytes = timeseries(&[
+        ("sig_volt", time.clone(), volt.clone()),
+        ("sig_speed", time.clone(), speed.clone()),
+    ]);
+    let map = "t=sig_volt.Time [s], u=sig_volt.Data [V], v1=sig_speed.Data [rad/s]";
+    refused(&bytes, "", None, &[&format!("--map \"{map}\"")]);
+    let m = read(&bytes, map, None);
+    assert_eq!((m.time, m.input.values), (time, volt));
+    assert_eq!(m.outputs[0].values, speed);
 }
 
 #[test]

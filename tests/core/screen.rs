@@ -156,6 +156,90 @@ fn an_input_of_another_record_explains_nothing() {
     );
 }
 
+/// What a stop does is far stronger than the input, and no reason to doubt that.
+#[test]
+fn a_stop_does_not_hide_what_the_input_does() {
+    for seed in [1, 2, 3] {
+        let free = DriveRig {
+            seed,
+            ..drive(SINES)
+        };
+        let mut measurement = free.measure();
+        // Thrown back, twelve times in the record: the velocity turns round within a sample.
+        let n = measurement.len();
+        let hits = n / 12;
+        for output in &mut measurement.outputs {
+            if output.quantity == Quantity::Velocity {
+                for (i, v) in output.values.iter_mut().enumerate() {
+                    if i % hits < hits / 10 {
+                        *v *= -3.0;
+                    }
+                }
+            }
+        }
+        measurement
+            .outputs
+            .retain(|o| o.quantity == Quantity::Velocity);
+        let found = screen(&measurement);
+        assert_eq!(
+            found.input_check.verdict,
+            InputVerdict::Ok,
+            "{}",
+            found.input_check.text
+        );
+    }
+}
+
+/// A step at the end of a record: whether the output follows cannot be told, so that nothing is said against the input.
+#[test]
+fn a_step_too_late_to_be_followed_is_not_doubted() {
+    let stairs = ProcessRig {
+        excitation: ProcessExcitation::Staircase { top: 1.0 },
+        ..ProcessRig::default()
+    };
+    let mut measurement = stairs.measure();
+    let n = measurement.len();
+    for (i, u) in measurement.input.values.iter_mut().enumerate() {
+        *u = f64::from(u8::from(i > n - n / 30));
+    }
+    for output in &mut measurement.outputs {
+        let first = output.values[0];
+        output.values.fill(first);
+        for (i, y) in output.values.iter_mut().enumerate() {
+            *y += 0.01 * f64::from((i % 7) as u8);
+        }
+    }
+    let found = screen(&measurement);
+    assert_ne!(
+        found.input_check.verdict,
+        InputVerdict::DoesNotExplain,
+        "{}",
+        found.input_check.text
+    );
+}
+
+#[test]
+fn real_records_and_those_of_other_rigs_are_not_doubted() {
+    for path in [
+        "measurements-2/walk-end-stop.csv",
+        "failing/heater-step-plain-header.csv",
+        "failing/servo-xl330-volts.csv",
+        "failing/tanks-estimation.csv",
+    ] {
+        let Some(bytes) = shared(path) else {
+            continue;
+        };
+        let measurement = import(path, &bytes, &ImportOptions::default());
+        let found = screen(&measurement.expect("a record"));
+        assert_ne!(
+            found.input_check.verdict,
+            InputVerdict::DoesNotExplain,
+            "{path}: {}",
+            found.input_check.text
+        );
+    }
+}
+
 #[test]
 fn a_controller_is_read_off() {
     let stairs = ProcessRig {

@@ -112,6 +112,19 @@ fn a_value_that_the_data_overrule_is_said_though_all_is_explained() {
     };
     assert!((c.wanted / 8.8e-4 - 1.0).abs() < 1e-3, "{c:?}");
     assert!(d.verdict.text.contains("holds J1"), "{}", d.verdict.text);
+    let [o] = d.verdict.overruled.as_slice() else {
+        panic!("one value overruled: {}", d.verdict.text);
+    };
+    assert_eq!(
+        (o.name.as_str(), o.given, o.tolerance),
+        ("J1", 1.1e-3, 1e-6)
+    );
+    assert!((o.found / 8.8e-4 - 1.0).abs() < 1e-3, "{o:?}");
+    assert!(
+        d.verdict.text.starts_with("The model holds J1"),
+        "{}",
+        d.verdict.text
+    );
     let usual = diagnose(
         &measured("drive-01"),
         "kind = \"drive\"\n[parameters]\nJ1 = { value = 8.9e-4, tolerance = 1e-5 }\n",
@@ -120,6 +133,29 @@ fn a_value_that_the_data_overrule_is_said_though_all_is_explained() {
         usual.verdict.contradicted.is_empty(),
         "{}",
         usual.verdict.text
+    );
+}
+
+#[test]
+fn a_value_overruled_beside_what_is_missing_is_said_first_and_last() {
+    // drive-02 has a constant load or an asymmetry, and the inertia of drive-01.
+    let d = diagnose(
+        &measured("drive-02"),
+        "kind = \"drive\"\n[parameters]\nJ1 = { value = 1.1e-3, tolerance = 2e-5 }\n",
+    );
+    let [o] = d.verdict.overruled.as_slice() else {
+        panic!("one value overruled: {}", d.verdict.text);
+    };
+    assert!(o.found < 1.04e-3, "{o:?}");
+    let text = &d.verdict.text;
+    assert!(
+        text.starts_with("The data overrule what was given: J1 is")
+            || text.starts_with("The model holds J1"),
+        "{text}"
+    );
+    assert!(
+        text.ends_with("given: J1.") || text.ends_with("looking for effects."),
+        "{text}"
     );
 }
 

@@ -46,3 +46,115 @@ pub fn file(
     bytes.extend(element(big, 14, &array));
     bytes
 }
+
+/// Content of an array of this class whose numbers are stored as this type, in little-endian order.
+fn array(class: u32, sizes: [u32; 2], name: &str, stored: u32, numbers: &[u8]) -> Vec<u8> {
+    let head = [
+        element(false, 6, &words(&[class, 0])),
+        element(false, 5, &words(&sizes)),
+    ];
+    let rest = [
+        element(false, 1, name.as_bytes()),
+        element(false, stored, numbers),
+    ];
+    [head.concat(), rest.concat()].concat()
+}
+
+/// An object of a class of MATLAB's own, with what it holds.
+fn opaque(name: &str, class: &str, content: &[u8]) -> Vec<u8> {
+    let texts = [name, "MCOS", class].map(|text| element(false, 1, text.as_bytes()));
+    let flags = element(false, 6, &words(&[17, 0]));
+    [flags, texts.concat(), element(false, 14, content)].concat()
+}
+
+fn words(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|w| w.to_le_bytes()).collect()
+}
+
+fn doubles(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+/// A file with a timeseries of each name, its times and values, as Simulink logs them: the variables only refer to objects,
+/// which a subsystem at the end describes. After what is known of the format (`MATLAB` does not publish it).
+pub fn timeseries(logged: &[(&str, Vec<f64>, Vec<f64>)]) -> Vec<u8> {
+    // The names that the description uses, counted from 1.
+    const NAMES: [&str; 3] = ["timeseries", "Time_", "Data_"];
+    let mut names: Vec<u8> = NAMES
+        .iter()
+        .flat_map(|n| [n.as_bytes(), b"\0"].concat())
+        .collect();
+    names.resize(names.len().next_multiple_of(8), 0);
+    let classes = vec![0, 0, 0, 0, 0, 1, 0, 0];
+    // The first of each list stands for none.
+    let saved = vec![0, 0];
+    let (mut objects, mut own) = (vec![0; 6], vec![0, 0]);
+    let mut values = vec![Vec::new(), Vec::new()];
+    for (k, (_, time, data)) in logged.iter().enumerate() {
+        let (k, cell) = (k as u32 + 1, 2 * k as u32);
+        objects.extend([1, 0, 0, 0, k, k]);
+        own.extend([2, 2, 1, cell, 3, 1, cell + 1, 0]);
+        for v in [time, data] {
+            values.push(array(6, [v.len() as u32, 1], "", 9, &doubles(v)));
+        }
+    }
+    let regions = [
+        classes,
+        saved,
+        objects,
+        own,
+        vec![0, 0],
+        vec![0, 0],
+        vec![0, 0],
+    ];
+    let head = 4 * (2 + 8);
+    let mut begins = vec![(head + names.len()) as u32];
+    for region in &regions {
+        begins.push(begins[begins.len() - 1] + 4 * region.len() as u32);
+    }
+    let description = [
+        words(&[4, NAMES.len() as u32]),
+        words(&begins),
+        names,
+        words(&regions.concat()),
+    ]
+    .concat();
+    values[0] = array(9, [description.len() as u32, 1], "", 2, &description);
+    let cells: Vec<u8> = values.iter().flat_map(|v| element(false, 14, v)).collect();
+    let head = [
+        element(false, 6, &words(&[1, 0])),
+        element(false, 5, &words(&[values.len() as u32, 1])),
+    ];
+    let wrapper = [head.concat(), element(false, 1, b""), cells].concat();
+    let field = opaque("", "FileWrapper__", &wrapper);
+    let head = [
+        element(false, 6, &words(&[2, 0])),
+        element(false, 5, &words(&[1, 1])),
+        element(false, 1, b""),
+    ];
+    let fields = [
+        element(false, 5, &words(&[5])),
+        element(false, 1, b"MCOS\0"),
+        element(false, 14, &field),
+    ];
+    let structure = [head.concat(), fields.concat()].concat();
+    let inner = [
+        b"\x00\x01IM\0\0\0\0".to_vec(),
+        element(false, 14, &structure),
+    ]
+    .concat();
+    let subsystem = element(false, 14, &array(9, [1, inner.len() as u32], "", 2, &inner));
+    let variables: Vec<u8> = logged
+        .iter()
+        .enumerate()
+        .flat_map(|(k, (name, ..))| {
+            let reference = words(&[0xdd00_0000, 2, 1, 1, k as u32 + 1, 1]);
+            let reference = array(13, [6, 1], "", 6, &reference);
+            element(false, 14, &opaque(name, "timeseries", &reference))
+        })
+        .collect();
+    let mut bytes = vec![b' '; 116];
+    bytes.extend((128 + variables.len() as u64).to_le_bytes());
+    bytes.extend(*b"\x00\x01IM");
+    [bytes, variables, subsystem].concat()
+}

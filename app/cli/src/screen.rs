@@ -8,7 +8,7 @@ use hysteron_core::criticism::screen;
 use hysteron_core::diagnosis::{Parameter, Screening, Subset};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
-use hysteron_core::uncertain::{shown_unit, with_error};
+use hysteron_core::uncertain::{in_unit, with_error};
 
 use crate::arguments::Kind;
 use crate::output::Format;
@@ -121,7 +121,7 @@ fn line(parameter: &Parameter) -> String {
     let value = if *std_error > 0.0 {
         with_error(*value, *std_error, unit)
     } else {
-        format!("{value:.4} {}", shown_unit(unit))
+        in_unit(format!("{value:.4}"), unit)
     };
     format!("{name:<8} {value:<32} {label}")
 }

@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::diagnosis::{Candidate, Diagnosis, NextExperiment, Parameter, Step};
+use hysteron_core::diagnosis::{
+    Candidate, Diagnosis, InputCheck, InputVerdict, NextExperiment, Parameter, Step,
+};
 use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
-use hysteron_core::uncertain;
-use hysteron_core::uncertain::shown_unit;
+use hysteron_core::uncertain::{NOT_TOLD, brief, in_words, shown_unit};
 
 const WIDTH: usize = 80;
 
@@ -34,6 +35,14 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     );
     for note in notes {
         bullet(&mut out, note);
+    }
+    let doubted =
+        |check: &&InputCheck| check.verdict != InputVerdict::Ok && !diagnosis.verdict.complete;
+    if let Some(check) = diagnosis.input_check.as_ref().filter(doubted) {
+        bullet(&mut out, &check.text);
+    }
+    for overruled in &diagnosis.verdict.overruled {
+        bullet(&mut out, &overruled.words());
     }
     for noise in &diagnosis.noise {
         bullet(&mut out, &noise.words());
@@ -83,8 +92,8 @@ fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: 
         "  ",
         &format!(
             "Error {} times the noise on held-back data; a perfect model would leave {}.",
-            short(step.error),
-            short(floor)
+            brief(step.error),
+            brief(floor)
         ),
     );
     if step.left > 0.0 {
@@ -145,12 +154,11 @@ fn parameters(out: &mut String, list: &[&Parameter]) {
     let rows: Vec<(&str, &str, String, String)> = list
         .iter()
         .map(|p| {
-            let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
             (
                 p.name.as_str(),
                 p.label.as_str(),
-                with_uncertainty(p.value, p.std_error),
-                shown_unit(unit),
+                in_words(p.value, p.std_error),
+                shown_unit(&p.unit),
             )
         })
         .collect();
@@ -165,6 +173,19 @@ fn parameters(out: &mut String, list: &[&Parameter]) {
         line(
             out,
             &format!("  {n:<name$}  {l:<label$}  {v:>value$} {unit}"),
+        );
+    }
+    let untold: Vec<&str> = list
+        .iter()
+        .filter(|p| !p.is_told())
+        .map(|p| p.name.as_str())
+        .collect();
+    if !untold.is_empty() {
+        let names = untold.join(", ");
+        paragraph(
+            out,
+            "  ",
+            &format!("The errors of these are larger than they are, {NOT_TOLD}: {names}."),
         );
     }
 }
@@ -191,7 +212,7 @@ fn candidates(out: &mut String, list: &[Candidate]) {
     for (name, candidate) in rows {
         let head = format!(
             "  {name:<width$}  {:>9}  {:>10.1}  ",
-            short(candidate.error),
+            brief(candidate.error),
             candidate.delta_bic
         );
         let note = if !candidate.equivalent_to.is_empty() {
@@ -264,7 +285,7 @@ fn chart(out: &mut String, diagnosis: &Diagnosis) {
         } else {
             error / most
         };
-        let value = short(*error);
+        let value = brief(*error);
         line(
             out,
             &format!("  {label:<width$}  {value:>8}  {}", bar(share)),
@@ -284,7 +305,6 @@ fn bar(share: f64) -> String {
     "█".repeat(eighths / 8) + PARTS[eighths % 8]
 }
 
-/// Three significant digits, no exponent within the usual range.
 /// A share in per cent, two digits that count.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
@@ -295,27 +315,6 @@ fn percent(share: f64) -> String {
     } else {
         format!("{percent:.2}")
     }
-}
-
-fn short(value: f64) -> String {
-    match value.abs() {
-        a if !a.is_finite() => "unknown".to_owned(),
-        a if a >= 1e5 || (a < 1e-3 && a > 0.0) => format!("{value:.2e}"),
-        a if a >= 99.95 => format!("{value:.0}"),
-        a if a >= 9.995 => format!("{value:.1}"),
-        _ => format!("{value:.2}"),
-    }
-}
-
-/// `value ± error`, or what is known of it.
-fn with_uncertainty(value: f64, error: f64) -> String {
-    uncertain::with_uncertainty(value, error).unwrap_or_else(|| {
-        if value.is_finite() {
-            format!("{value} (uncertainty unknown)")
-        } else {
-            "unknown".to_owned()
-        }
-    })
 }
 
 fn heading(out: &mut String, text: &str) {
@@ -373,13 +372,6 @@ fn wrap(text: &str, width: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn where_no_uncertainty_is_known_it_says_so() {
-        assert_eq!(with_uncertainty(0.3, 0.02), "0.300 ± 0.020");
-        assert_eq!(with_uncertainty(0.3, f64::NAN), "0.3 (uncertainty unknown)");
-        assert_eq!(with_uncertainty(f64::NAN, 0.1), "unknown");
-    }
 
     #[test]
     fn bars_are_as_long_as_their_share() {

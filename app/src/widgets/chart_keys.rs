@@ -209,7 +209,7 @@ impl View {
             let [mut low, mut high] = self.ends[i];
             if self.axes[i] && follows(curves) {
                 let all = curves.iter().flat_map(|c| c.points.iter().map(|p| p[i]));
-                (low, high) = super::chart_curves::extremes(all);
+                (low, high) = hysteron_core::curve::extremes(all);
             }
             if low <= high {
                 cursor.at[i] = (cursor.at[i] + by[i] * self.point[i]).clamp(low, high);

@@ -4,7 +4,6 @@ pub mod chart;
 mod chart_axes;
 mod chart_caption;
 pub mod chart_cursor;
-mod chart_curves;
 mod chart_keys;
 pub mod chart_menu;
 mod chart_reading;

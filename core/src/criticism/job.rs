@@ -114,6 +114,7 @@ impl DiagnosisJob {
                     next_experiment: None,
                     experiments: Vec::new(),
                     contradicted: Vec::new(),
+                    overruled: Vec::new(),
                     text: String::new(),
                 },
                 seconds: 0.0,

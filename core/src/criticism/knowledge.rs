@@ -7,7 +7,7 @@ use super::score::score;
 use super::select::{helps, is_plain_noise};
 use super::session::{Scored, Session};
 use super::structure::Structure;
-use crate::diagnosis::{Contradiction, CriticismError};
+use crate::diagnosis::{Contradiction, CriticismError, Overruled};
 use crate::effect::EffectId;
 use crate::measurement::Measurement;
 use crate::user_model::{Known, Status, UserModel};
@@ -147,6 +147,32 @@ impl Structure {
         }
         self.hold(values);
     }
+}
+
+/// Tolerances by which the data must have moved a known value to overrule it.
+const OVERRULED: f64 = 3.0;
+
+/// Values with a tolerance that the data have moved by more than three of it.
+pub(super) fn overruled(session: &Session, model: &Scored) -> Vec<Overruled> {
+    let known = model.fit.structure.known();
+    let found = session.parameters(model);
+    let pairs = known.into_iter().zip(found);
+    pairs
+        .filter_map(|(known, found)| {
+            let known = known?;
+            let Status::Prior(tolerance) = known.status else {
+                return None;
+            };
+            ((found.value - known.value).abs() > OVERRULED * tolerance).then_some(Overruled {
+                effect: found.effect,
+                name: found.name,
+                given: known.value,
+                tolerance,
+                found: found.value,
+                unit: found.unit,
+            })
+        })
+        .collect()
 }
 
 /// Known values that the data contradict: with all of them released the error falls beyond chance, further

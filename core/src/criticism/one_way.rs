@@ -19,8 +19,8 @@ const CLEAR_OF_NOISE: f64 = 6.0;
 /// Share of the moving samples that may go the other way, by noise.
 const OTHER_WAY: f64 = 0.01;
 
-/// Share of the samples at rest from which on the rests tell friction from a load.
-const AT_REST: f64 = 0.2;
+/// Times the speed from which on it moves that a load would have given a drive at rest: then it is friction that held it.
+const TURNED_BACK: f64 = 2.0;
 
 /// Size of an effect that is looked at, as a share of its typical size.
 const SIZE: f64 = 0.1;
@@ -37,6 +37,10 @@ const LOOKED_AT: usize = 500;
 pub(super) struct OneWay {
     /// Input, position and velocity.
     moving: Vec<[f64; 3]>,
+    /// Rests: how long, s, and the mean input.
+    rests: Vec<[f64; 2]>,
+    /// The speed from which on it moves.
+    least: f64,
     /// The way it turns, 1 or -1.
     side: f64,
     scales: Scales,
@@ -57,10 +61,6 @@ impl OneWay {
         if forward.min(back) as f64 > rare || forward + back == 0 {
             return None;
         }
-        // What holds a drive at rest is friction: there a load alone would turn it back.
-        if forward + back < data.len() - (AT_REST * data.len() as f64) as usize {
-            return None;
-        }
         let side = if forward > back { 1.0 } else { -1.0 };
         let position = data.position_estimate();
         let moves = (0..data.len()).filter(|i| side * velocity[*i] > least);
@@ -70,6 +70,8 @@ impl OneWay {
         let stride = moving.len().div_ceil(LOOKED_AT).max(1);
         Some(Self {
             moving: moving.into_iter().step_by(stride).collect(),
+            rests: rests(data, &velocity, least, session.scales.step),
+            least,
             side,
             scales: session.scales,
         })
@@ -95,7 +97,8 @@ impl OneWay {
                 self.constant(fit.structure.effects[k], values)
             })
             .sum();
-        if held * self.side >= 0.0 {
+        if held * self.side >= 0.0 || self.is_held_at_rest(held, &fit.structure.model(&fit.values))
+        {
             return false;
         }
         let Some(first) = missing.iter().position(|(e, _)| is_one(*e)) else {
@@ -114,6 +117,16 @@ impl OneWay {
             }
         }
         true
+    }
+
+    /// Whether it rests somewhere where a load of this size would have turned it back: what holds it there is friction.
+    fn is_held_at_rest(&self, load: f64, body: &Model) -> bool {
+        self.rests.iter().any(|[duration, input]| {
+            let force = self.side * (input + load);
+            let friction = body.viscous * duration / body.inertia;
+            let speed = -force * duration / body.inertia / (1.0 + friction);
+            speed > TURNED_BACK * self.least
+        })
     }
 
     /// Whether an effect does nothing but add a constant to the input while the drive moves.
@@ -157,6 +170,24 @@ impl OneWay {
         let is_constant = usual != 0.0 && same.count() as f64 > MOSTLY * forces.len() as f64;
         is_constant.then_some(usual)
     }
+}
+
+/// Stretches of a record in which a drive does not move: how long each is, s, and its mean input.
+fn rests(data: &Data, velocity: &[f64], least: f64, step: f64) -> Vec<[f64; 2]> {
+    let samples: Vec<(bool, f64)> = velocity
+        .iter()
+        .zip(&data.input)
+        .map(|(v, u)| (v.abs() <= least, *u))
+        .collect();
+    samples
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|stretch| stretch[0].0)
+        .map(|stretch| {
+            let n = stretch.len() as f64;
+            let mean = stretch.iter().map(|s| s.1).sum::<f64>() / n;
+            [n * step, mean]
+        })
+        .collect()
 }
 
 /// The speed from which on a drive moves.

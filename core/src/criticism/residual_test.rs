@@ -10,6 +10,7 @@ use super::data::Data;
 use super::fit::{Motion, residuals};
 use super::locate::signal_name;
 use crate::diagnosis::{ResidualTest, ResidualTestKind};
+use crate::sums::centred;
 
 /// Lags up to which a residual is compared with itself, and with the input, in samples.
 const LAGS: usize = 20;
@@ -84,19 +85,6 @@ fn share(correlation: f64) -> String {
     let percent = 100.0 * correlation * correlation;
     let decimals = usize::from(percent < 9.95);
     format!("{percent:.decimals$} %")
-}
-
-/// The values in the runs without their mean; 0 elsewhere.
-fn centred(values: &[f64], runs: &[(usize, usize)]) -> Vec<f64> {
-    let used = || runs.iter().flat_map(|(from, to)| &values[*from..*to]);
-    let mean = used().sum::<f64>() / used().count().max(1) as f64;
-    let mut centred = vec![0.0; values.len()];
-    for (from, to) in runs {
-        for (c, v) in centred[*from..*to].iter_mut().zip(&values[*from..*to]) {
-            *c = v - mean;
-        }
-    }
-    centred
 }
 
 fn count(runs: &[(usize, usize)]) -> f64 {

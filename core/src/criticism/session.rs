@@ -13,7 +13,7 @@ use super::noise::{is_left_by_random_forces, is_noise_with_memory};
 use super::output::Output;
 use super::probes::{Probed, Probes};
 use super::score::{Score, score};
-use super::screen::screen;
+use super::screen::screen_with;
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
@@ -153,7 +153,16 @@ impl Session {
         let plain = Baseline::plain();
         let guess = guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| data.baseline.unknown());
-        let screening = screen(measurement);
+        let own: Vec<&'static dyn Effect> = model
+            .formulas()
+            .map(|formula| {
+                formula.effect(model.kind).map_err(|error| {
+                    let name = formula.name.clone();
+                    CriticismError::OwnEffect { name, error }
+                })
+            })
+            .collect::<Result<_, _>>()?;
+        let screening = screen_with(measurement, &own);
         let screened_body = told_body(&screening);
         // Where a regression sample by sample has run off, sizes are those that the weak form tells.
         let guessed: [f64; 2] = data.baseline.body(&guess).into();
@@ -176,15 +185,7 @@ impl Session {
             probes: Probes::default(),
             scout: compared.scout(),
             knowledge,
-            own: model
-                .formulas()
-                .map(|formula| {
-                    formula.effect(model.kind).map_err(|error| {
-                        let name = formula.name.clone();
-                        CriticismError::OwnEffect { name, error }
-                    })
-                })
-                .collect::<Result<_, _>>()?,
+            own,
             baseline: None,
             full: (compared.used() < data.used()).then_some(data),
             data: compared,

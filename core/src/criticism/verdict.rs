@@ -8,11 +8,12 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{
-    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Parameter, Step, Verdict,
+    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Overruled, Parameter, Step,
+    Verdict,
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
-use crate::uncertain::{shown_unit, with_error};
+use crate::uncertain::{in_unit, with_error};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -49,7 +50,7 @@ pub(super) fn verdict(
     if !contradicted.is_empty() {
         return Verdict {
             complete,
-            ..contradiction(missing, contradicted, text, model.score.error)
+            ..contradiction(missing, contradicted, &text, model.score.error)
         };
     }
     text.push_str(match (missing.is_empty(), complete) {
@@ -72,6 +73,7 @@ pub(super) fn verdict(
         next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
         experiments: Vec::new(),
         contradicted,
+        overruled: Vec::new(),
         text,
     }
 }
@@ -89,19 +91,20 @@ fn listed(what: &str, classes: &[Vec<EffectId>], parameters: &[Parameter]) -> St
 fn contradiction(
     missing: Vec<Vec<EffectId>>,
     contradicted: Vec<Contradiction>,
-    mut text: String,
+    listed: &str,
     error: f64,
 ) -> Verdict {
+    let mut text = String::new();
     for c in &contradicted {
-        let unit = shown_unit(if c.unit == "1" { "" } else { &c.unit });
         let _ = write!(
             text,
-            "The model holds {} = {:.4e} {unit}, but these data want {}. ",
+            "The model holds {} = {}, but these data want {}. ",
             c.name,
-            c.held,
-            with_error(c.wanted, c.std_error, &unit)
+            in_unit(format!("{:.4e}", c.held), &c.unit),
+            with_error(c.wanted, c.std_error, &c.unit)
         );
     }
+    text.push_str(listed);
     let released = contradicted.first().map_or(error, |c| c.error);
     if released < error {
         let _ = write!(
@@ -119,8 +122,29 @@ fn contradiction(
         next_experiment: None,
         experiments: Vec::new(),
         contradicted,
+        overruled: Vec::new(),
         text,
     }
+}
+
+/// Says first and last which values the data have overruled; what they contradict is said already.
+pub(super) fn add_overruled(verdict: &mut Verdict, overruled: Vec<Overruled>) {
+    let said = |o: &&Overruled| {
+        let mut all = verdict.contradicted.iter();
+        !all.any(|c| (c.effect, &c.name) == (o.effect, &o.name))
+    };
+    let new: Vec<&Overruled> = overruled.iter().filter(said).collect();
+    if !new.is_empty() {
+        let first: Vec<String> = new.iter().map(|o| o.words()).collect();
+        let names: Vec<&str> = new.iter().map(|o| o.name.as_str()).collect();
+        verdict.text = format!(
+            "{} {} All this holds with another value than the one that was given: {}.",
+            first.join(" "),
+            verdict.text,
+            names.join(", ")
+        );
+    }
+    verdict.overruled = overruled;
 }
 
 /// Says how much is left of what was there at `first` where that is more than plain noise, and, of a verdict that
@@ -276,13 +300,14 @@ pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
 }
 
 /// Says first where the input does not explain the motion: where its sign is turned or it follows the output, no physics is
-/// named, for that would be physics of another machine. A model that leaves noise alone has explained the motion, and one with
-/// effects that help a part of it.
+/// named, for that would be physics of another machine. A model that leaves noise alone has explained the motion.
 pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck) {
     let leads = match check.verdict {
         InputVerdict::Ok => false,
-        InputVerdict::DoesNotExplain => verdict.missing.is_empty(),
-        InputVerdict::InertiaNotTold | InputVerdict::Sign | InputVerdict::ClosedLoop => true,
+        InputVerdict::DoesNotExplain
+        | InputVerdict::InertiaNotTold
+        | InputVerdict::Sign
+        | InputVerdict::ClosedLoop => true,
     };
     if verdict.complete || !leads {
         return;
@@ -350,6 +375,7 @@ pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
         next_experiment: None,
         experiments: Vec::new(),
         contradicted: Vec::new(),
+        overruled: Vec::new(),
         text: "Many effects help a little and none explains the rest: the model structure itself may be wrong.".to_owned(),
     }
 }

@@ -34,7 +34,7 @@ pub use report::{Diagnosis, StepReport};
 pub use residual_test::{ResidualTest, ResidualTestKind};
 pub use screening::{InputCheck, InputVerdict, Screening, Subset};
 pub use step::{Candidate, Finding, Step};
-pub use verdict::{Contradiction, Verdict};
+pub use verdict::{Contradiction, Overruled, Verdict};
 
 pub(crate) use experiment::times;
 pub(crate) use program::short;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Quantity;
-use crate::uncertain::shown_unit;
+use crate::uncertain::in_unit;
 
 /// The noise of a measured channel, in its own unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,10 +33,7 @@ impl ChannelNoise {
             Quantity::Velocity | Quantity::LoadVelocity => "velocity",
             Quantity::Output => "output",
         };
-        let size = |value: f64| match shown_unit(&self.unit).as_str() {
-            "1" => three_digits(value),
-            unit => format!("{} {unit}", three_digits(value)),
-        };
+        let size = |value: f64| in_unit(three_digits(value), &self.unit);
         let noise = format!("{quantity} noise {}", size(self.value));
         match self.step.filter(|step| *step > COARSE * self.value) {
             Some(step) => format!("{noise}, steps of {}", size(step)),

@@ -2,9 +2,11 @@
 
 use super::experiment::{FittedModel, NextExperiment};
 use super::program::Program;
-use crate::drive::{Body, Command, Drive, DriveInput, VelocityRelay};
-use crate::effect::EffectId;
+use crate::drive::{Adhesion, Body, Command, Contact, Drive, DriveInput, VelocityRelay};
+use crate::effect::baseline::Baseline;
+use crate::effect::{EffectId, find};
 use crate::explore::ExploreInput;
+use crate::model::{Load, Model};
 use crate::plant::TransferFunction;
 use crate::relay::Relay;
 
@@ -18,23 +20,40 @@ pub enum Opening {
 }
 
 impl FittedModel {
-    fn value(&self, effect: Option<&str>, symbol: &str) -> Option<f64> {
-        let of = |p: Option<EffectId>| effect.is_none() || p.map(EffectId::as_str) == effect;
+    fn value(&self, effect: Option<EffectId>, symbol: &str) -> Option<f64> {
+        let of = |p: Option<EffectId>| effect.is_none() || p == effect;
         let mut all = self.parameters.iter();
         all.find(|p| p.name == symbol && of(p.effect))
             .map(|p| p.value)
     }
 
-    /// The value of an effect that is in the model, else 0.
-    fn or_none(&self, effect: &str, symbol: &str) -> f64 {
-        self.value(Some(effect), symbol).unwrap_or(0.0)
+    /// What it adds to, with its values.
+    fn baseline(&self) -> Option<(Baseline, Vec<f64>)> {
+        Baseline::ALL.into_iter().find_map(|baseline| {
+            let symbols = baseline.parameters().iter().map(|p| p.symbol);
+            let values: Option<_> = symbols.map(|s| self.value(None, s)).collect();
+            Some((baseline, values?))
+        })
+    }
+
+    /// The model that is simulated, with what each of its effects puts into it; a formula of the user's own is left out.
+    fn built(&self, baseline: Baseline, values: &[f64]) -> Model {
+        let mut model = baseline.model(values);
+        for effect in self.effects.iter().filter_map(|id| find(*id)) {
+            let symbols = effect.parameters().iter().map(|p| p.symbol);
+            let own: Option<Vec<f64>> = symbols.map(|s| self.value(Some(effect.id()), s)).collect();
+            if let Some(own) = own {
+                effect.apply(&own, &mut model);
+            }
+        }
+        model
     }
 }
 
 impl NextExperiment {
     /// The loop of the proposed relay at one of its gains around one of the models; `None` where the program is no
     /// relay.
-    pub fn opening(&self, model: &FittedModel, gain: f64) -> Option<Opening> {
+    pub fn opening(&self, fitted: &FittedModel, gain: f64) -> Option<Opening> {
         let Program::Relay {
             hysteresis,
             asymmetry,
@@ -43,76 +62,69 @@ impl NextExperiment {
         else {
             return None;
         };
-        // (1 + a) k (1 + A) and (1 - a) k (1 - A) are the levels of one relay.
-        let actuator = model.or_none("gain_asymmetry", "a");
-        let together = 1.0 + actuator * asymmetry;
-        // An ambient acts like the input that would hold the output there.
-        let ambient = model.value(None, "ambient").zip(model.value(None, "K"));
-        let ambient = ambient.map_or(0.0, |(ambient, gain)| ambient / gain);
+        let (baseline, values) = fitted.baseline()?;
+        let model = fitted.built(baseline, &values);
+        // What becomes of the two levels on their way to the body are the levels of one relay.
+        let [high, low] = [1.0 + asymmetry, asymmetry - 1.0].map(|l| model.map_input(gain * l));
         let relay = Relay {
-            gain: gain * together,
+            gain: 0.5 * (high - low),
             hysteresis,
-            asymmetry: (actuator + asymmetry) / together,
-            bias: model.or_none("constant_load", "F0") + ambient,
+            asymmetry: (high + low) / (high - low),
+            // An ambient acts like the input that would hold the output there.
+            bias: model.constant_force,
             // A sampled relay acts half of its sampling time late in the mean.
             delay: 0.5 * self.step,
         };
-        let delay = model.or_none("input_delay", "tau");
-        if let Some(half_gap) = model.value(Some("backlash"), "beta") {
-            let body = |inertia: f64, viscous: f64, coulomb: f64| Body {
-                inertia,
-                viscous,
-                coulomb,
-            };
-            let of_load = |symbol: &str| model.or_none("backlash", symbol);
-            let drive = Drive {
-                motor: body(
-                    model.value(None, "J1")?,
-                    model.value(None, "d1")?,
-                    model.or_none("coulomb_friction", "c"),
-                ),
-                load: body(of_load("J2"), of_load("d2"), of_load("c2")),
-                half_gap,
-                contact: crate::drive::Contact::Rigid { restitution: 0.0 },
-                adhesion: crate::drive::Adhesion::default(),
-            };
-            let relay = VelocityRelay {
-                relay: Relay { delay, ..relay },
-                flip: None,
-                sampling: Some(self.step),
-            };
-            let command = Command::Relay(relay);
-            let run = DriveInput::new(drive, command, self.duration, Some(self.step));
+        if let Some(load) = model.load.filter(|load| load.coupling.half_gap > 0.0) {
+            let run = self.drive(&model, &load, relay);
             return Some(Opening::Drive(Box::new(run)));
         }
-        let (gain, mut denominator) = match model.value(None, "J1") {
-            Some(inertia) => (1.0, vec![inertia, model.value(None, "d1")?]),
-            None => match model.value(None, "K/T") {
-                Some(rate) => (rate, vec![1.0, 0.0]),
-                None => (model.value(None, "K")?, vec![model.value(None, "T")?, 1.0]),
-            },
-        };
-        for (effect, symbol) in [
-            ("second_lag", "T2"),
-            ("actuator_lag", "T_a"),
-            ("sensor_lag", "T_s"),
-        ] {
-            if let Some(lag) = model.value(Some(effect), symbol) {
-                // Multiplied by (lag s + 1).
-                let mut longer: Vec<f64> = denominator.iter().map(|c| lag * c).collect();
-                longer.push(0.0);
-                for (c, own) in longer.iter_mut().skip(1).zip(&denominator) {
-                    *c += own;
-                }
-                denominator = longer;
-            }
+        let (gain, mut denominator) = baseline.fraction(&values);
+        for lag in [model.lag, model.sensor_lag].into_iter().flatten() {
+            denominator = slower(&denominator, lag);
         }
         Some(Opening::Loop(Box::new(ExploreInput {
-            plant: TransferFunction::new(&[gain], &denominator, delay),
+            plant: TransferFunction::new(&[gain], &denominator, model.delay),
             relay,
             noise: None,
         })))
     }
+
+    /// The relay on the velocity of a drive with a gap.
+    fn drive(&self, model: &Model, load: &Load, relay: Relay) -> DriveInput {
+        let body = |inertia: f64, viscous: f64, coulomb: f64| Body {
+            inertia,
+            viscous,
+            coulomb,
+        };
+        let drive = Drive {
+            motor: body(model.inertia, model.viscous, model.friction.level),
+            load: body(load.inertia, load.viscous, load.dry_friction),
+            half_gap: load.coupling.half_gap,
+            contact: Contact::Rigid { restitution: 0.0 },
+            adhesion: Adhesion::default(),
+        };
+        let relay = Relay {
+            delay: model.delay,
+            ..relay
+        };
+        let command = Command::Relay(VelocityRelay {
+            relay,
+            flip: None,
+            sampling: Some(self.step),
+        });
+        DriveInput::new(drive, command, self.duration, Some(self.step))
+    }
+}
+
+/// A denominator multiplied by `lag s + 1`; the highest power is first.
+fn slower(denominator: &[f64], lag: f64) -> Vec<f64> {
+    let mut longer: Vec<f64> = denominator.iter().map(|c| lag * c).collect();
+    longer.push(0.0);
+    for (c, own) in longer.iter_mut().skip(1).zip(denominator) {
+        *c += own;
+    }
+    longer
 }
 
 #[cfg(test)]
@@ -133,10 +145,13 @@ mod tests {
         };
         let model = FittedModel {
             effect: EffectId::new("constant_load"),
-            effects: vec![],
+            effects: ["second_lag", "input_delay", "constant_load"]
+                .map(EffectId::new)
+                .to_vec(),
             parameters: vec![
                 parameter(None, "K", 2.0),
                 parameter(None, "T", 30.0),
+                parameter(None, "ambient", 0.0),
                 parameter(Some("second_lag"), "T2", 5.0),
                 parameter(Some("input_delay"), "tau", 4.0),
                 parameter(Some("constant_load"), "F0", 0.1),

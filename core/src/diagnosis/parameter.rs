@@ -1,8 +1,10 @@
 //! A fitted parameter, and how well it is known.
 
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeStruct as _;
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::effect::EffectId;
+use crate::uncertain::is_told;
 
 /// How well a parameter is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,8 +26,8 @@ impl Status {
     }
 }
 
-/// A fitted parameter.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A fitted parameter. Where it is written, `told` says whether the record tells it: [`Parameter::is_told`].
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Parameter {
     /// The effect that it belongs to; `None` for the baseline model.
     pub effect: Option<EffectId>,
@@ -40,6 +42,31 @@ pub struct Parameter {
     /// SI unit.
     pub unit: String,
     /// Whether it was fitted freely, with a prior, or not at all.
-    #[serde(default, skip_serializing_if = "Status::is_free")]
+    #[serde(default)]
     pub status: Status,
+}
+
+impl Parameter {
+    /// Whether the record tells its value: the standard error is no larger than that.
+    pub fn is_told(&self) -> bool {
+        is_told(self.value, self.std_error)
+    }
+}
+
+impl Serialize for Parameter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let fields = 7 + usize::from(!self.status.is_free());
+        let mut out = serializer.serialize_struct("Parameter", fields)?;
+        out.serialize_field("effect", &self.effect)?;
+        out.serialize_field("name", &self.name)?;
+        out.serialize_field("label", &self.label)?;
+        out.serialize_field("value", &self.value)?;
+        out.serialize_field("std_error", &self.std_error)?;
+        out.serialize_field("unit", &self.unit)?;
+        out.serialize_field("told", &self.is_told())?;
+        if !self.status.is_free() {
+            out.serialize_field("status", &self.status)?;
+        }
+        out.end()
+    }
 }

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
+use crate::uncertain::in_unit;
+
 /// One sine of a sum, `amplitude sin(2 pi frequency t + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sine {
@@ -48,13 +50,7 @@ impl Program {
     /// In words with numbers: `a relay with gain 0.5 N m and hysteresis 0.6 rad/s`. `input` and `output` are the
     /// units.
     pub fn words(&self, input: &str, output: &str) -> String {
-        let with = |value: f64, unit: &str| {
-            if unit == "1" {
-                short(value)
-            } else {
-                format!("{} {unit}", short(value))
-            }
-        };
+        let with = |value: f64, unit: &str| in_unit(short(value), unit);
         match self {
             Self::Relay {
                 gains,
@@ -114,12 +110,7 @@ impl Program {
 /// Values with their unit at the end.
 fn list(values: &[f64], unit: &str) -> String {
     let numbers: Vec<String> = values.iter().map(|v| short(*v)).collect();
-    let unit = if unit == "1" {
-        String::new()
-    } else {
-        format!(" {unit}")
-    };
-    format!("{}{unit}", numbers.join(", "))
+    in_unit(numbers.join(", "), unit)
 }
 
 /// A number with three digits that count.

@@ -18,7 +18,7 @@ pub enum InputVerdict {
     DoesNotExplain,
     /// It follows the output: a controller made it.
     ClosedLoop,
-    /// It does, but how heavy the body is cannot be told.
+    /// It may, but how heavy the body is, or what the input does to a process, cannot be told.
     InertiaNotTold,
 }
 

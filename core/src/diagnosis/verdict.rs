@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::experiment::NextExperiment;
 use crate::effect::EffectId;
+use crate::uncertain::{brief, with_error, written_like};
 
 /// A known value that the data contradict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +25,43 @@ pub struct Contradiction {
     pub error: f64,
 }
 
+/// A value that the user knew about, and that the data have moved by more than three of its tolerances.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Overruled {
+    /// The effect that it belongs to; `None` for the baseline model.
+    pub effect: Option<EffectId>,
+    /// Its symbol.
+    pub name: String,
+    /// The value that was given, in `unit`.
+    pub given: f64,
+    /// Its tolerance, in `unit`.
+    pub tolerance: f64,
+    /// The value that was found, in `unit`.
+    pub found: f64,
+    /// SI unit.
+    pub unit: String,
+}
+
+impl Overruled {
+    /// In words with numbers.
+    pub fn words(&self) -> String {
+        let Self {
+            name,
+            given,
+            tolerance,
+            found,
+            unit,
+            ..
+        } = self;
+        format!(
+            "The data overrule what was given: {name} is {} where the model has {}, {} tolerances away.",
+            written_like(*found, (*given, *tolerance), unit),
+            with_error(*given, *tolerance, unit),
+            brief((found - given).abs() / tolerance)
+        )
+    }
+}
+
 /// What the data say in the end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
@@ -42,6 +80,9 @@ pub struct Verdict {
     /// Known values that the data contradict; nothing is added before they are right.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contradicted: Vec<Contradiction>,
+    /// Values with a tolerance that the data have overruled: said first and last.
+    #[serde(default)]
+    pub overruled: Vec<Overruled>,
     /// The verdict in plain words.
     pub text: String,
 }

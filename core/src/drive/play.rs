@@ -4,6 +4,7 @@
 //! sees. The play is friction-controlled: its output stays where it was until the input has crossed the
 //! gap, and then follows at a distance of `beta`.
 
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 
 use num_complex::Complex;
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{DriveError, check};
 use crate::plant::TransferFunction;
 use crate::relay::Relay;
+use crate::root::bisect;
 
 /// Describing function of play with half gap `beta` for a sine of `amplitude > beta`:
 ///
@@ -125,22 +127,11 @@ impl PlayLoop<'_> {
     }
 
     fn solve(&self, low: (f64, f64), high: (f64, f64)) -> Option<PlayCycle> {
-        let (mut a, mut b) = (low.0, high.0);
-        let mut cycle = None;
-        for _ in 0..100 {
-            let middle = 0.5 * (a + b);
-            if middle <= a || middle >= b {
-                break;
-            }
-            let (phase, here) = self.phase(middle)?;
-            cycle = Some(here);
-            if (phase < 0.0) == (low.1 < 0.0) {
-                a = middle;
-            } else {
-                b = middle;
-            }
-        }
-        cycle
+        let omega = bisect(low.0, high.0, |omega| match self.phase(omega) {
+            Some((phase, _)) if (phase < 0.0) == (low.1 < 0.0) => Ordering::Less,
+            _ => Ordering::Greater,
+        });
+        self.phase(omega).map(|(_, cycle)| cycle)
     }
 }
 

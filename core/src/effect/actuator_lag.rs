@@ -1,6 +1,6 @@
 //! First-order lag between the commanded and the acting input of a drive.
 
-use super::atom::{geometric, shape_alone};
+use super::atom::{Values, geometric};
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -72,7 +72,7 @@ impl Effect for ActuatorLag {
             parts: COLUMNS,
             grid: |extent| geometric(0.3 * extent.step, 0.5 * extent.window, LAGS),
             shapes: 1,
-            values: shape_alone,
+            values: Values::Shape,
         }]
     }
 

@@ -88,6 +88,18 @@ pub enum Part {
     Input(fn(&Track, &Shape) -> Vec<f64>),
     /// Columns that depend on the course of the motion, such as the force that a second body needs.
     Motion(fn(&Track, &Shape) -> Vec<Series>),
+    /// One column: a force of a user's own formula.
+    Own(Own),
+}
+
+/// A force as a function of the moment, made while the program runs.
+#[derive(Clone, Copy)]
+pub struct Own(pub &'static (dyn Fn(&Moment) -> f64 + Sync));
+
+impl std::fmt::Debug for Own {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("own")
+    }
 }
 
 /// What a regression found of an atom.
@@ -112,14 +124,24 @@ pub struct Atom {
     pub grid: fn(&Extent) -> Vec<Shape>,
     /// Numbers in the shape that are fitted by the grid; each counts as a parameter.
     pub shapes: usize,
-    /// The body and the values of the effect, in the order of its parameters, or none where the coefficients are none that it
-    /// can have.
-    pub values: fn(&Solved) -> Option<BodyStart>,
+    /// What its coefficients and its shape say.
+    pub values: Values,
+}
+
+/// What the coefficients and the shape of an atom say of body and effect.
+#[derive(Clone, Copy, Debug)]
+pub enum Values {
+    /// The coefficients are the values of the effect, whatever their signs.
+    Coefficients,
+    /// The first number of the shape is its one value.
+    Shape,
+    /// The body and the values, in the order of the parameters; none where the coefficients are none that it can have.
+    From(fn(&Solved) -> Option<BodyStart>),
 }
 
 impl Atom {
     /// An atom that is linear in all that it has.
-    pub const fn linear(parts: &'static [Part], values: fn(&Solved) -> Option<BodyStart>) -> Self {
+    pub const fn linear(parts: &'static [Part], values: Values) -> Self {
         Self {
             parts,
             grid: |_| vec![NO_SHAPE],
@@ -127,24 +149,22 @@ impl Atom {
             values,
         }
     }
+
+    /// The body and the values of the effect, in the order of its parameters, or none where the coefficients are none
+    /// that it can have.
+    pub fn read(&self, solved: &Solved) -> Option<BodyStart> {
+        match self.values {
+            Values::Coefficients => Some((solved.body, solved.coefficients.to_vec())),
+            Values::Shape => Some((solved.body, vec![solved.shape[0]])),
+            Values::From(read) => read(solved),
+        }
+    }
 }
 
-/// The values of an atom whose coefficients are those of the effect, whatever their signs.
-#[allow(clippy::unnecessary_wraps, reason = "the type of Atom::values")]
-pub fn as_they_are(solved: &Solved) -> Option<BodyStart> {
-    Some((solved.body, solved.coefficients.to_vec()))
-}
-
-/// The same of coefficients that cannot be negative.
+/// The body and the coefficients as values of an effect that has none below 0.
 pub fn not_negative(solved: &Solved) -> Option<BodyStart> {
     let possible = solved.coefficients.iter().all(|c| *c >= 0.0);
     possible.then(|| (solved.body, solved.coefficients.to_vec()))
-}
-
-/// The values of an atom that has a shape of one number and no coefficient.
-#[allow(clippy::unnecessary_wraps, reason = "the type of Atom::values")]
-pub fn shape_alone(solved: &Solved) -> Option<BodyStart> {
-    Some((solved.body, vec![solved.shape[0]]))
 }
 
 /// `count` numbers from the first to the last at equal ratios, as shapes of one number; none where there is no such range.

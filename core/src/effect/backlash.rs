@@ -5,7 +5,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::atom::geometric;
+use super::atom::{Values, geometric};
 use super::driven_load::{load_columns, load_values};
 use super::probe::Bounces;
 use super::{
@@ -488,7 +488,7 @@ impl Effect for Backlash {
                 gaps.into_iter().flat_map(|gap| with(gap[0])).collect()
             },
             shapes: 3,
-            values: |solved| {
+            values: Values::From(|solved| {
                 let [inertia, viscous, dry] = load_values(solved)?;
                 // Rigid contacts do not tell how hard they are: as hard as samples can tell.
                 let stiffness = inertia * (1.0 / solved.extent.step).powi(2);
@@ -497,7 +497,7 @@ impl Effect for Backlash {
                     solved.body,
                     vec![solved.shape[0], inertia, viscous, dry, stiffness, damping],
                 ))
-            },
+            }),
         }]
     }
 

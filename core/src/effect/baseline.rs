@@ -125,6 +125,15 @@ pub(crate) fn effects(kind: Kind) -> &'static [EffectId] {
 }
 
 impl Baseline {
+    /// Each of them; whether a process is counted from its ambient is in its values.
+    pub const ALL: [Self; 3] = [
+        Self::Drive,
+        Self::Lag {
+            from_ambient: false,
+        },
+        Self::Integrator,
+    ];
+
     pub fn parameters(self) -> &'static [BaselineParameter] {
         match self {
             Self::Drive => &DRIVE,
@@ -148,6 +157,16 @@ impl Baseline {
             Self::Drive => (values[0], values[1]),
             Self::Lag { .. } => (values[1] / values[0], 1.0 / values[0]),
             Self::Integrator => (1.0 / values[0], 0.0),
+        }
+    }
+
+    /// The transfer function from the input to the velocity, or to the output of a process: numerator, and denominator
+    /// with the highest power first.
+    pub fn fraction(self, values: &[f64]) -> (f64, Vec<f64>) {
+        match self {
+            Self::Drive => (1.0, vec![values[0], values[1]]),
+            Self::Lag { .. } => (values[0], vec![values[1], 1.0]),
+            Self::Integrator => (values[0], vec![1.0, 0.0]),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::atom::even;
+use super::atom::{Values, even};
 use super::{
     Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, gravity,
     hardening_spring, return_spring,
@@ -107,12 +107,12 @@ impl Effect for Cogging {
                 even(first, first + count.floor() * apart, count as usize + 1)
             },
             shapes: 1,
-            values: |solved| {
+            values: Values::From(|solved| {
                 let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);
                 let amplitude = libm::hypot(sine, cosine);
                 let wave = vec![amplitude, solved.shape[0], libm::atan2(cosine, sine)];
                 Some((solved.body, wave))
-            },
+            }),
         }]
     }
 

@@ -1,6 +1,6 @@
 //! A constant force or input that nobody commanded.
 
-use super::atom::as_they_are;
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -50,7 +50,7 @@ impl Effect for ConstantLoad {
     fn atoms(&self, kind: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|_, _| 1.0)];
         match kind {
-            Kind::Drive => vec![Atom::linear(COLUMNS, as_they_are)],
+            Kind::Drive => vec![Atom::linear(COLUMNS, Values::Coefficients)],
             // The operating point of a process is a part of its baseline.
             Kind::Process => Vec::new(),
         }

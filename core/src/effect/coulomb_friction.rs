@@ -5,7 +5,7 @@
 //! of per cent and pushes it into the viscous friction, so it is fitted along; where the data show
 //! none it goes to 0 and the contact is rigid.
 
-use super::atom::not_negative;
+use super::atom::{Values, not_negative};
 use super::dry_friction::{DAMPING, LEVEL, SHORT};
 use super::spec::HARD_CROSSINGS;
 use super::{Atom, BodyStart, Effect, EffectId, ParameterSpec, Part, Probe};
@@ -71,10 +71,13 @@ impl Effect for CoulombFriction {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.direction)];
-        vec![Atom::linear(COLUMNS, |solved| {
-            let (body, level) = not_negative(solved)?;
-            Some((body, vec![level[0], 0.0, 0.1]))
-        })]
+        vec![Atom::linear(
+            COLUMNS,
+            Values::From(|solved| {
+                let (body, level) = not_negative(solved)?;
+                Some((body, vec![level[0], 0.0, 0.1]))
+            }),
+        )]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,6 +1,6 @@
 //! Dead zone: small inputs do nothing.
 
-use super::atom::{geometric, mapped, shape_alone};
+use super::atom::{Values, geometric, mapped};
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -62,7 +62,7 @@ impl Effect for DeadZone {
             parts: COLUMNS,
             grid: |extent| geometric(LEAST * extent.input, MOST * extent.input, ZONES),
             shapes: 1,
-            values: shape_alone,
+            values: Values::Shape,
         }]
     }
 

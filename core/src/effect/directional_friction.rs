@@ -2,7 +2,7 @@
 //!
 //! It contains Coulomb friction (both levels the same) and replaces it.
 
-use super::atom::not_negative;
+use super::atom::{Values, not_negative};
 use super::{
     Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, coulomb_friction,
 };
@@ -76,7 +76,7 @@ impl Effect for DirectionalFriction {
             Part::Force(|m, _| -m.direction.max(0.0)),
             Part::Force(|m, _| -m.direction.min(0.0)),
         ];
-        vec![Atom::linear(COLUMNS, not_negative)]
+        vec![Atom::linear(COLUMNS, Values::From(not_negative))]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

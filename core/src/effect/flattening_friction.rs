@@ -1,6 +1,6 @@
 //! Viscous friction that flattens with speed, as grease that gets thin.
 
-use super::atom::{geometric, not_negative};
+use super::atom::{Values, geometric, not_negative};
 use super::{
     Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, coulomb_friction,
 };
@@ -88,10 +88,10 @@ impl Effect for FlatteningFriction {
             parts: COLUMNS,
             grid: |extent| geometric(SPEEDS[0] * extent.speed, SPEEDS[2] * extent.speed, TRIED),
             shapes: 1,
-            values: |solved| {
+            values: Values::From(|solved| {
                 let (body, level) = not_negative(solved)?;
                 Some((body, vec![level[0], solved.shape[0]]))
-            },
+            }),
         }]
     }
 

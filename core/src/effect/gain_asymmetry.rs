@@ -1,5 +1,6 @@
 //! Different gain for positive and negative input.
 
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -51,10 +52,13 @@ impl Effect for GainAsymmetry {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| m.input.abs())];
-        vec![Atom::linear(COLUMNS, |solved| {
-            (solved.coefficients[0].abs() <= MOST)
-                .then(|| (solved.body, solved.coefficients.to_vec()))
-        })]
+        vec![Atom::linear(
+            COLUMNS,
+            Values::From(|solved| {
+                (solved.coefficients[0].abs() <= MOST)
+                    .then(|| (solved.body, solved.coefficients.to_vec()))
+            }),
+        )]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,5 +1,6 @@
 //! Gravity on an arm: a torque that follows the sine of the angle.
 
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -79,12 +80,12 @@ impl Effect for Gravity {
                 swings.then_some(NO_SHAPE).into_iter().collect()
             },
             shapes: 0,
-            values: |solved| {
+            values: Values::From(|solved| {
                 Some((
                     solved.body,
                     arm(solved.coefficients[0], solved.coefficients[1]),
                 ))
-            },
+            }),
         }]
     }
 

@@ -1,6 +1,6 @@
 //! The part of a spring that grows with the cube of the way.
 
-use super::atom::not_negative;
+use super::atom::{Values, not_negative};
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -52,7 +52,7 @@ impl Effect for HardeningSpring {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.position.powi(3))];
-        vec![Atom::linear(COLUMNS, not_negative)]
+        vec![Atom::linear(COLUMNS, Values::From(not_negative))]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

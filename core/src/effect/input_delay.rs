@@ -1,6 +1,6 @@
 //! Dead time between the commanded and the acting input.
 
-use super::atom::{geometric, shape_alone};
+use super::atom::{Values, geometric};
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -82,7 +82,7 @@ impl Effect for InputDelay {
             parts: COLUMNS,
             grid: |extent| geometric(0.5 * extent.step, 0.5 * extent.window, DELAYS),
             shapes: 1,
-            values: shape_alone,
+            values: Values::Shape,
         }]
     }
 

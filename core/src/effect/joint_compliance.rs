@@ -1,6 +1,6 @@
 //! Joint compliance: a load behind an elastic joint.
 
-use super::atom::geometric;
+use super::atom::{Values, geometric};
 use super::driven_load::{load_columns, load_values};
 use super::{
     Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Track, coulomb_friction,
@@ -257,13 +257,13 @@ impl Effect for JointCompliance {
                     .collect()
             },
             shapes: 2,
-            values: |solved| {
+            values: Values::From(|solved| {
                 let [inertia, viscous, dry] = load_values(solved)?;
                 let [frequency, ratio, _] = solved.shape;
                 let stiffness = inertia * frequency * frequency;
                 let damping = 2.0 * ratio * frequency * inertia;
                 Some((solved.body, vec![stiffness, damping, inertia, viscous, dry]))
-            },
+            }),
         }]
     }
 

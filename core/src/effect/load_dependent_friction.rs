@@ -2,7 +2,7 @@
 //!
 //! It comes beside the friction that is always there.
 
-use super::atom::not_negative;
+use super::atom::{Values, not_negative};
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -56,10 +56,13 @@ impl Effect for LoadDependentFriction {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.input.abs() * m.direction)];
-        vec![Atom::linear(COLUMNS, |solved| {
-            let (body, share) = not_negative(solved)?;
-            (share[0] < 1.0).then_some((body, share))
-        })]
+        vec![Atom::linear(
+            COLUMNS,
+            Values::From(|solved| {
+                let (body, share) = not_negative(solved)?;
+                (share[0] < 1.0).then_some((body, share))
+            }),
+        )]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

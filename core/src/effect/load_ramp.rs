@@ -1,6 +1,6 @@
 //! Load ramp: a disturbance that grows steadily.
 
-use super::atom::as_they_are;
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -47,7 +47,7 @@ impl Effect for LoadRamp {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| m.time)];
-        vec![Atom::linear(COLUMNS, as_they_are)]
+        vec![Atom::linear(COLUMNS, Values::Coefficients)]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -38,7 +38,9 @@ mod spec;
 mod static_curvature;
 mod stribeck_friction;
 
-pub use atom::{Atom, BodyStart, Extent, Moment, NO_SHAPE, Part, Series, Shape, Solved, Track};
+pub use atom::{
+    Atom, BodyStart, Extent, Moment, NO_SHAPE, Own, Part, Series, Shape, Solved, Track,
+};
 pub use effect::Effect;
 pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub use id::{EffectId, VISCOUS_FRICTION};

@@ -2,7 +2,7 @@
 //!
 //! Where its zero lies is a matter of the linear loss and of the operating point, which are fitted with it.
 
-use super::atom::as_they_are;
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -51,7 +51,7 @@ impl Effect for NonlinearLoss {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.velocity * m.velocity)];
-        vec![Atom::linear(COLUMNS, as_they_are)]
+        vec![Atom::linear(COLUMNS, Values::Coefficients)]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

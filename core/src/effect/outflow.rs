@@ -1,6 +1,6 @@
 //! A tank that empties through a hole: the outflow goes with the root of the level.
 
-use super::atom::as_they_are;
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -59,7 +59,7 @@ impl Effect for Outflow {
                     .into_iter()
                     .collect()
             },
-            ..Atom::linear(COLUMNS, as_they_are)
+            ..Atom::linear(COLUMNS, Values::Coefficients)
         }]
     }
 

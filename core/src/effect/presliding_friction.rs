@@ -3,7 +3,7 @@
 //! The same contact as in Coulomb friction, with a deflection so long that its build-up is seen
 //! sample by sample (Maxwell-slip elements along Dahl's curve).
 
-use super::atom::{geometric, not_negative};
+use super::atom::{Values, geometric, not_negative};
 use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::{
     Atom, BodyStart, Effect, EffectId, ParameterSpec, Part, Probe, Series, coulomb_friction,
@@ -131,10 +131,10 @@ impl Effect for PreslidingFriction {
             parts: COLUMNS,
             grid: |extent| geometric(LEAST_WAY * extent.travel, MOST_WAY * extent.travel, WAYS),
             shapes: 1,
-            values: |solved| {
+            values: Values::From(|solved| {
                 let (body, level) = not_negative(solved)?;
                 Some((body, vec![level[0], solved.shape[0], 0.1]))
-            },
+            }),
         }]
     }
 

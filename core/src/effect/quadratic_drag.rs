@@ -1,6 +1,6 @@
 //! Quadratic drag: resistance that grows with the square of speed.
 
-use super::atom::not_negative;
+use super::atom::{Values, not_negative};
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -51,7 +51,7 @@ impl Effect for QuadraticDrag {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.velocity * m.velocity.abs())];
-        vec![Atom::linear(COLUMNS, not_negative)]
+        vec![Atom::linear(COLUMNS, Values::From(not_negative))]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,5 +1,6 @@
 //! A spring to the ground.
 
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -65,12 +66,15 @@ impl Effect for ReturnSpring {
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.position), Part::Force(|_, _| 1.0)];
-        vec![Atom::linear(COLUMNS, |solved| {
-            Some((
-                solved.body,
-                spring(solved.coefficients[0], solved.coefficients[1])?,
-            ))
-        })]
+        vec![Atom::linear(
+            COLUMNS,
+            Values::From(|solved| {
+                Some((
+                    solved.body,
+                    spring(solved.coefficients[0], solved.coefficients[1])?,
+                ))
+            }),
+        )]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

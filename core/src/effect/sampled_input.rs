@@ -1,5 +1,6 @@
 //! An input that moves on between the samples that were kept of it.
 
+use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -58,12 +59,15 @@ impl Effect for SampledInput {
             let (derivative, values) = (0, ahead.collect());
             vec![Series { derivative, values }]
         })];
-        vec![Atom::linear(COLUMNS, |solved| {
-            let share = solved.coefficients[0];
-            (0.0..=1.0)
-                .contains(&share)
-                .then(|| (solved.body, vec![share]))
-        })]
+        vec![Atom::linear(
+            COLUMNS,
+            Values::From(|solved| {
+                let share = solved.coefficients[0];
+                (0.0..=1.0)
+                    .contains(&share)
+                    .then(|| (solved.body, vec![share]))
+            }),
+        )]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,6 +1,6 @@
 //! Saturation: the input has an upper limit.
 
-use super::atom::{even, mapped, shape_alone};
+use super::atom::{Values, even, mapped};
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
@@ -62,7 +62,7 @@ impl Effect for Saturation {
             parts: COLUMNS,
             grid: |extent| even(LEAST * extent.input, MOST * extent.input, LIMITS),
             shapes: 1,
-            values: shape_alone,
+            values: Values::Shape,
         }]
     }
 

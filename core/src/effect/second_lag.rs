@@ -1,5 +1,6 @@
 //! A second first-order lag in series with the process.
 
+use super::atom::Values;
 use super::effect::slower_is_the_process;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series};
 use crate::measurement::Kind;
@@ -61,14 +62,17 @@ impl Effect for SecondLag {
                 values,
             }]
         })];
-        vec![Atom::linear(COLUMNS, |solved| {
-            let [inertia, damping] = solved.body;
-            // Of the polynomial 1 + sum s + product s^2.
-            let (sum, product) = (inertia / damping, solved.coefficients[0] / damping);
-            let root = (sum * sum / 4.0 - product).max(0.0).sqrt();
-            let (slow, fast) = (sum / 2.0 + root, sum / 2.0 - root);
-            (product > 0.0 && fast > 0.0).then(|| ([slow * damping, damping], vec![fast]))
-        })]
+        vec![Atom::linear(
+            COLUMNS,
+            Values::From(|solved| {
+                let [inertia, damping] = solved.body;
+                // Of the polynomial 1 + sum s + product s^2.
+                let (sum, product) = (inertia / damping, solved.coefficients[0] / damping);
+                let root = (sum * sum / 4.0 - product).max(0.0).sqrt();
+                let (slow, fast) = (sum / 2.0 + root, sum / 2.0 - root);
+                (product > 0.0 && fast > 0.0).then(|| ([slow * damping, damping], vec![fast]))
+            }),
+        )]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -3,6 +3,7 @@
 //! Three places can bend: the balance of the process (its time constant then changes with the output), the sensor and the
 //! valve. All are fitted.
 
+use super::atom::Values;
 use super::{
     Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, constant_load,
     gain_asymmetry,
@@ -77,15 +78,19 @@ impl Effect for StaticCurvature {
         const BALANCE: &[Part] = &[Part::Force(|m, _| -m.velocity * m.velocity)];
         const VALVE: &[Part] = &[Part::Force(|m, _| m.input * m.input)];
         vec![
-            Atom::linear(BALANCE, |solved| {
-                Some((
-                    solved.body,
-                    vec![solved.coefficients[0] / solved.body[1], 0.0, 0.0],
-                ))
-            }),
-            Atom::linear(VALVE, |solved| {
-                Some((solved.body, vec![0.0, 0.0, solved.coefficients[0]]))
-            }),
+            Atom::linear(
+                BALANCE,
+                Values::From(|solved| {
+                    Some((
+                        solved.body,
+                        vec![solved.coefficients[0] / solved.body[1], 0.0, 0.0],
+                    ))
+                }),
+            ),
+            Atom::linear(
+                VALVE,
+                Values::From(|solved| Some((solved.body, vec![0.0, 0.0, solved.coefficients[0]]))),
+            ),
         ]
     }
 

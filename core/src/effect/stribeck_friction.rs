@@ -2,7 +2,7 @@
 //!
 //! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
 
-use super::atom::not_negative;
+use super::atom::{Values, not_negative};
 use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::spec::HARD_CROSSINGS;
 use super::{
@@ -131,10 +131,10 @@ impl Effect for StribeckFriction {
                     .to_vec()
             },
             shapes: 1,
-            values: |solved| {
+            values: Values::From(|solved| {
                 let (body, levels) = not_negative(solved)?;
                 Some((body, vec![levels[0], levels[1], solved.shape[0], 0.0, 0.1]))
-            },
+            }),
         }]
     }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::cycle::Cycle;
 use crate::plant::{TransferFunction, ZeroPoleGain};
 use crate::relay::Relay;
-use crate::root::illinois;
+use crate::root::{SECTIONS, golden_section, illinois};
 
 /// An intersection of the Nyquist curve with `-1/N(a)`: a solution of `N(a) P(jw) + 1 = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -228,27 +228,17 @@ impl<'a> Loop<'a> {
     }
 
     /// Between `low` and `high` the curve comes close to the ray on one side: does it reach it?
-    fn touch(&self, found: &mut Vec<Crossing>, mut low: f64, mut high: f64, value: f64) {
-        let (left, right) = (low, high);
+    fn touch(&self, found: &mut Vec<Crossing>, low: f64, high: f64, value: f64) {
         let sign = value.signum();
-        let ratio = 0.5 * (5_f64.sqrt() - 1.0);
-        for _ in 0..80 {
-            let (a, b) = (high - ratio * (high - low), low + ratio * (high - low));
-            let (fa, fb) = (sign * self.balance(a), sign * self.balance(b));
-            let (at, least) = if fa < fb { (a, fa) } else { (b, fb) };
-            if least < 0.0 {
-                let middle = (at, sign * least);
-                self.add(found, (left, self.balance(left)), middle);
-                self.add(found, middle, (right, self.balance(right)));
-                return;
-            }
-            if fa < fb {
-                high = b;
-            } else {
-                low = a;
-            }
+        let peak = golden_section((low, high), SECTIONS, 0.0, |w| -sign * self.balance(w));
+        let (at, beyond) = peak.best;
+        if beyond > 0.0 {
+            let middle = (at, -sign * beyond);
+            self.add(found, (low, self.balance(low)), middle);
+            self.add(found, middle, (high, self.balance(high)));
+            return;
         }
-        let omega = 0.5 * (low + high);
+        let omega = peak.at;
         let point = self.response(omega);
         if (point.im - self.level).abs() <= 1e-12 * point.norm() && point.re < 0.0 {
             found.push(Crossing {

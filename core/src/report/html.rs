@@ -117,22 +117,6 @@ svg .estimate { stroke: var(--residual); stroke-width: 2; } svg .band { fill: va
 svg rect.bar { fill: var(--model); } svg rect.floor { fill: var(--noise); } svg rect.shade { fill: var(--band); opacity: .18; }
 "#;
 
-/// A number with three or four digits.
-pub(super) fn short(value: f64) -> String {
-    let size = value.abs();
-    if !value.is_finite() {
-        "?".to_owned()
-    } else if size >= 1e6 || (size < 1e-3 && size > 0.0) {
-        format!("{value:.2e}")
-    } else if size >= 100.0 {
-        format!("{value:.0}")
-    } else if size >= 10.0 {
-        format!("{value:.1}")
-    } else {
-        format!("{value:.2}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::escape;

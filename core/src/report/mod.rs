@@ -14,7 +14,8 @@ use std::fmt::Write as _;
 
 use crate::diagnosis::ChannelNoise;
 use crate::measurement::Kind;
-use html::{escape, figure, legend, section, short};
+use crate::uncertain::brief;
+use html::{escape, figure, legend, section};
 pub use input::{Provenance, ReportInput};
 pub use sha256::sha256;
 
@@ -64,7 +65,7 @@ fn answer(out: &mut String, input: &ReportInput) {
         || {
             format!(
                 "The model misses the measurement by {} times its noise.",
-                short(step.error)
+                brief(step.error)
             )
         },
         |v| v.text.clone(),
@@ -85,14 +86,14 @@ fn answer(out: &mut String, input: &ReportInput) {
         escape(&measurement.name),
         escape(&text),
         measurement.len(),
-        short(duration),
-        short(step.error),
-        short(input.last.noise_floor),
+        brief(duration),
+        brief(step.error),
+        brief(input.last.noise_floor),
     );
     let missed = (input.last.step.left > 0.0).then(|| {
         format!(
             "The model misses {} % of the motion.",
-            short(100.0 * input.last.step.left)
+            brief(100.0 * input.last.step.left)
         )
     });
     let noise = input.last.noise.iter().map(ChannelNoise::words);

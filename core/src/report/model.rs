@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::html::{Cell, escape, short, table};
+use super::html::{Cell, escape, table};
 use super::input::ReportInput;
 use crate::diagnosis::{NextExperiment, Parameter, Step};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
-use crate::uncertain::with_error;
+use crate::uncertain::{brief, with_error};
 use crate::user_model::Status;
 
 /// Equations of the baseline; `F` is the sum of what the effects add.
@@ -79,11 +79,10 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
     let rows: Vec<Vec<Cell>> = parameters
         .iter()
         .map(|p| {
-            let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
             vec![
                 Cell::Code(p.name.clone()),
                 Cell::Text(p.label.clone()),
-                Cell::Number(with_error(p.value, p.std_error, unit)),
+                Cell::Number(with_error(p.value, p.std_error, &p.unit)),
                 Cell::Text(
                     match p.status {
                         Status::Free => "",
@@ -132,7 +131,7 @@ pub(super) fn candidates(steps: &[Step]) -> String {
             out,
             "<h3>{} (error {})</h3>",
             escape(&on),
-            short(step.error)
+            brief(step.error)
         );
         let rows: Vec<Vec<Cell>> = step
             .candidates
@@ -150,14 +149,11 @@ pub(super) fn candidates(steps: &[Step]) -> String {
                 // What does not help has values that mean nothing.
                 let shown = c.parameters.iter().filter(|_| c.significant);
                 let values: Vec<String> = shown
-                    .map(|p| {
-                        let unit = if p.unit == "1" { "" } else { p.unit.as_str() };
-                        format!("{} = {}", p.name, with_error(p.value, p.std_error, unit))
-                    })
+                    .map(|p| format!("{} = {}", p.name, with_error(p.value, p.std_error, &p.unit)))
                     .collect();
                 vec![
                     Cell::Text(ids.join(" + ")),
-                    Cell::Number(short(c.error)),
+                    Cell::Number(brief(c.error)),
                     Cell::Number(format!("{:.1}", c.delta_bic)),
                     Cell::Text(note),
                     Cell::Text(values.join(", ")),

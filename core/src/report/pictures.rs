@@ -1,10 +1,12 @@
 //! The pictures of a report.
 
-use super::html::{figure, short};
+use super::html::figure;
 use super::svg::{Axis, Bar, Chart, bars, range};
+use crate::curve::envelope;
 use crate::diagnosis::{Finding, MissingPart, Profile, ReplayChannel, Step};
 use crate::effect::{StepPart, name_of};
 use crate::measurement::{Channel, Measurement};
+use crate::uncertain::brief;
 
 /// Size of a wide picture.
 const WIDE: f64 = 920.0;
@@ -44,7 +46,7 @@ pub(super) fn waterfall(steps: &[Step], floor: f64) -> String {
         .into_iter()
         .map(|(label, error, class)| Bar {
             label,
-            value: short(error),
+            value: brief(error),
             share: if logarithmic {
                 libm::log(error / (0.5 * least)) / libm::log(most / (0.5 * least))
             } else {
@@ -109,7 +111,7 @@ pub(super) fn output(
     let (from, to) = detail(&residual[..n]);
     let spans = findings.first().map_or(&[][..], |f| f.spans.as_slice());
     let part =
-        |values: &[f64]| -> Vec<(f64, f64)> { (from..to).map(|i| (time[i], values[i])).collect() };
+        |values: &[f64]| -> Vec<[f64; 2]> { (from..to).map(|i| [time[i], values[i]]).collect() };
     let x = || Axis::new("time", "s", (time[from], time[to - 1]));
     let shown = measured.values[from..to]
         .iter()
@@ -147,7 +149,10 @@ pub(super) fn output(
     );
     let whole = Axis::new("time", "s", (time[0], time[n - 1]));
     let mut chart = Chart::new(WIDE, LOW, whole, residual_axis(&residual));
-    chart.line(&envelope(&time[..n], &residual[..n]), "residual");
+    chart.line(
+        &envelope(&time[..n], &residual[..n], 2 * STRETCHES),
+        "residual",
+    );
     chart.level(noise, "noise");
     chart.level(-noise, "noise");
     figure(
@@ -179,21 +184,6 @@ fn detail(residual: &[f64]) -> (usize, usize) {
         }
     }
     (at, at + DETAIL)
-}
-
-/// Points of a curve; a long one keeps the extremes of each stretch.
-fn envelope(time: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
-    if time.len() <= 2 * STRETCHES {
-        return time.iter().copied().zip(values.iter().copied()).collect();
-    }
-    let stretch = time.len().div_ceil(STRETCHES);
-    time.chunks(stretch)
-        .zip(values.chunks(stretch))
-        .flat_map(|(t, v)| {
-            let (low, high) = range(v.iter().copied()).unwrap_or((f64::NAN, f64::NAN));
-            [(t[0], low), (t[0], high)]
-        })
-        .collect()
 }
 
 /// Pictures with captions of the residual over the wanted axes, the strongest first: how large it is there
@@ -269,7 +259,7 @@ pub(super) fn missing(parts: &[MissingPart]) -> Vec<(String, String)> {
             let ends = m
                 .parts
                 .iter()
-                .flat_map(|p| [(p.from, p.value), (p.to, p.value)]);
+                .flat_map(|p| [[p.from, p.value], [p.to, p.value]]);
             chart.line(&ends.collect::<Vec<_>>(), "estimate");
             chart.level(0.0, "noise");
             let title = format!("Missing {} over {}", m.what, m.axis);
@@ -279,22 +269,22 @@ pub(super) fn missing(parts: &[MissingPart]) -> Vec<(String, String)> {
 }
 
 fn profile_chart(name: &str, profile: &Profile, before: Option<&Profile>) -> String {
-    let steps = |p: &Profile| -> Vec<(f64, f64)> {
+    let steps = |p: &Profile| -> Vec<[f64; 2]> {
         p.bins
             .iter()
-            .flat_map(|b| [(b.from, b.rms), (b.to, b.rms)])
-            .filter(|p| profile.axis != FREQUENCY || p.0 > 0.0)
+            .flat_map(|b| [[b.from, b.rms], [b.to, b.rms]])
+            .filter(|p| profile.axis != FREQUENCY || p[0] > 0.0)
             .collect()
     };
     let own = steps(profile);
     let other = before.map(steps).unwrap_or_default();
-    let ends = range(own.iter().map(|p| p.0)).unwrap_or((0.0, 1.0));
+    let ends = range(own.iter().map(|p| p[0])).unwrap_or((0.0, 1.0));
     let x = if profile.axis == FREQUENCY {
         Axis::sized(name, &profile.unit, ends)
     } else {
         Axis::new(name, &profile.unit, ends)
     };
-    let sizes = own.iter().chain(&other).map(|p| p.1).chain([1.0]);
+    let sizes = own.iter().chain(&other).map(|p| p[1]).chain([1.0]);
     let y = Axis::sized("residual / noise", "1", range(sizes).unwrap_or((0.0, 1.0)));
     let mut chart = Chart::new(HALF, LOW + 20.0, x, y);
     chart.line(&other, "before");

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::html::escape;
+use crate::uncertain::titled;
 
 /// Space for the labels, in units of the picture.
 const LEFT: f64 = 74.0;
@@ -28,11 +29,7 @@ pub(super) struct Axis {
 impl Axis {
     /// A range that is empty or no number becomes one that can be drawn.
     pub fn new(name: &str, unit: &str, range: (f64, f64)) -> Self {
-        let label = if unit == "1" || unit.is_empty() {
-            name.to_owned()
-        } else {
-            format!("{name} [{unit}]")
-        };
+        let label = titled(name, unit);
         let (mut from, mut to) = range;
         if !(from.is_finite() && to.is_finite() && from <= to && (to - from).is_finite()) {
             (from, to) = (0.0, 1.0);
@@ -165,10 +162,10 @@ impl Chart {
     }
 
     /// A curve; values that are no numbers break it.
-    pub fn line(&mut self, points: &[(f64, f64)], class: &str) {
+    pub fn line(&mut self, points: &[[f64; 2]], class: &str) {
         let mut path = String::new();
         let mut drawing = false;
-        for (x, y) in points {
+        for [x, y] in points {
             if x.is_finite() && y.is_finite() {
                 let command = if drawing { 'L' } else { 'M' };
                 let _ = write!(path, "{command}{:.1} {:.1}", self.at_x(*x), self.at_y(*y));
@@ -182,7 +179,7 @@ impl Chart {
 
     /// A level.
     pub fn level(&mut self, y: f64, class: &str) {
-        self.line(&[(self.x.from, y), (self.x.to, y)], class);
+        self.line(&[[self.x.from, y], [self.x.to, y]], class);
     }
 
     /// The area between two curves over the same points: x, lower, upper.
@@ -344,7 +341,7 @@ mod tests {
             Axis::new("x", "1", (f64::NAN, 1.0)),
             Axis::new("y", "m", (-1e308, 1e308)),
         );
-        chart.line(&wild.map(|v| (v, v)), "model");
+        chart.line(&wild.map(|v| [v, v]), "model");
         chart.band(&wild.map(|v| (v, v, -v)), "band");
         let svg = chart.finish("wild");
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");

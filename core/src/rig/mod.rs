@@ -13,13 +13,12 @@
 mod controller;
 pub mod process;
 mod proposed;
-mod random;
 mod run;
 
 use std::f64::consts::TAU;
 
+pub use crate::random::Random;
 pub use proposed::Proposed;
-pub use random::Random;
 pub use run::carried_over;
 
 /// Resolution of the encoder unless said otherwise, rad.

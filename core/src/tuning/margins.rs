@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::controller::Pid;
 use super::scan;
 use crate::plant::TransferFunction;
+use crate::root::golden_section;
 
 /// How far a stable loop is from instability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -159,21 +160,10 @@ fn max_sensitivity(frequencies: &[f64], open: impl Fn(f64) -> Complex<f64>) -> f
     let Some(top) = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])) else {
         return 1.0;
     };
-    let (mut a, mut b) = (
+    let beside = (
         frequencies[top.saturating_sub(1)],
         frequencies[(top + 1).min(frequencies.len() - 1)],
     );
-    let golden = 0.5 * (5_f64.sqrt() - 1.0);
-    let mut best = values[top];
-    for _ in 0..REFINEMENTS {
-        let (c, d) = (b - golden * (b - a), a + golden * (b - a));
-        let (at_c, at_d) = (size(c), size(d));
-        best = best.max(at_c).max(at_d);
-        if at_c < at_d {
-            a = c;
-        } else {
-            b = d;
-        }
-    }
-    best
+    let peak = golden_section(beside, REFINEMENTS, f64::INFINITY, size);
+    values[top].max(peak.best.1)
 }

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::controller::Pid;
 use super::error::TuningError;
 use super::scan::crossing;
+use crate::root::{SECTIONS, golden_section};
 
 /// A known point of the plant's Nyquist curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -122,15 +123,7 @@ pub fn pi(from: &NyquistPoint, to: Complex<f64>) -> Result<Pid, TuningError> {
 
 /// Where a function with one maximum between `low` and `high` has it: golden section over the logarithm.
 fn largest(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let golden = 0.5 * (5_f64.sqrt() - 1.0);
-    let (mut a, mut b) = (libm::log(low), libm::log(high));
-    for _ in 0..80 {
-        let (c, d) = (b - golden * (b - a), a + golden * (b - a));
-        if f(libm::exp(c)) < f(libm::exp(d)) {
-            a = c;
-        } else {
-            b = d;
-        }
-    }
-    libm::exp(0.5 * (a + b))
+    let ends = (libm::log(low), libm::log(high));
+    let peak = golden_section(ends, SECTIONS, f64::INFINITY, |x| f(libm::exp(x)));
+    libm::exp(peak.at)
 }

@@ -175,7 +175,12 @@ impl UserModel {
             .ok_or("write it as \"name: formula\", such as \"bump: -a*exp(-((x-b)/c)^2)\"")?;
         let (formula, values) = rest.split_once(';').unwrap_or((rest, ""));
         let (name, formula) = (name.trim(), formula.trim());
-        let id = EffectId::own(name)
+        // The library may come to have the name that a user has long had for a formula.
+        let name = match EffectId::parse(name) {
+            Some(taken) => format!("own_{taken}"),
+            None => name.to_owned(),
+        };
+        let id = EffectId::own(&name)
             .ok_or_else(|| format!("'{name}' is no name for an effect: {}", EffectId::OWN_NAMES))?;
         if self.find(id).is_some() {
             return Err(format!("{name} is there twice: give it another name"));
@@ -184,7 +189,7 @@ impl UserModel {
             return Err(format!("too many effects: at most {MAX_PRESENT}"));
         }
         let symbols = Formula {
-            name: name.to_owned(),
+            name: name.clone(),
             text: formula.to_owned(),
         }
         .parameters(self.kind)

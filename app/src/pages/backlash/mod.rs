@@ -16,17 +16,16 @@ use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, driftin
 use hysteron_core::measurement::Kind;
 
 use crate::desk::Desk;
-use crate::page::{Hint, Offer, Page, Settable, View};
+use crate::page::{Hint, Offer, Page, View};
 use crate::widgets::playback::Playback;
 use built_in::BuiltIn;
 
-use crate::export::{Table, Tables};
+use crate::export::Table;
 use crate::files::{Files, Held};
 use crate::hook::Targets;
-use crate::jobs::{Job, News};
+use crate::jobs::Job;
 use crate::language::tr;
 use crate::layout;
-use crate::link::parsed;
 use crate::recent::{Recents, measurement};
 use crate::theme;
 use crate::widgets::controls::claim_ui;
@@ -201,25 +200,16 @@ impl Backlash {
         let Some((of, job)) = &mut self.estimation else {
             return;
         };
+        let Some(end) = job.end(|_, _| ()) else {
+            return;
+        };
         let of = *of;
-        for news in job.news() {
-            match news {
-                News::Report(report) => {
-                    self.estimation = None;
-                    self.take_estimate(of.as_ref(), *report);
-                    return;
-                }
-                News::Failed(error) => {
-                    self.estimation = None;
-                    match (of, &mut self.scene) {
-                        // Asked again, it would only fail again.
-                        (Some(_), Some(scene)) => scene.estimate = Some(Err(error)),
-                        _ => self.keep(error),
-                    }
-                    return;
-                }
-                News::Progress(..) => {}
-            }
+        self.estimation = None;
+        match (end, of, &mut self.scene) {
+            (Ok(report), ..) => self.take_estimate(of.as_ref(), report),
+            // Asked again, it would only fail again.
+            (Err(error), Some(_), Some(scene)) => scene.estimate = Some(Err(error)),
+            (Err(error), ..) => self.keep(error),
         }
     }
 
@@ -414,25 +404,7 @@ impl View for Backlash {
     }
 
     fn offer(&self) -> Offer<'_> {
-        Offer {
-            hint: Some(self.hint()),
-            tables: Tables::new(self.table_names(), || self.tables()),
-        }
-    }
-}
-
-impl Settable for Backlash {
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(ctx, &parsed(settings)?)
+        Offer::new(self.hint(), self.table_names(), || self.tables())
     }
 }
 

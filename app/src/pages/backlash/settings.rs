@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::Backlash;
 use super::built_in::BUILT_IN;
+use crate::desk::Desk;
 use crate::files::Held;
+use crate::page::Settable;
 
 /// The most that a link may ask for: a longer run, or one of more events, would fill the memory.
 const LONGEST_RUN: f64 = 120.0;
@@ -16,7 +18,7 @@ const SPEEDS: std::ops::RangeInclusive<f64> = 1e-6..=1e3;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Settings {
+pub struct Settings {
     /// Number of the figure whose claim is checked.
     figure: Option<u32>,
     /// The drive, its relay, and how long it runs.
@@ -32,8 +34,10 @@ pub(super) struct Settings {
     file: Option<String>,
 }
 
-impl Backlash {
-    pub(super) fn set_to(&self) -> Settings {
+impl Settable for Backlash {
+    type Settings = Settings;
+
+    fn set_to(&self) -> Settings {
         Settings {
             figure: self.figure,
             run: self.input,
@@ -45,7 +49,12 @@ impl Backlash {
         }
     }
 
-    pub(super) fn take(&mut self, ctx: &egui::Context, settings: &Settings) -> Result<(), String> {
+    fn take(
+        &mut self,
+        ctx: &egui::Context,
+        settings: Settings,
+        _desk: &Desk,
+    ) -> Result<(), String> {
         settings.check()?;
         let file = match &settings.file {
             Some(name) if settings.file != self.file => {

@@ -3,6 +3,7 @@
 use egui::Color32;
 use egui_plot::{HLine, Line, LineStyle, Points, Span};
 use hysteron_core::diagnosis::{Finding, Profile, ProfileBin, StepReport};
+use hysteron_core::uncertain::titled;
 
 use super::parts::Part;
 use super::state::Compare;
@@ -111,11 +112,7 @@ pub(super) fn words(axis: &str) -> String {
 
 /// Label of an axis with its unit.
 fn axis_label(profile: &Profile) -> String {
-    if profile.unit == "1" {
-        words(&profile.axis)
-    } else {
-        format!("{} [{}]", words(&profile.axis), profile.unit)
-    }
+    titled(&words(&profile.axis), &profile.unit)
 }
 
 /// Share of an axis within which bins are one point: a sampled axis has only so many values.

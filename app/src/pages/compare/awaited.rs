@@ -9,7 +9,7 @@ use super::look::Look;
 
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Settings {
+pub struct Settings {
     /// Name of the measurement that is open, unless it is the next.
     pub(super) file: Option<String>,
     /// The measurement itself: a mystery that came in a link.

@@ -3,6 +3,7 @@
 use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, Opening, Program, Trial};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
+use hysteron_core::uncertain::in_unit;
 
 use super::command::Command;
 use super::state::Compare;
@@ -116,12 +117,8 @@ fn opening_ui(
                     continue;
                 };
                 let (place, command) = opened(opening, purpose(page, proposal, model));
-                let unit = if proposal.input_unit == "1" {
-                    String::new()
-                } else {
-                    format!(" {}", proposal.input_unit)
-                };
-                let open = ui.button(tr(format!("{place} with gain {gain}{unit}")));
+                let gain = in_unit(gain.to_string(), &proposal.input_unit);
+                let open = ui.button(tr(format!("{place} with gain {gain}")));
                 targets.note(format!("experiment:{index}:open:{k}:{j}"), ui, &open);
                 if open.clicked() {
                     commands.push(Command::Desk(command));
@@ -198,20 +195,13 @@ fn limits_ui(
 }
 
 fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut egui::Ui) {
-    let plain = |unit: &str| {
-        if unit == "1" {
-            String::new()
-        } else {
-            format!(" {unit}")
-        }
-    };
     let mut row = |name: &str, value: &mut f64, unit: &str| {
         let label = ui.label(tr(name));
         let speed = 0.01 * value.abs().max(1e-9);
         let drag = Typed::new(*value, unit, 1e-9..=1e9, 6)
             .field(ui.ctx(), value)
             .speed(speed)
-            .suffix(plain(unit));
+            .suffix(in_unit("", unit));
         ui.add(drag).labelled_by(label.id);
         ui.end_row();
     };

@@ -4,6 +4,7 @@ use egui_plot::{Line, LineStyle};
 use hysteron_core::diagnosis::{Fingerprint, Profile, StepReport};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Measurement;
+use hysteron_core::uncertain::titled;
 
 use super::atlas::{draw, grid_ui, small, words};
 use super::command::Command;
@@ -111,11 +112,7 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
             .take(series.len())
             .map(|(t, (y, m))| [*t, y - m])
             .collect();
-        let label = if output.unit == "1" {
-            output.name.clone()
-        } else {
-            format!("{} [{}]", output.name, output.unit)
-        };
+        let label = titled(&output.name, &output.unit);
         let id = format!("fingerprint {} {index}", print.effect);
         let axes = ["time [s]".to_owned(), label];
         let linked = egui::Id::unique("fingerprint");

@@ -4,7 +4,7 @@ use hysteron_core::diagnosis::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 
 use super::state::Compare;
-use crate::jobs::{Job, News};
+use crate::jobs::Job;
 use hysteron_work::tasks::ExperimentTask;
 
 impl Compare {
@@ -70,22 +70,19 @@ impl Compare {
     /// has been found.
     pub(super) fn take_earlier(&mut self, ctx: &egui::Context) {
         if let Some((effects, job)) = &mut self.earlier {
-            let effects = effects.clone();
-            for news in job.news() {
-                match news {
-                    News::Report(report) => {
-                        self.reports.insert(effects.clone(), *report);
-                        self.earlier = None;
-                        return;
-                    }
-                    News::Failed(text) => {
-                        self.message = Some(text);
-                        self.before &= self.effects_before() != Some(effects.as_slice());
-                        self.lost.insert(effects);
-                        self.earlier = None;
-                        return;
-                    }
-                    News::Progress(..) => {}
+            let Some(end) = job.end(|_, _| ()) else {
+                return;
+            };
+            let effects = std::mem::take(effects);
+            self.earlier = None;
+            match end {
+                Ok(report) => {
+                    self.reports.insert(effects, report);
+                }
+                Err(text) => {
+                    self.message = Some(text);
+                    self.before &= self.effects_before() != Some(effects.as_slice());
+                    self.lost.insert(effects);
                 }
             }
             return;
@@ -134,25 +131,19 @@ impl Compare {
         let Some((effects, index, job)) = &mut self.search else {
             return;
         };
-        let (effects, index) = (effects.clone(), *index);
-        for news in job.news() {
-            match news {
-                News::Report(found) => {
-                    self.search = None;
-                    let report = self.reports.get_mut(&effects);
-                    if let Some(verdict) = report.and_then(|r| r.verdict.as_mut()) {
-                        verdict.replace_experiment(index, *found);
-                    }
-                    self.limits = None;
-                    return;
+        let Some(end) = job.end(|_, _| ()) else {
+            return;
+        };
+        match end {
+            Ok(found) => {
+                let report = self.reports.get_mut(effects);
+                if let Some(verdict) = report.and_then(|r| r.verdict.as_mut()) {
+                    verdict.replace_experiment(*index, found);
                 }
-                News::Failed(text) => {
-                    self.search = None;
-                    self.message = Some(text);
-                    return;
-                }
-                News::Progress(..) => {}
+                self.limits = None;
             }
+            Err(text) => self.message = Some(text),
         }
+        self.search = None;
     }
 }

@@ -2,6 +2,7 @@
 
 use egui_plot::{HLine, Line, PlotPoints};
 use hysteron_core::diagnosis::{MissingPart, StepReport};
+use hysteron_core::uncertain::titled;
 
 use crate::language::tr;
 use crate::theme;
@@ -32,17 +33,10 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
 const AXIS_WIDTH: f32 = 60.0;
 
 fn plot_ui(part: &MissingPart, ui: &mut egui::Ui) {
-    let label = |name: &str, unit: &str| {
-        if unit == "1" {
-            name.to_owned()
-        } else {
-            format!("{name} [{unit}]")
-        }
-    };
     let size = part.parts.iter().map(|p| p.value.abs()).fold(0.0, f64::max);
     let (x, y) = (
-        label(&part.axis, &part.axis_unit),
-        label(&part.what, &part.unit),
+        titled(&part.axis, &part.axis_unit),
+        titled(&part.what, &part.unit),
     );
     let id = format!("missing {} {}", part.what, part.axis);
     let chart = Chart::new(id, [x, y], HEIGHT, AXIS_WIDTH).still();

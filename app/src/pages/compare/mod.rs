@@ -31,14 +31,13 @@ mod waterfall;
 mod welcome;
 
 use crate::desk::Desk;
-use crate::export::{Table, Tables};
+use crate::export::Table;
 use crate::files::{MEASUREMENT, MODEL};
 use crate::hook::Targets;
-use crate::jobs::{Job, News};
+use crate::jobs::ended;
 use crate::language::tr;
 use crate::layout;
-use crate::link::parsed;
-use crate::page::{Offer, Page, Settable, View};
+use crate::page::{Offer, Page, View};
 use crate::save::save;
 use crate::theme;
 use built_in::{BUILT_IN, BuiltIn};
@@ -77,21 +76,15 @@ impl Compare {
             // The page shows that it lives, also where the job says nothing new for a while.
             ctx.request_repaint_after(ALIVE);
         }
-        let news = self.job.as_mut().map(Job::news).unwrap_or_default();
-        for news in news {
-            match news {
-                News::Progress(fraction, text) => self.progress = (fraction, text),
-                News::Report(report) => {
-                    self.reports.insert(self.effects.clone(), *report);
-                    self.shown = Some(self.effects.clone());
-                    self.finding = 0;
-                    self.job = None;
-                }
-                News::Failed(text) => {
-                    self.message = Some(text);
-                    self.job = None;
-                }
+        let progress = &mut self.progress;
+        match ended(&mut self.job, |share, text| *progress = (share, text)) {
+            Some(Ok(report)) => {
+                self.reports.insert(self.effects.clone(), report);
+                self.shown = Some(self.effects.clone());
+                self.finding = 0;
             }
+            Some(Err(text)) => self.message = Some(text),
+            None => {}
         }
         self.take_search();
         self.take_earlier(ctx);
@@ -344,25 +337,7 @@ impl View for Compare {
     }
 
     fn offer(&self) -> Offer<'_> {
-        Offer {
-            hint: Some(self.next()),
-            tables: Tables::new(self.table_names(), || self.tables()),
-        }
-    }
-}
-
-impl Settable for Compare {
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(ctx, &parsed(settings)?)
+        Offer::new(self.next(), self.table_names(), || self.tables())
     }
 }
 

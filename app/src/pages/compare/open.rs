@@ -12,7 +12,7 @@ use super::opening::Opening;
 use super::sealed::Sealed;
 use super::state::Compare;
 use crate::files::Held;
-use crate::jobs::{Job, News};
+use crate::jobs::Job;
 use hysteron_work::content::Content;
 use hysteron_work::reading::Reading;
 use hysteron_work::tasks::{Opened, ReadReport};
@@ -41,13 +41,13 @@ impl Compare {
         let Some(mut opening) = self.opening.take() else {
             return;
         };
-        match opening.job.news().pop() {
-            Some(News::Report(report)) => match *report {
-                ReadReport::Measurement(opened) => self.take_measurement(ctx, *opened, opening),
-                ReadReport::Unclear { reason, columns } => self.ask(opening, reason, columns),
-            },
-            Some(News::Failed(error)) => self.refuse(error),
-            Some(News::Progress(..)) | None => self.opening = Some(opening),
+        match opening.job.end(|_, _| ()) {
+            Some(Ok(ReadReport::Measurement(opened))) => {
+                self.take_measurement(ctx, *opened, opening);
+            }
+            Some(Ok(ReadReport::Unclear { reason, columns })) => self.ask(opening, reason, columns),
+            Some(Err(error)) => self.refuse(error),
+            None => self.opening = Some(opening),
         }
     }
 

@@ -7,6 +7,7 @@ use egui_plot::{
 };
 use hysteron_core::diagnosis::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
+use hysteron_core::uncertain::titled;
 
 use super::parts::Part;
 use super::state::Compare;
@@ -186,14 +187,6 @@ fn fit(plot: &mut Pen<'_, '_>, time: &[f64], curves: &[&[f64]], others: &[f64], 
     }
 }
 
-fn unit_label(name: &str, unit: &str) -> String {
-    if unit == "1" {
-        name.to_owned()
-    } else {
-        format!("{name} [{unit}]")
-    }
-}
-
 fn signal_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
@@ -202,7 +195,7 @@ fn signal_plot(
     finding: Option<&Finding>,
     size: Size,
 ) -> egui::Rect {
-    let label = unit_label(&output.name, &output.unit);
+    let label = titled(&output.name, &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let alone = measurement.outputs.len() == 1;
@@ -254,7 +247,7 @@ fn residual_plot(
     finding: Option<&Finding>,
     size: Size,
 ) -> egui::Rect {
-    let label = unit_label(&format!("{} - model", output.name), &output.unit);
+    let label = titled(&format!("{} - model", output.name), &output.unit);
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
         pairs.map(|(y, m)| y - m).collect()

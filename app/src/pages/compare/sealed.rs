@@ -4,7 +4,7 @@ use hysteron_core::effect::EffectId;
 use hysteron_core::mystery::Reveal;
 use hysteron_work::tasks::RevealTask;
 
-use crate::jobs::{Job, News};
+use crate::jobs::{Job, ended};
 
 /// A sealed truth that came with the measurement, and what was revealed of it.
 #[derive(Default)]
@@ -49,13 +49,10 @@ impl Sealed {
 
     /// Takes what the job has found.
     pub fn update(&mut self, shown: &[EffectId]) {
-        for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
-            match news {
-                News::Progress(..) => continue,
-                News::Report(reveal) => self.revealed = Some((shown.to_vec(), *reveal)),
-                News::Failed(text) => self.message = Some(text),
-            }
-            self.job = None;
+        match ended(&mut self.job, |_, _| ()) {
+            Some(Ok(reveal)) => self.revealed = Some((shown.to_vec(), reveal)),
+            Some(Err(text)) => self.message = Some(text),
+            None => {}
         }
     }
 }

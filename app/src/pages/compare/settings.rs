@@ -12,14 +12,18 @@ use super::built_in::BUILT_IN;
 use super::look::Look;
 use super::opening::Opening;
 use super::state::Compare;
+use crate::desk::Desk;
 use crate::files::Held;
 use crate::link::not_enclosed;
+use crate::page::Settable;
 
 /// Effects that a link may add.
 const MOST_EFFECTS: usize = 12;
 
-impl Compare {
-    pub(super) fn set_to(&self) -> Settings {
+impl Settable for Compare {
+    type Settings = Settings;
+
+    fn set_to(&self) -> Settings {
         if let Some(awaited) = self.opening.as_ref().and_then(|o| o.then.as_ref()) {
             return awaited.settings.clone();
         }
@@ -38,8 +42,13 @@ impl Compare {
         }
     }
 
-    pub(super) fn take(&mut self, ctx: &egui::Context, settings: &Settings) -> Result<(), String> {
-        let present = self.set_to();
+    fn take(
+        &mut self,
+        ctx: &egui::Context,
+        settings: Settings,
+        _desk: &Desk,
+    ) -> Result<(), String> {
+        let (settings, present) = (&settings, self.set_to());
         let other = self.other_file(settings, &present)?;
         if settings.effects.len() > MOST_EFFECTS || settings.own.len() > MOST_EFFECTS {
             return Err(format!("A link may add {MOST_EFFECTS} effects."));
@@ -86,7 +95,9 @@ impl Compare {
         self.adopt(ctx, settings, meant);
         Ok(())
     }
+}
 
+impl Compare {
     /// The measurement of `settings`, if it is another than is open at `present`.
     fn other_file(&self, settings: &Settings, present: &Settings) -> Result<Option<Held>, String> {
         match (&settings.file, &settings.mystery) {

@@ -13,11 +13,10 @@ use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks, figures};
 
 use crate::desk::Desk;
-use crate::export::{Table, Tables};
+use crate::export::Table;
 use crate::language::tr;
 use crate::layout;
-use crate::link::parsed;
-use crate::page::{Hint, Offer, Page, Settable, View};
+use crate::page::{Hint, Offer, Page, View};
 use crate::theme;
 use crate::widgets::controls::claim_ui;
 use crate::widgets::playback::Playback;
@@ -101,25 +100,7 @@ impl View for Explore {
     }
 
     fn offer(&self) -> Offer<'_> {
-        Offer {
-            hint: self.hint(),
-            tables: Tables::new(self.table_names(), || self.tables()),
-        }
-    }
-}
-
-impl Settable for Explore {
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(&parsed(settings)?)
+        Offer::new(self.hint(), self.table_names(), || self.tables())
     }
 }
 

@@ -4,10 +4,12 @@ use hysteron_core::figures::figures;
 use serde::{Deserialize, Serialize};
 
 use super::Explore;
+use crate::desk::Desk;
+use crate::page::Settable;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Settings {
+pub struct Settings {
     /// Number of the figure whose claim is checked.
     figure: Option<u32>,
     /// Whether the point S is shown in the Nyquist plot.
@@ -16,8 +18,10 @@ pub(super) struct Settings {
     paused: Option<f64>,
 }
 
-impl Explore {
-    pub(super) fn set_to(&self) -> Settings {
+impl Settable for Explore {
+    type Settings = Settings;
+
+    fn set_to(&self) -> Settings {
         Settings {
             figure: self.figure,
             margin: self.nyquist.margin,
@@ -25,7 +29,12 @@ impl Explore {
         }
     }
 
-    pub(super) fn take(&mut self, settings: &Settings) -> Result<(), String> {
+    fn take(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: Settings,
+        _desk: &Desk,
+    ) -> Result<(), String> {
         if let Some(number) = settings.figure
             && figures().iter().all(|f| f.number != number)
         {

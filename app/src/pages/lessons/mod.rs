@@ -49,14 +49,17 @@ impl View for Lessons {
 }
 
 impl Settable for Lessons {
-    fn settings(&self) -> serde_json::Value {
+    type Settings = serde_json::Value;
+
+    /// Nothing.
+    fn set_to(&self) -> serde_json::Value {
         serde_json::json!({})
     }
 
-    fn set(
+    fn take(
         &mut self,
         _ctx: &egui::Context,
-        _settings: &serde_json::Value,
+        _settings: serde_json::Value,
         _desk: &Desk,
     ) -> Result<(), String> {
         Ok(())

@@ -10,13 +10,12 @@ use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::{Table, Tables};
+use crate::export::Table;
 use crate::jobs::{Job, News};
 use crate::language::tr;
 use crate::layout;
-use crate::link::parsed;
 use crate::motion;
-use crate::page::{Hint, Offer, Page, Settable, View};
+use crate::page::{Hint, Offer, Page, View};
 use crate::theme;
 use hysteron_work::tasks::MapTask;
 use picture::Picture;
@@ -226,28 +225,11 @@ impl View for Maps {
     }
 
     fn offer(&self) -> Offer<'_> {
-        Offer {
-            hint: Some(Hint::open(
-                "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
-                "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
-            )),
-            tables: Tables::new(["map"], || self.tables()),
-        }
-    }
-}
-
-impl Settable for Maps {
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(parsed(settings)?, &desk.relay_loop)
+        let hint = Hint::open(
+            "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
+            "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
+        );
+        Offer::new(hint, ["map"], || self.tables())
     }
 }
 

@@ -5,10 +5,12 @@ use hysteron_core::maps::{Axis, Quantity};
 use serde::{Deserialize, Serialize};
 
 use super::Maps;
+use crate::desk::Desk;
+use crate::page::Settable;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Settings {
+pub struct Settings {
     across: Axis,
     upwards: Axis,
     quantity: Quantity,
@@ -18,8 +20,10 @@ pub(super) struct Settings {
     around: ExploreInput,
 }
 
-impl Maps {
-    pub(super) fn set_to(&self) -> Settings {
+impl Settable for Maps {
+    type Settings = Settings;
+
+    fn set_to(&self) -> Settings {
         Settings {
             across: self.input.x,
             upwards: self.input.y,
@@ -29,11 +33,11 @@ impl Maps {
         }
     }
 
-    /// Takes settings, with the loop of *Explore* that belongs to them.
-    pub(super) fn take(
+    fn take(
         &mut self,
+        _ctx: &egui::Context,
         settings: Settings,
-        explored: &ExploreInput,
+        desk: &Desk,
     ) -> Result<(), String> {
         let mut input = self.input.clone();
         input.x = settings.across;
@@ -49,7 +53,8 @@ impl Maps {
         self.input = input;
         self.quantity = settings.quantity;
         self.point = settings.point;
-        self.seen = Some(explored.clone());
+        // The loop of *Explore* belongs to them.
+        self.seen = Some(desk.relay_loop.clone());
         self.picture.outdated();
         Ok(())
     }

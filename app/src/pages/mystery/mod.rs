@@ -13,11 +13,10 @@ use web_time::SystemTime;
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::{Table, Tables};
-use crate::jobs::{Job, News};
+use crate::export::Table;
+use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::layout;
-use crate::link::parsed;
 use crate::motion;
 use crate::page::{Hint, Offer, Page, Settable, View};
 use crate::theme;
@@ -49,7 +48,7 @@ pub struct Bench {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Settings {
+pub struct Settings {
     /// What is measured, and how.
     experiment: Experiment,
     /// Whether the teacher chooses what to hide.
@@ -215,13 +214,10 @@ pub fn page() -> Page {
 
 impl View for Bench {
     fn update(&mut self, _ctx: &egui::Context) {
-        for news in self.job.as_mut().map(Job::news).unwrap_or_default() {
-            match news {
-                News::Progress(..) => continue,
-                News::Report(made) => self.made = Some(Product::of(*made, self.asked.take())),
-                News::Failed(text) => self.message = Some(text),
-            }
-            self.job = None;
+        match ended(&mut self.job, |_, _| ()) {
+            Some(Ok(made)) => self.made = Some(Product::of(made, self.asked.take())),
+            Some(Err(text)) => self.message = Some(text),
+            None => {}
         }
     }
 
@@ -240,33 +236,28 @@ impl View for Bench {
     }
 
     fn offer(&self) -> Offer<'_> {
-        Offer {
-            hint: Some(self.hint()),
-            tables: Tables::new(self.table_names(), || self.tables()),
-        }
+        Offer::new(self.hint(), self.table_names(), || self.tables())
     }
 }
 
 impl Settable for Bench {
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(Settings {
+    type Settings = Settings;
+
+    fn set_to(&self) -> Settings {
+        Settings {
             experiment: self.experiment,
             by_hand: self.by_hand,
-        })
+        }
     }
 
-    fn set(
+    fn take(
         &mut self,
         _ctx: &egui::Context,
-        settings: &serde_json::Value,
+        settings: Settings,
         _desk: &Desk,
     ) -> Result<(), String> {
-        let Settings {
-            experiment,
-            by_hand,
-        } = parsed(settings)?;
-        self.experiment = experiment;
-        self.by_hand = by_hand;
+        self.experiment = settings.experiment;
+        self.by_hand = settings.by_hand;
         Ok(())
     }
 }

@@ -6,10 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::{Table, Tables};
+use crate::export::Table;
 use crate::language::tr;
 use crate::layout;
-use crate::link::parsed;
 use crate::page::{Offer, Page, Settable, View};
 use crate::theme;
 use crate::widgets::controls::slider;
@@ -72,7 +71,7 @@ pub struct Start {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Settings {
+pub struct Settings {
     /// Where the playback stands still, s.
     paused: Option<f64>,
 }
@@ -108,28 +107,26 @@ impl View for Start {
     }
 
     fn offer(&self) -> Offer<'_> {
-        Offer {
-            hint: None,
-            tables: Tables::new(self.table_names(), || self.tables()),
-        }
+        Offer::new(None, self.table_names(), || self.tables())
     }
 }
 
 impl Settable for Start {
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(Settings {
+    type Settings = Settings;
+
+    fn set_to(&self) -> Settings {
+        Settings {
             paused: self.playback.paused(),
-        })
+        }
     }
 
-    fn set(
+    fn take(
         &mut self,
         _ctx: &egui::Context,
-        settings: &serde_json::Value,
+        settings: Settings,
         _desk: &Desk,
     ) -> Result<(), String> {
-        let Settings { paused } = parsed(settings)?;
-        self.playback.set(paused);
+        self.playback.set(settings.paused);
         Ok(())
     }
 }

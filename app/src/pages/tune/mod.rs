@@ -17,13 +17,12 @@ use hysteron_core::tuning::{TuningInput, TuningReport};
 
 use crate::command::Command;
 use crate::desk::Desk;
-use crate::export::{Table, Tables};
-use crate::jobs::{Job, News};
+use crate::export::Table;
+use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::layout;
-use crate::link::parsed;
 use crate::motion;
-use crate::page::{Hint, Offer, Page, Settable, View};
+use crate::page::{Hint, Offer, Page, View};
 use crate::theme;
 use hysteron_work::tasks::TuneTask;
 use measured::{From, Measured};
@@ -82,20 +81,13 @@ pub fn page() -> Page {
 impl View for Tune {
     fn update(&mut self, _ctx: &egui::Context) {
         self.measured.update();
-        let news = self.job.as_mut().map(Job::news).unwrap_or_default();
-        for said in news {
-            match (said, &self.asked) {
-                (News::Report(report), Some(asked)) => {
-                    self.shown = Some((asked.clone(), report));
-                    self.message = None;
-                    self.job = None;
-                }
-                (News::Failed(text), _) => {
-                    self.message = Some(text);
-                    self.job = None;
-                }
-                _ => {}
+        match (ended(&mut self.job, |_, _| ()), &self.asked) {
+            (Some(Ok(report)), Some(asked)) => {
+                self.shown = Some((asked.clone(), Box::new(report)));
+                self.message = None;
             }
+            (Some(Err(text)), _) => self.message = Some(text),
+            _ => {}
         }
     }
 
@@ -152,25 +144,7 @@ impl View for Tune {
         if self.is_measured() {
             return self.measured.offer();
         }
-        Offer {
-            hint: self.hint(),
-            tables: Tables::new(self.table_names(), || self.tables()),
-        }
-    }
-}
-
-impl Settable for Tune {
-    fn settings(&self) -> serde_json::Value {
-        serde_json::json!(self.set_to())
-    }
-
-    fn set(
-        &mut self,
-        _ctx: &egui::Context,
-        settings: &serde_json::Value,
-        _desk: &Desk,
-    ) -> Result<(), String> {
-        self.take(&parsed(settings)?)
+        Offer::new(self.hint(), self.table_names(), || self.tables())
     }
 }
 

@@ -4,13 +4,15 @@ use hysteron_core::tuning::{Pid, rule};
 use serde::{Deserialize, Serialize};
 
 use super::{STAGES, Tune, measured};
+use crate::desk::Desk;
+use crate::page::Settable;
 
 /// Phase margins that are taken, rad.
 const MARGINS: std::ops::RangeInclusive<f64> = 0.01..=1.55;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Settings {
+pub struct Settings {
     /// Id of the step in view.
     step: String,
     /// Asymmetry of the asymmetric test.
@@ -25,8 +27,10 @@ pub(super) struct Settings {
     measured: measured::Settings,
 }
 
-impl Tune {
-    pub(super) fn set_to(&self) -> Settings {
+impl Settable for Tune {
+    type Settings = Settings;
+
+    fn set_to(&self) -> Settings {
         Settings {
             step: STAGES.get(self.stage).map_or("", |s| s.id).to_owned(),
             asymmetry: self.asymmetry,
@@ -37,7 +41,12 @@ impl Tune {
         }
     }
 
-    pub(super) fn take(&mut self, settings: &Settings) -> Result<(), String> {
+    fn take(
+        &mut self,
+        _ctx: &egui::Context,
+        settings: Settings,
+        _desk: &Desk,
+    ) -> Result<(), String> {
         let stage = STAGES.iter().position(|s| s.id == settings.step);
         let stage = stage.ok_or("This step of the tuning does not exist.")?;
         rule(&settings.rule).map_err(|_| "This tuning rule does not exist.")?;
@@ -52,7 +61,7 @@ impl Tune {
         self.asymmetry = settings.asymmetry;
         self.input.wish.phase_margin = settings.phase_margin;
         self.input.present = Pid::p(settings.gain_before);
-        self.input.rule.clone_from(&settings.rule);
+        self.input.rule = settings.rule;
         Ok(())
     }
 }

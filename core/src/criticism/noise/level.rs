@@ -12,6 +12,7 @@ use super::tuning::{
 };
 use crate::criticism::record::{fresh, lattice, resolution};
 use crate::order::quantile;
+use crate::random::dither;
 
 /// Standard deviation of the noise in `values`, in their unit; above 0 unless all are equal.
 ///
@@ -100,16 +101,6 @@ fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
         counted: false,
         step: quantum,
     }
-}
-
-/// Evenly spread over 0 to 1 and without pattern, the same on every machine (finaliser of `SplitMix64`).
-pub(super) fn dither(i: usize) -> f64 {
-    let mut z = (i as u64)
-        .wrapping_add(1)
-        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// For each sample the number of samples since the input changed, at most `GROUPS - 1`.

@@ -11,6 +11,7 @@ use crate::criticism::data::Data;
 use crate::criticism::fit::{Motion, residuals};
 use crate::criticism::locate::depends_on_the_motion;
 use crate::criticism::output::Output;
+use crate::sums::centred;
 
 /// Samples within which it forgets, and up to which it must not remember again.
 const FORGETS: usize = 6;
@@ -82,11 +83,4 @@ fn power_of_means(axis: &Axis, residual: &[f64]) -> f64 {
             .iter()
             .map(|i| residual[*i].powi(2))
             .sum::<f64>()
-}
-
-/// The values without their mean over the runs.
-fn centred(values: &[f64], runs: &[(usize, usize)]) -> Vec<f64> {
-    let used = || runs.iter().flat_map(|(from, to)| &values[*from..*to]);
-    let mean = used().sum::<f64>() / used().count().max(1) as f64;
-    values.iter().map(|v| v - mean).collect()
 }

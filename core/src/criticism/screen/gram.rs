@@ -94,7 +94,8 @@ impl<'a> Rows<'a> {
             match part {
                 Part::Force(force) => columns
                     .free
-                    .push(self.force(self.at_moments(*force, shape))),
+                    .push(self.force(self.at_moments(|m| force(m, shape)))),
+                Part::Own(force) => columns.free.push(self.force(self.at_moments(force.0))),
                 Part::Input(path) => {
                     let acting = path(&track, shape);
                     let change: Vec<f64> =
@@ -115,14 +116,10 @@ impl<'a> Rows<'a> {
     }
 
     /// A force at every sample; the input jumps there, so that one that depends on it is the mean of both sides.
-    fn at_moments(
-        &self,
-        force: fn(&crate::effect::Moment, &Shape) -> f64,
-        shape: &Shape,
-    ) -> Vec<f64> {
+    fn at_moments(&self, force: impl Fn(&crate::effect::Moment) -> f64) -> Vec<f64> {
         let signals = self.signals;
         let input = |k: usize| signals.input[k];
-        let at = |k: usize, u: f64| force(&signals.moment(k, u), shape);
+        let at = |k: usize, u: f64| force(&signals.moment(k, u));
         let n = signals.len();
         let probes = (0..n).step_by((n / 16).max(1));
         let follows = probes

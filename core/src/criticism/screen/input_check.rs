@@ -1,14 +1,16 @@
 //! The input questioned before the physics.
 
 use super::closed_loop::{Controller, controller};
-use super::model::{ACCELERATION, INPUT, ONE, VELOCITY};
+use super::gram::{Gram, Reduced};
+use super::model::{ACCELERATION, Fit, INPUT, ONE, VELOCITY};
 use super::prepare::Prepared;
 use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
-use super::tuning::{LATE, LATEST, TOLD, UNEXPLAINED};
+use super::tuning::{BLOCKS, CHANCE, LATE, LATEST, TOLD, UNEXPLAINED};
 use super::window::Width;
 use crate::diagnosis::{InputCheck, InputVerdict};
 use crate::measurement::Kind;
+use crate::order::median;
 
 /// Share of the motion that the best of these subsets leaves; all of it where there is none.
 pub(super) fn left(bench: &Bench, tried: &[Tried]) -> f64 {
@@ -55,6 +57,11 @@ pub(super) fn checked(
         if let Some(text) = not_told(signals, bench) {
             return say(InputVerdict::InertiaNotTold, text);
         }
+        if tells_while_calm(signals, widths) {
+            return say(InputVerdict::Ok, AT_TIMES.to_owned());
+        }
+    } else if changes_seldom(signals, bench) || may_explain(bench) {
+        return say(InputVerdict::InertiaNotTold, TOO_LITTLE.to_owned());
     }
     let reason = late(signals, widths, left).map_or_else(
         || {
@@ -66,6 +73,66 @@ pub(super) fn checked(
     );
     let text = format!("The input does not explain this motion. {reason}");
     say(InputVerdict::DoesNotExplain, text)
+}
+
+/// Where the input explains the motion most of the time.
+const AT_TIMES: &str = "The input explains the motion most of the time. At other times something else acts that is far \
+    stronger, such as a stop.";
+
+/// Where a process did too little to tell what its input does.
+const TOO_LITTLE: &str = "This record does not tell what the input does to the output: it may make all of the motion, or \
+    none. Let the input change by more or more often, and record until the output has settled.";
+
+/// Whether the input tells the inertia in the calmer half of the windows of a width: what acts at times only, such as a stop,
+/// does not hide there what the input does.
+fn tells_while_calm(signals: &Signals, widths: &[Width]) -> bool {
+    let jerk = |k: usize| {
+        let v = &signals.speed;
+        (v[k + 1] - 2.0 * v[k] + v[k - 1]).abs()
+    };
+    widths.iter().any(|width| {
+        let violence: Vec<f64> = width
+            .starts
+            .iter()
+            .map(|k| (k + 1..k + width.length).map(jerk).fold(0.0, f64::max))
+            .collect();
+        let middle = median(&mut violence.clone());
+        let weights: Vec<f64> = violence
+            .iter()
+            .map(|v| f64::from(u8::from(*v <= middle)))
+            .collect();
+        let input: Vec<f64> = width.integrals(&signals.input, 0).collect();
+        let columns = [input, width.motion(signals, 2), width.motion(signals, 1)];
+        let blocks = width.starts.iter().map(|k| k * BLOCKS / signals.len());
+        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let gram = Gram::new(&columns, &weights, &blocks.collect::<Vec<_>>());
+        let fit = Fit::new(&gram, &[vec![ACCELERATION], vec![VELOCITY], vec![INPUT]]);
+        fit.is_some_and(|fit| fit.w[0] > TOLD * fit.error(0))
+    })
+}
+
+/// Whether the input changes in fewer blocks of the record than the body has numbers: one step says too little to test
+/// whether the output follows it.
+fn changes_seldom(signals: &Signals, bench: &Bench) -> bool {
+    let input = &signals.input;
+    let changes = (1..input.len()).filter(|i| input[*i] != input[i - 1]);
+    let mut blocks: Vec<usize> = changes.map(|i| i * BLOCKS / input.len()).collect();
+    blocks.dedup();
+    let numbers = bench.elements(&[]).len() - 1;
+    blocks.len() < numbers
+}
+
+/// Whether the input of a process, with an effect as far from the one found as chance may put it, would make as much of the
+/// rate of the output as there is.
+fn may_explain(bench: &Bench) -> bool {
+    let Some(fit) = Fit::new(bench.gram, &bench.elements(&[])) else {
+        return true;
+    };
+    let (sums, size) = (bench.gram.sum(|_| true), bench.gram.size);
+    let about_mean =
+        |k: usize| sums[k * size + k] - sums[k * size + ONE].powi(2) / sums[ONE * size + ONE];
+    let most = fit.w[0].abs() + CHANCE * fit.error(0);
+    most * most * about_mean(INPUT) > about_mean(ACCELERATION)
 }
 
 fn closed(made: &Controller, explained: bool) -> String {
@@ -90,7 +157,7 @@ fn closed(made: &Controller, explained: bool) -> String {
 fn turned(signals: &Signals, widths: &[Width]) -> Option<f64> {
     let mut other = signals.clone();
     other.input.iter_mut().for_each(|u| *u = -*u);
-    let prepared = Prepared::new(&other, widths);
+    let prepared = Prepared::new(&other, widths, &[]);
     let bench = prepared.bench();
     let tried = bench.all();
     (!tried.is_empty()).then(|| left(&bench, &tried))
@@ -98,7 +165,7 @@ fn turned(signals: &Signals, widths: &[Width]) -> Option<f64> {
 
 /// Whether friction explains the input, at speeds that hardly change.
 fn not_told(signals: &Signals, bench: &Bench) -> Option<String> {
-    let fit = super::model::Fit::new(bench.gram, &bench.elements(&[]))?;
+    let fit = Fit::new(bench.gram, &bench.elements(&[]))?;
     let told = fit.w[0].abs() > TOLD * fit.error(0);
     if told {
         return None;
@@ -111,7 +178,7 @@ fn not_told(signals: &Signals, bench: &Bench) -> Option<String> {
     let at = |i: usize, j: usize| sums[i * bench.gram.size + j];
     // The input by speed and a constant alone.
     let elements = vec![vec![VELOCITY], vec![ONE], vec![INPUT]];
-    let reduced = super::gram::Reduced::new(&sums, bench.gram.size, &elements);
+    let reduced = Reduced::new(&sums, bench.gram.size, &elements);
     let w = reduced.coefficients(&reduced.solve(true)?);
     let steady = reduced.loss(&w) < 0.1 * at(INPUT, INPUT);
     if rests {
@@ -146,7 +213,7 @@ fn late(signals: &Signals, widths: &[Width], left: f64) -> Option<f64> {
                 values[4 * i + j] = columns[i].iter().zip(columns[j]).map(|(a, b)| a * b).sum();
             }
         }
-        let reduced = super::gram::Reduced { order: 3, values };
+        let reduced = Reduced { order: 3, values };
         let w = reduced.coefficients(&reduced.solve(false)?);
         let of_all = (reduced.loss(&w) / reduced.square(3).max(f64::MIN_POSITIVE)).sqrt();
         Some((of_all, back as f64 * signals.step))

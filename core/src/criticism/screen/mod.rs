@@ -16,13 +16,19 @@ mod tuning;
 mod window;
 
 use crate::diagnosis::Screening;
+use crate::effect::Effect;
 use crate::measurement::Measurement;
 
 /// Screens a record. Linear in its samples.
 pub fn screen(measurement: &Measurement) -> Screening {
+    screen_with(measurement, &[])
+}
+
+/// The same with effects of the user's own among those of the library.
+pub(super) fn screen_with(measurement: &Measurement, own: &[&'static dyn Effect]) -> Screening {
     let signals = signals::Signals::new(measurement);
     let widths = window::widths(&signals);
-    let prepared = prepare::Prepared::new(&signals, &widths);
+    let prepared = prepare::Prepared::new(&signals, &widths, own);
     let bench = prepared.bench();
     let tried = bench.all();
     say::screening(measurement, &signals, &widths, &bench, &tried)

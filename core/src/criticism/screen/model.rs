@@ -110,7 +110,7 @@ pub(super) fn values(
             extent,
             coefficients,
         };
-        let (body, values) = (choice.atom.values)(&solved)?;
+        let (body, values) = choice.atom.read(&solved)?;
         all.push((body, values));
     }
     // What an effect says of the body holds for the one beside the others.

@@ -6,7 +6,7 @@ use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
 use super::tuning::{ATTENUATED, COARSE, DULL, EXACT, FINE, HUBER, KEPT_SHAPES, REFINED, ROUNDS};
 use super::window::Width;
-use crate::effect::{self, Atom, Extent, Shape, Solved};
+use crate::effect::{self, Atom, Effect, Extent, Shape, Solved};
 use crate::measurement::Kind;
 use crate::order::median;
 
@@ -22,6 +22,8 @@ struct Builder<'a> {
     rows: Rows<'a>,
     kind: Kind,
     extent: Extent,
+    /// What may explain the record, in the order in which equals are listed.
+    library: Vec<&'static dyn Effect>,
     columns: Vec<Vec<f64>>,
     choices: Vec<Choice>,
     /// Of each window.
@@ -31,7 +33,8 @@ struct Builder<'a> {
 }
 
 impl Prepared {
-    pub fn new(signals: &Signals, widths: &[Width]) -> Self {
+    /// With the effects of the library and those of the user's own.
+    pub fn new(signals: &Signals, widths: &[Width], own: &[&'static dyn Effect]) -> Self {
         let longest = widths.iter().map(|w| w.length).max().unwrap_or(1);
         let rows = Rows::new(signals, widths);
         let columns = vec![
@@ -44,6 +47,7 @@ impl Prepared {
             kind: signals.kind,
             extent: signals.extent(longest as f64 * signals.step),
             weights: vec![1.0; rows.len()],
+            library: effect::library().chain(own.iter().copied()).collect(),
             choices: Vec::new(),
             dull: vec![false; widths.len()],
             rows,
@@ -89,7 +93,10 @@ impl Builder<'_> {
     /// Atoms of all effects that have no shape to look for.
     fn add_linear(&mut self) {
         let kind = self.kind;
-        for (rank, effect) in effect::library()
+        for (rank, effect) in self
+            .library
+            .clone()
+            .into_iter()
             .enumerate()
             .filter(|(_, e)| e.kinds().contains(&kind))
         {
@@ -116,7 +123,10 @@ impl Builder<'_> {
     /// Atoms with shapes, of which those are kept that leave least beside the body, or beside all that is linear.
     fn add_shaped(&mut self) {
         let kind = self.kind;
-        let effects = effect::library()
+        let effects = self
+            .library
+            .clone()
+            .into_iter()
             .enumerate()
             .filter(|(_, e)| e.kinds().contains(&kind));
         let atoms =
@@ -199,7 +209,7 @@ impl Builder<'_> {
                 extent: &self.extent,
                 coefficients: &found.coefficients[..atom.free.len()],
             };
-            (kind_of.values)(&solved)?;
+            kind_of.read(&solved)?;
             let left = reduced.loss(&w) / unit(self.kind, &w);
             left.is_finite().then_some(left)
         };
@@ -464,7 +474,7 @@ impl Builder<'_> {
             extent: &self.extent,
             coefficients: &found.coefficients[..own.free.len()],
         };
-        if (atom.values)(&solved).is_none() {
+        if atom.read(&solved).is_none() {
             return f64::INFINITY;
         }
         reduced.loss(&w) / unit(self.kind, &w)

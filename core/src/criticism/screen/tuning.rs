@@ -77,6 +77,9 @@ pub(super) const LISTED: usize = 6;
 /// Share of the motion that a model with everything may leave for the input to be said to explain it.
 pub(super) const UNEXPLAINED: f64 = 0.7;
 
+/// Standard errors within which a coefficient may be by chance.
+pub(super) const CHANCE: f64 = 2.0;
+
 /// Share of the variance of the input that past outputs must explain for a linear controller to have made it.
 pub(super) const CONTROLLED: f64 = 0.99;
 

@@ -3,6 +3,7 @@
 use super::{NOISE_FLOOR, StepJob};
 use crate::criticism::fingerprint::fingerprints;
 use crate::criticism::judge::{alike, helps_clearly, nested};
+use crate::criticism::knowledge::overruled;
 use crate::criticism::missing::missing_parts;
 use crate::criticism::one_way::OneWay;
 use crate::criticism::residual_test::residual_tests;
@@ -11,7 +12,7 @@ use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
     add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations,
-    add_input_check, add_integrating, add_limited, add_pauses, add_rest, verdict,
+    add_input_check, add_integrating, add_limited, add_overruled, add_pauses, add_rest, verdict,
 };
 use crate::diagnosis::{Candidate, Step, StepReport};
 use crate::effect::{Effect, EffectId};
@@ -77,6 +78,7 @@ impl StepJob {
             add_pauses(&mut verdict, self.session.whole().pauses);
             add_held(&mut verdict, self.session.whole());
             add_limited(&mut verdict, self.session.whole());
+            add_overruled(&mut verdict, overruled(&self.session, &whole));
             verdict
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);

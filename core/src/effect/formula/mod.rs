@@ -12,7 +12,8 @@ mod start;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
+use super::atom::Values;
+use super::{Atom, Dimension, Effect, EffectId, Moment, Own, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::{Instant, Model};
 
@@ -78,6 +79,8 @@ impl Formula {
             })
             .collect();
         let text: &'static str = format!("F = {}", self.text).leak();
+        let linear = start::linear(&tree, names.len());
+        let tree: &'static parse::Expr = Box::leak(Box::new(tree));
         Ok(Box::leak(Box::new(FormulaEffect {
             id,
             equation: text,
@@ -85,8 +88,9 @@ impl Formula {
                 Kind::Drive => &[Kind::Drive],
                 Kind::Process => &[Kind::Process],
             },
-            linear: start::linear(&tree, names.len()),
-            tree: Box::leak(Box::new(tree)),
+            columns: columns(tree, &order),
+            linear,
+            tree,
             order,
             specs: specs.leak(),
         })))
@@ -104,6 +108,36 @@ struct FormulaEffect {
     /// Whether the force is linear in each parameter of the tree, all of them together.
     linear: Vec<bool>,
     specs: &'static [ParameterSpec],
+    /// What each parameter, in the order of `specs`, multiplies where the force is linear in all of them.
+    columns: Option<&'static [Part]>,
+}
+
+/// What each of the parameters multiplies, in this order; none where the force is not all in them.
+fn columns(tree: &'static parse::Expr, order: &[usize]) -> Option<&'static [Part]> {
+    let count = order.len();
+    let alone =
+        |k: usize| -> Vec<f64> { (0..count).map(|j| f64::from(u8::from(j == k))).collect() };
+    if start::leaves_a_force(tree, count) {
+        return None;
+    }
+    let parts: Vec<Part> = order
+        .iter()
+        .map(|k| {
+            let values = alone(*k);
+            let force = move |m: &Moment| {
+                let at = Instant {
+                    position: m.position,
+                    velocity: m.velocity,
+                    input: m.input,
+                    time: m.time,
+                };
+                let force = tree.value(&at, &values);
+                if force.is_finite() { force } else { 0.0 }
+            };
+            Part::Own(Own(Box::leak(Box::new(force))))
+        })
+        .collect();
+    Some(parts.leak())
 }
 
 impl FormulaEffect {
@@ -157,6 +191,13 @@ impl Effect for FormulaEffect {
             .into_iter()
             .map(|point| self.order.iter().map(|k| point[*k]).collect())
             .collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        // Linear parameters alone: what is left of a formula without them would be a force of known size.
+        let linear = self.columns.filter(|_| self.linear.iter().all(|l| *l));
+        let atom = linear.map(|columns| Atom::linear(columns, Values::Coefficients));
+        atom.into_iter().collect()
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -55,6 +55,22 @@ pub(super) fn linear(tree: &Expr, count: usize) -> Vec<bool> {
     chosen
 }
 
+/// Whether a force is left where all parameters are 0: tried at a few points.
+pub(super) fn leaves_a_force(tree: &Expr, count: usize) -> bool {
+    let mut random = Pcg64::seed_from_u64(SEED);
+    let mut draw = |low: f64, high: f64| random.random_range(low..high);
+    let zeros = vec![0.0; count];
+    (0..12).any(|_| {
+        let at = Instant {
+            position: draw(-2.0, 2.0),
+            velocity: draw(-2.0, 2.0),
+            input: draw(-2.0, 2.0),
+            time: draw(0.1, 2.0),
+        };
+        tree.value(&at, &zeros) != 0.0
+    })
+}
+
 /// Order of the parameters in the effect: the first one in which the force is linear leads, since it tells
 /// whether the effect is there at all.
 pub(super) fn order(tree: &Expr, count: usize) -> Vec<usize> {

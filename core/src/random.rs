@@ -1,4 +1,24 @@
-//! Seeded random numbers of the bench.
+//! Seeded random numbers, the same on every machine, where a bench or a test wants no more than uniform and normal ones.
+
+/// The increment of `SplitMix64`: 2^64 over the golden ratio.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Spreads a number over all bits (finaliser of `SplitMix64`: Steele, Lea and Flood 2014).
+fn spread(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// The 53 upper bits as a number in 0 to 1.
+fn share(bits: u64) -> f64 {
+    (bits >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// The number at place `i` of one series that is evenly spread over 0 to 1 and without pattern: any place, in any order.
+pub(crate) fn dither(i: usize) -> f64 {
+    share(spread((i as u64).wrapping_add(1).wrapping_mul(STEP)))
+}
 
 /// Uniform and normal numbers (xorshift64*, Box and Muller).
 #[derive(Clone, Debug)]
@@ -7,11 +27,7 @@ pub struct Random(u64);
 impl Random {
     /// A generator; neighbouring seeds give unrelated numbers.
     pub fn new(seed: u64) -> Self {
-        // One round of splitmix64 spreads small seeds over all bits.
-        let mut z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        Self((z ^ (z >> 31)) | 1)
+        Self(spread(seed.wrapping_add(STEP)) | 1)
     }
 
     /// Uniform in 0 to 1.
@@ -19,7 +35,7 @@ impl Random {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1_u64 << 53) as f64
+        share(self.0.wrapping_mul(0x2545_f491_4f6c_dd1d))
     }
 
     /// Uniform in `low` to `high`.

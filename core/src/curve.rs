@@ -1,4 +1,4 @@
-//! Curves with fewer points than were measured or computed.
+//! Curves with fewer points than were measured or computed, for pictures.
 
 /// The least and the largest of some values.
 pub fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
@@ -6,7 +6,8 @@ pub fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold(first, |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// A curve of at most `most` points: a longer one keeps the least and the largest value of each stretch.
+/// A curve of at most `most` points: a longer one keeps the least and the largest value of each stretch, and where a
+/// stretch has no number, the gap.
 pub fn envelope(time: &[f64], values: &[f64], most: usize) -> Vec<[f64; 2]> {
     if time.len() <= most {
         return time.iter().zip(values).map(|(t, v)| [*t, *v]).collect();
@@ -15,15 +16,10 @@ pub fn envelope(time: &[f64], values: &[f64], most: usize) -> Vec<[f64; 2]> {
     time.chunks(stretch)
         .zip(values.chunks(stretch))
         .flat_map(|(t, v)| {
-            let (mut low, mut high) = (0, 0);
-            for (i, value) in v.iter().enumerate() {
-                if *value < v[low] {
-                    low = i;
-                }
-                if *value > v[high] {
-                    high = i;
-                }
-            }
+            let numbers = || (0..v.len()).filter(|i| v[*i].is_finite());
+            let low = numbers().reduce(|a, b| if v[b] < v[a] { b } else { a });
+            let high = numbers().reduce(|a, b| if v[b] > v[a] { b } else { a });
+            let (low, high) = (low.unwrap_or(0), high.unwrap_or(0));
             let (first, second) = (low.min(high), low.max(high));
             [[t[first], v[first]], [t[second], v[second]]]
         })
@@ -48,4 +44,25 @@ pub fn sparse(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     }
     kept.extend(points.last().copied().filter(|_| points.len() > 1));
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_envelope_keeps_peaks_and_gaps() {
+        let time: Vec<f64> = (0..1000).map(f64::from).collect();
+        let mut values = vec![0.0; 1000];
+        (values[333], values[334]) = (5.0, -3.0);
+        values[600..].fill(f64::NAN);
+        values[700] = 1.0;
+        let drawn = envelope(&time, &values, 100);
+        assert!(drawn.len() <= 100);
+        for point in [[333.0, 5.0], [334.0, -3.0], [700.0, 1.0]] {
+            assert!(drawn.contains(&point), "{point:?}");
+        }
+        assert!(drawn.iter().any(|p| p[1].is_nan()));
+        assert_eq!(envelope(&time[..3], &[1.0, 2.0, 3.0], 3)[1], [1.0, 2.0]);
+    }
 }
