@@ -61,11 +61,11 @@ fn with_pictures(tuning: MeasuredTuning, record: Option<Record>) -> MeasuredRepo
     let loops = loops.map(|g| steps(model?, g, horizon).ok()).collect();
     let alone = model.and_then(|m| alone(m, horizon).ok());
     MeasuredReport {
+        tuning,
         record,
         nyquist,
         loops,
         alone,
-        tuning,
     }
 }
 
