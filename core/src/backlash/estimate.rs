@@ -203,7 +203,7 @@ fn two_sided(
         drop_marked(&mut estimate.contacts, &stray);
         fit = likelihood::fit(&events, scales, None)?;
     }
-    if let Some(again) = pushed_unseen(&estimate.contacts, &events, &fit, scales) {
+    if let Some(again) = pushed_unseen(&estimate.contacts, &events, &fit, scales, period) {
         fit = again;
     }
     estimate.traverses = traverses(&estimate.contacts, &fit);
@@ -254,11 +254,14 @@ fn disagree(contacts: &[Contact], fit: &Fit) -> bool {
 }
 
 /// Where the traverses disagree touches too light to be seen may have pushed the load along: the fit that counts with it.
+/// They can push along what moves by itself only: a load that dry friction stops between two cycles is hit in each anew, and
+/// that is seen. `period` is that of a cycle, s.
 fn pushed_unseen(
     contacts: &[Contact],
     events: &[SeenContact],
     fit: &Fit,
     scales: &Scales,
+    period: f64,
 ) -> Option<Fit> {
     if !disagree(contacts, fit) {
         return None;
@@ -267,8 +270,17 @@ fn pushed_unseen(
         unseen: true,
         ..*scales
     };
-    likelihood::fit(events, &scales, None)
+    let again = likelihood::fit(events, &scales, None)?;
+    let mut pushes: Vec<f64> = events
+        .iter()
+        .map(|e| again.play.ratio * e.jump.abs())
+        .collect();
+    let stopped = again.play.slowing.dry * period;
+    (stopped < SLOWED * median(&mut pushes)).then_some(again)
 }
+
+/// Share of the speed that a contact gives the load which dry friction may take within a cycle of one that moves by itself.
+const SLOWED: f64 = 0.1;
 
 /// Contacts at one end of the gap between two at the other from which the motor did not go anything like the gap: what
 /// else disturbed the motor there was no load.

@@ -83,6 +83,8 @@ impl FreeMotor {
     fn unsure_of(self, spread: &[f64], cycles: &Cycles, step: f64) -> Self {
         let per_torque = self.acceleration * step / cycles.gain;
         Self {
+            // Placed switches leave more than the sensor's noise, from which a contact must stand out.
+            noise: self.noise.max(calm(&self.unexplained, cycles)),
             unsure: spread.iter().map(|s| s * per_torque).collect(),
             ..self
         }
@@ -237,9 +239,7 @@ impl Rows {
         let total: f64 = solution.iter().take(self.inputs).sum();
         Some(FreeMotor {
             unsure: Vec::new(),
-            noise: noise(record, &unexplained, cycles)
-                .max(calm(&unexplained, cycles))
-                .max(DISCREPANCY * 2.0 * cycles.speed),
+            noise: noise(record, &unexplained, cycles).max(DISCREPANCY * 2.0 * cycles.speed),
             unexplained,
             acceleration: (total / record.step).abs(),
         })
