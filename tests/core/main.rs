@@ -40,6 +40,7 @@ mod report;
 mod rests;
 mod scenario_text;
 mod screen;
+mod second_engine;
 mod sensors;
 mod simulation;
 mod slow_and_short;

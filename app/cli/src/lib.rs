@@ -6,6 +6,7 @@
 mod arguments;
 mod batch;
 mod diagnose;
+mod engine;
 mod gap;
 mod limit_cycle;
 mod limit_cycle_drive;

@@ -7,10 +7,12 @@ mod correlation;
 mod cost;
 mod cut;
 mod data;
+mod explain;
 mod fingerprint;
 mod fit;
 mod guess;
 mod job;
+mod jobs;
 mod judge;
 mod knowledge;
 mod leap;
@@ -35,6 +37,7 @@ mod spectrum;
 mod split;
 mod step;
 mod structure;
+mod tell;
 mod units;
 mod verdict;
 mod window;
@@ -45,3 +48,8 @@ pub use next_experiment::{Controller, ExperimentJob};
 pub use noise::noise_level;
 pub use screen::screen;
 pub use step::StepJob;
+
+/// The second engine, on trial: subsets of the screen, fitted exactly and judged by blocked cross-validation.
+pub mod second {
+    pub use super::jobs::{DiagnosisJob, StepJob};
+}

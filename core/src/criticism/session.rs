@@ -12,8 +12,8 @@ use super::locate::locate;
 use super::noise::{is_left_by_random_forces, is_noise_with_memory};
 use super::output::Output;
 use super::probes::{Probed, Probes};
-use super::score::{Score, score};
-use super::screen::screen_with;
+use super::score::{Score, motion_square, score};
+use super::screen::Screened;
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
@@ -49,6 +49,16 @@ impl Scored {
         left * self.score.correlation.max(1.0)
     }
 
+    /// Whether a parameter that tells of the effect at a place is not 0 by these errors: its 95 % interval leaves 0 out.
+    pub fn tells_of(&self, place: usize) -> bool {
+        let structure = &self.fit.structure;
+        let errors = self.standard_errors();
+        let mut telling = structure
+            .range(place)
+            .take(structure.effects[place].telling());
+        telling.any(|j| self.fit.values[j].abs() > TELLING * errors[j])
+    }
+
     /// Whether what makes an effect in the model what it is stands out by these errors.
     pub fn shows_marks_of(&self, effect: &dyn Effect, scales: &Scales) -> bool {
         self.fit.shows_marks_of(effect, scales, self.inflation())
@@ -73,6 +83,9 @@ const MOST_REMEMBERED: f64 = 2.0;
 
 /// Error up to which small random forces may be what is left.
 const MOST_PUSHED: f64 = 2.5;
+
+/// Standard errors by which a parameter that tells of an effect must differ from 0: its 95 % interval leaves it out.
+const TELLING: f64 = 1.96;
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
@@ -105,6 +118,15 @@ fn far_apart(a: f64, b: f64) -> bool {
     a > HELD_FACTOR * b || b > HELD_FACTOR * a
 }
 
+/// Share of what there was at first that may be left beside noise by a model that explains the record.
+pub(super) fn small_share(fit: &Fit) -> f64 {
+    if fit.structure.effects.iter().any(|e| e.is_of_record()) {
+        SAMPLED_SHARE
+    } else {
+        SMALL_SHARE
+    }
+}
+
 pub(super) struct Session {
     /// What fits are compared on: all of the record, or windows spread over a long one.
     pub data: Data,
@@ -123,6 +145,8 @@ pub(super) struct Session {
     pub held: Option<Rubbing>,
     /// Inertia and viscous friction of a drive that the screen told.
     screened_body: Option<[f64; 2]>,
+    /// Mean square of the motion in units of the noise.
+    pub motion_square: f64,
     /// What models that were met leave unexplained.
     probes: Probes,
     pub motion: Motion,
@@ -139,6 +163,14 @@ pub(super) struct Session {
 
 impl Session {
     pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
+        Self::screened(measurement, model).map(|(session, _)| session)
+    }
+
+    /// The same with the record as it was screened.
+    pub fn screened(
+        measurement: &Measurement,
+        model: &UserModel,
+    ) -> Result<(Self, Screened), CriticismError> {
         knowledge::check(model, measurement)?;
         let Sighted {
             gap,
@@ -162,8 +194,9 @@ impl Session {
                 })
             })
             .collect::<Result<_, _>>()?;
-        let screening = screen_with(measurement, &own);
-        let screened_body = told_body(&screening);
+        let screened = Screened::new(measurement, &own);
+        let screening = &screened.screening;
+        let screened_body = told_body(screening);
         // Where a regression sample by sample has run off, sizes are those that the weak form tells.
         let guessed: [f64; 2] = data.baseline.body(&guess).into();
         let run_off = |body: &[f64; 2]| far_apart(body[0], guessed[0]);
@@ -172,16 +205,18 @@ impl Session {
         let knowledge = Knowledge::of(model).with_felt_gap(gap.map(felt_gap));
         hold_back(&mut data, &knowledge, guess, &scales);
         let compared = data.thinned(COMPARED);
-        Ok(Self {
+        let session = Self {
             scales,
             held: None,
             screened_body,
-            input_check: screening.input_check,
+            input_check: screening.input_check.clone(),
             screened: screening
                 .subsets
-                .into_iter()
+                .iter()
                 .filter(|subset| !subset.effects.is_empty())
+                .cloned()
                 .collect(),
+            motion_square: motion_square(&compared, |_| true),
             probes: Probes::default(),
             scout: compared.scout(),
             knowledge,
@@ -197,7 +232,8 @@ impl Session {
                 .iter()
                 .map(|c| (c.quantity, c.name.clone(), c.unit.clone()))
                 .collect(),
-        })
+        };
+        Ok((session, screened))
     }
 
     /// Has the parts of what is computed done by `crew`.
@@ -327,6 +363,22 @@ impl Session {
         self.held.is_some()
     }
 
+    /// Settles sizes by the fitted baseline: where the screen told another body, by that, since a body that rests for most of
+    /// a record seems held by its own weight; where the guess had a far heavier one, by the fit, since a resonance turns a body
+    /// against its input and tells a regression nothing.
+    pub fn settle_sizes(&mut self, fit: &Fit) {
+        if self.kind() != Kind::Drive || !fit.structure.effects.is_empty() {
+            return;
+        }
+        let (inertia, viscous) = self.data.baseline.body(&fit.values);
+        let other = |body: &[f64; 2]| far_apart(body[0], inertia);
+        if let Some(body) = self.screened_body.filter(other) {
+            self.scales = self.whole().scales(body[0], body[1]);
+        } else if self.scales.inertia > FAR_HEAVIER * inertia {
+            self.scales = self.whole().scales(inertia, viscous);
+        }
+    }
+
     /// Score of the baseline, or of `scored` if there is none yet.
     pub fn first<'a>(&'a self, scored: &'a Scored) -> &'a Score {
         self.baseline.as_ref().unwrap_or(&scored.score)
@@ -406,8 +458,14 @@ impl Session {
     /// Whether the newest effect of a fit is more than a trifle of the input: where a motion is unstable, its least
     /// disturbance grows until it is seen, and an asymmetry of the last digits of a record seems to explain it.
     pub fn is_sizeable(&self, fit: &Fit) -> bool {
+        let last = fit.structure.effects.len().checked_sub(1);
+        last.is_none_or(|place| self.is_sizeable_at(fit, place))
+    }
+
+    /// The same of the effect at a place.
+    pub fn is_sizeable_at(&self, fit: &Fit, place: usize) -> bool {
         let structure = &fit.structure;
-        let Some((place, newest)) = structure.effects.iter().enumerate().next_back() else {
+        let Some(newest) = structure.effects.get(place) else {
             return true;
         };
         let specs = newest.parameters();
@@ -493,12 +551,7 @@ impl Session {
     pub fn rest(&self, scored: &Scored) -> Rest {
         let remembers =
             || is_noise_with_memory(self.whole(), &scored.fit.motion, self.output_unit());
-        let effects = &scored.fit.structure.effects;
-        let small = if effects.iter().any(|e| e.is_of_record()) {
-            SAMPLED_SHARE
-        } else {
-            SMALL_SHARE
-        };
+        let small = small_share(&scored.fit);
         if self.is_too_heavy(&scored.fit) {
             Rest::More
         } else if is_noise(&scored.score, self.first(scored), small) {

@@ -1,0 +1,171 @@
+//! Other effects in the place of those of the best model.
+
+use super::task::{Sketch, Task};
+use super::tuning::{ALIKE, MOST_SWAPS};
+use super::{Explain, Stage, is_hidden_body};
+use crate::criticism::screen::Screened;
+use crate::criticism::session::Session;
+use crate::effect::Effect;
+
+/// An effect that could stand in the place of one in the best model.
+#[derive(Clone)]
+pub(in crate::criticism) struct Rival {
+    /// Place of the one that it replaces among the effects of the best model.
+    pub place: usize,
+    pub effect: &'static dyn Effect,
+    pub trial: usize,
+}
+
+/// Whether the values of two effects mean the same.
+fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
+    let dimensions = |e: &dyn Effect| {
+        e.parameters()
+            .iter()
+            .map(|p| p.dimension)
+            .collect::<Vec<_>>()
+    };
+    dimensions(a) == dimensions(b)
+}
+
+impl Explain {
+    /// Has other effects tried in the place of each that was added.
+    pub(super) fn open_swaps(&mut self, session: &mut Session, screened: &Screened) {
+        self.stage = Stage::Swap;
+        let best = &self.trials[self.best];
+        session.look_where_left(&best.scored.fit);
+        let fit = best.scored.fit.clone();
+        self.limit = ALIKE * session.scouted(&fit);
+        for place in self.held.len()..fit.structure.effects.len() {
+            let Some(without) = self.without(self.best, place) else {
+                self.tasks.push_back(Task::Without {
+                    from: self.best,
+                    place,
+                });
+                continue;
+            };
+            self.replace(session, screened, place, without);
+        }
+    }
+
+    /// Has other effects raced in the place of one of the best model: what can stand there speaks of the same body.
+    fn replace(&mut self, session: &Session, screened: &Screened, place: usize, without: usize) {
+        let fit = &self.trials[self.best].scored.fit;
+        let rest = &self.trials[without];
+        let (ids, own) = (rest.ids(), fit.structure.effects[place]);
+        let own_values = &fit.values[fit.structure.range(place)];
+        let mut sketches = Vec::new();
+        for effect in session
+            .library()
+            .filter(|e| self.is_open(without, *e) && e.id() != own.id())
+        {
+            if effect.has_part(own.id()) || is_hidden_body(effect) && !is_hidden_body(own) {
+                continue;
+            }
+            let told = screened
+                .values(&ids, effect.id())
+                .or_else(|| screened.values(&[], effect.id()));
+            let mut starts: Vec<Vec<f64>> = told.into_iter().collect();
+            if same_dimensions(own, effect) {
+                starts.push(own_values.to_vec());
+            }
+            if starts.is_empty() {
+                let probed = session.probed(&rest.scored.fit);
+                starts = probed.starts(effect, 1.0);
+                starts.extend(
+                    probed
+                        .starts_with_body(effect, 1.0)
+                        .into_iter()
+                        .map(|(_, own)| own),
+                );
+            }
+            sketches.extend(
+                starts
+                    .iter()
+                    .map(|start| Sketch::replacing(fit, place, effect, start)),
+            );
+        }
+        self.take(session, sketches);
+    }
+
+    /// Trials that differ from the best in one effect that was added, with the place of that; no richer ones.
+    fn swapped(&self) -> Vec<Rival> {
+        let best = &self.trials[self.best];
+        let (own, held) = (best.ids(), self.held.len());
+        let values = best.scored.fit.values.len();
+        let mut found: Vec<Rival> = Vec::new();
+        for (index, trial) in self.trials.iter().enumerate() {
+            let ids = trial.ids();
+            let gone: Vec<usize> = (held..own.len())
+                .filter(|k| !ids.contains(&own[*k]))
+                .collect();
+            let new: Vec<&'static dyn Effect> = trial
+                .effects()
+                .iter()
+                .copied()
+                .filter(|e| !own.contains(&e.id()))
+                .collect();
+            let ([place], [effect]) = (gone.as_slice(), new.as_slice()) else {
+                continue;
+            };
+            let replaced = best.effects()[*place];
+            let fair = !effect.has_part(replaced.id()) && !effect.limits().contains(&replaced.id());
+            if ids.len() == own.len() && fair && trial.scored.fit.values.len() <= values {
+                let rival = Rival {
+                    place: *place,
+                    effect: *effect,
+                    trial: index,
+                };
+                match found
+                    .iter_mut()
+                    .find(|r| r.place == *place && r.effect.id() == effect.id())
+                {
+                    Some(known) if self.trials[known.trial].error() > trial.error() => {
+                        *known = rival;
+                    }
+                    Some(_) => {}
+                    None => found.push(rival),
+                }
+            }
+        }
+        found
+    }
+
+    /// Takes what is better, or does as well with fewer values; else what is the same could stand in its place.
+    pub(super) fn judge_swaps(&mut self, session: &mut Session, screened: &Screened) {
+        let rivals = self.swapped();
+        let is_simpler = |r: &Rival| {
+            self.is_simpler(r.trial, self.best)
+                && self.difference(session, r.trial, self.best).is_same()
+        };
+        let better: Vec<usize> = rivals
+            .iter()
+            .filter(|r| self.difference(session, self.best, r.trial).is_better())
+            .map(|r| r.trial)
+            .collect();
+        let simpler: Vec<usize> = rivals
+            .iter()
+            .filter(|r| is_simpler(r))
+            .map(|r| r.trial)
+            .collect();
+        let other = self
+            .lead(session, &better)
+            .or_else(|| self.lead(session, &simpler));
+        if let Some(other) = other.filter(|_| self.swaps < MOST_SWAPS) {
+            self.swaps += 1;
+            self.best = other;
+            self.open_swaps(session, screened);
+            return;
+        }
+        let same = |r: &Rival| {
+            let own = &self.trials[self.best];
+            self.difference(session, self.best, r.trial).is_same()
+                && own.same_body(&self.trials[r.trial])
+        };
+        self.rivals = rivals.into_iter().filter(same).collect();
+        if session.settle_baseline(&self.trials[self.best].scored) {
+            *self = Self::new(std::mem::take(&mut self.held));
+        } else {
+            self.open_path(session);
+        }
+    }
+}

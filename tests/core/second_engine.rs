@@ -1,0 +1,79 @@
+//! The second engine, on trial: it finds what is hidden on rigs that are not its model.
+
+use crate::support::case::{Case, Hidden};
+use crate::support::diagnosis::classes;
+use crate::support::{drive_cases, process_cases};
+use hysteron_core::criticism::second::{DiagnosisJob, StepJob};
+use hysteron_core::diagnosis::{Diagnosis, StepReport};
+use hysteron_core::measurement::Measurement;
+use hysteron_core::progress::Progress;
+
+/// A seed to develop on.
+const SEED: u64 = 5;
+
+fn case(name: &str) -> Case {
+    let mut all = drive_cases::drive_cases(SEED);
+    all.extend(process_cases::process_cases(SEED));
+    all.into_iter().find(|c| c.name == name).unwrap()
+}
+
+fn diagnose(measurement: &Measurement) -> Diagnosis {
+    let mut job = DiagnosisJob::new(measurement).unwrap();
+    loop {
+        if let Progress::Done(diagnosis) = job.advance() {
+            return diagnosis;
+        }
+    }
+}
+
+fn step(measurement: &Measurement) -> StepReport {
+    let mut job = StepJob::new(measurement, &[]).unwrap();
+    loop {
+        if let Progress::Done(report) = job.advance() {
+            return report;
+        }
+    }
+}
+
+#[test]
+fn what_is_hidden_is_found_and_nothing_else() {
+    for name in [
+        "clean, multisine",
+        "Coulomb, multisine",
+        "delay, multisine",
+        "load, staircase",
+        "Coulomb and load",
+        "cogging, multisine",
+        "gravity",
+        "spring",
+        "clean process, relay",
+        "second lag, binary",
+        "dead time, relay",
+        "outflow",
+    ] {
+        let case = case(name);
+        let diagnosis = diagnose(&case.measure());
+        let Hidden::Known { truths, .. } = &case.hidden else {
+            panic!("{name}: nothing is hidden");
+        };
+        let found = classes(&diagnosis);
+        let verdict = &diagnosis.verdict;
+        assert!(verdict.complete && !verdict.unknown, "{name}: {verdict:?}");
+        assert_eq!(found.len(), truths.len(), "{name}: {found:?}");
+        for truth in truths {
+            let is_named = found.iter().any(|class| class.contains(&truth.effect));
+            assert!(is_named, "{name}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_step_offers_what_the_diagnosis_adds_first() {
+    let measurement = case("Coulomb and load").measure();
+    let diagnosis = diagnose(&measurement);
+    let report = step(&measurement);
+    let first = diagnosis.steps[1].effects.last().copied();
+    assert!(first.is_some());
+    assert_eq!(report.suggestion, first);
+    assert!(report.verdict.is_none());
+}
