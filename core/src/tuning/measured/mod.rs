@@ -22,6 +22,7 @@
 //! | `readings` | from a few numbers, without a record |
 //! | `log` | logs of firmwares |
 //! | `opened` | what is in a file |
+//! | `wishes` | what the user wants besides |
 //! | `report` | all of it at once |
 //!
 //! **Amplitude** is half of peak to peak everywhere.
@@ -43,14 +44,16 @@ mod structure;
 mod trouble;
 mod ultimate;
 mod wander;
+mod wishes;
 
 pub use cycle::Cycle;
 pub use fourier::Point;
 pub use gains::{Form, TunedGains, alone, steps};
-pub use opened::{OpenError, Opened, Wishes, open};
+pub use opened::{OpenError, Opened, open};
 pub use readings::{AmplitudeConvention, Readings, tune_readings};
 pub use record::{Record, RecordError};
 pub use report::{Conventional, MeasuredTuning, Settings, Summary, tune_record};
 pub use structure::{FittedModel, Structure, Value};
 pub use trouble::{Trouble, TroubleKind};
 pub use ultimate::MeasuredUltimate;
+pub use wishes::Wishes;

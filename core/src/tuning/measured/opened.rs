@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use super::gains::Form;
 use super::log::{self, Held, Log, LogError};
 use super::record::Record;
-use super::report::{MeasuredTuning, Settings, tune_record};
+use super::report::{MeasuredTuning, tune_record};
+use super::wishes::Wishes;
 use crate::measurement::{ImportError, ImportOptions, Kind, import};
 
 /// What was read.
@@ -15,20 +15,6 @@ pub enum Opened {
     Log(Box<Log>),
     /// A record, and what is to be said of how it was read.
     Record(Box<Record>, Vec<String>),
-}
-
-/// What the user wants besides; it beats what a log says.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Wishes {
-    /// Form of the gains; parallel, or for a log that of its firmware, where it is not given.
-    pub form: Option<Form>,
-    /// Largest value of the input; guessed where it is not given.
-    pub full_scale: Option<f64>,
-    /// Set point of the test, in the unit of the output.
-    pub target: Option<f64>,
-    /// Half the distance between the outputs at which the relay switches, where a log does not tell it.
-    pub hysteresis: Option<f64>,
 }
 
 /// Why nothing was read.
@@ -96,18 +82,6 @@ impl Opened {
         match self {
             Self::Log(log) => log.with(wishes).tune(wishes.form),
             Self::Record(record, notes) => Ok(tune_record(&record, &wishes.settings(notes))?),
-        }
-    }
-}
-
-impl Wishes {
-    /// The same for a record or for numbers.
-    pub fn settings(&self, notes: Vec<String>) -> Settings {
-        Settings {
-            form: self.form.unwrap_or_default(),
-            full_scale: self.full_scale,
-            target: self.target,
-            notes,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod loops;
 mod plots;
+mod set;
 mod settings;
 mod side;
 mod tables;
@@ -26,6 +27,7 @@ use crate::page::{Hint, Offer};
 use crate::theme;
 
 pub use settings::{From, Settings};
+use tables::key;
 
 /// The test that comes with the page.
 const BUILT_IN: Enclosed = PROCESS_02;
@@ -292,11 +294,6 @@ fn answer(tuning: &MeasuredTuning) -> String {
         ),
         (None, None, None) => "There is no cycle, but there may be a model.".to_owned(),
     }
-}
-
-/// How a choice among gains is called.
-fn key(gains: &TunedGains) -> String {
-    format!("{} {}", gains.rule, gains.controller)
 }
 
 /// The gains in view: those that were chosen, else the last of Skogestad's, else the first.

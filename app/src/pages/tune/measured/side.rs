@@ -2,6 +2,7 @@
 
 use hysteron_core::tuning::measured::{AmplitudeConvention, Form};
 
+use super::tables::form_name;
 use super::{BUILT_IN, From, Measured};
 use crate::desk::Desk;
 use crate::files::{Held, TEST};
@@ -171,18 +172,6 @@ fn optional_ui(ui: &mut egui::Ui, name: &str, value: &mut Option<f64>, normal: f
             ui.add(field.field(ui.ctx(), value));
         }
     });
-}
-
-/// A form in a list.
-pub fn form_name(form: Form) -> &'static str {
-    match form {
-        Form::Parallel => "parallel",
-        Form::Ideal => "ideal",
-        Form::Series => "series",
-        Form::Klipper => "Klipper",
-        Form::Marlin => "Marlin",
-        Form::Esphome => "ESPHome",
-    }
 }
 
 /// What a form is.

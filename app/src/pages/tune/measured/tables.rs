@@ -6,7 +6,6 @@ use hysteron_core::tuning::measured::{
 use hysteron_core::uncertain::with_error;
 
 use super::super::draw::{maybe, number, table};
-use super::side::form_name;
 use crate::language::{tr, tr_number};
 
 /// What the models are, with two standard errors each.
@@ -107,7 +106,7 @@ pub fn gains_ui(ui: &mut egui::Ui, tuning: &MeasuredTuning, chosen: &mut Option<
 }
 
 fn gains_row_ui(ui: &mut egui::Ui, gains: &TunedGains, model: bool, chosen: &mut Option<String>) {
-    let key = super::key(gains);
+    let key = key(gains);
     let name = format!("{} {}", gains.name, gains.controller.to_uppercase());
     if ui
         .selectable_label(chosen.as_ref() == Some(&key), tr(name))
@@ -133,4 +132,21 @@ fn gains_row_ui(ui: &mut egui::Ui, gains: &TunedGains, model: bool, chosen: &mut
     ui.label(tr(maybe(gains.gain_margin, "-")));
     ui.label(tr(maybe(gains.max_sensitivity, "-")));
     ui.end_row();
+}
+
+/// How a choice among gains is called.
+pub fn key(gains: &TunedGains) -> String {
+    format!("{} {}", gains.rule, gains.controller)
+}
+
+/// A form in a list.
+pub fn form_name(form: Form) -> &'static str {
+    match form {
+        Form::Parallel => "parallel",
+        Form::Ideal => "ideal",
+        Form::Series => "series",
+        Form::Klipper => "Klipper",
+        Form::Marlin => "Marlin",
+        Form::Esphome => "ESPHome",
+    }
 }

@@ -11,9 +11,9 @@ mod mycodo;
 mod source;
 
 use super::gains::Form;
-use super::opened::Wishes;
 use super::readings::tune_readings;
 use super::report::{MeasuredTuning, Settings, tune_record};
+use super::wishes::Wishes;
 
 pub use source::{Held, LogError, Source};
 
