@@ -95,7 +95,7 @@ impl View for Tune {
         if ui.available_width() < layout::NARROW {
             egui::CentralPanel::default().show(ui, |ui| {
                 theme::scroll("tune").show(ui, |ui| {
-                    self.measured.from_ui(ui, desk);
+                    self.measured.source_ui(ui, desk);
                     let name = if self.is_measured() {
                         "Test and gains"
                     } else {
@@ -113,7 +113,7 @@ impl View for Tune {
             .show(ui, |ui| {
                 theme::scroll("tune_side").show(ui, |ui| {
                     ui.add_space(4.0);
-                    self.measured.from_ui(ui, desk);
+                    self.measured.source_ui(ui, desk);
                     ui.separator();
                     self.side_ui(ui, desk);
                 });

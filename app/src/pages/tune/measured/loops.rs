@@ -36,7 +36,7 @@ pub fn ui(
                 set_point,
                 stepped.as_deref(),
                 height,
-            )
+            );
         },
         |ui, height| {
             response_ui(
@@ -45,7 +45,7 @@ pub fn ui(
                 load,
                 without,
                 height,
-            )
+            );
         },
     );
 }

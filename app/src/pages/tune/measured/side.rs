@@ -19,7 +19,7 @@ const LARGEST: f64 = 1e9;
 
 impl Measured {
     /// Which test: simulated, recorded, or only its numbers.
-    pub fn from_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+    pub fn source_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         ui.horizontal_wrapped(|ui| {
             for (from, name, hint) in [
                 (
