@@ -403,7 +403,9 @@ fn intervals_hold_the_gap_of_rigs_that_nobody_tuned() {
         claimed.len()
     );
     assert_eq!(claimed, Vec::<String>::new());
+    // Of eight with a chance of 97 % each (what is stated of 200), seven or more: 98 %. All of them are asked for nine in ten.
+    assert!(10 * row.stated >= 9 * row.count || row.count - row.stated <= 1);
     // Of eight with a chance of 95 % each, six or more: 99 %.
-    assert!(10 * row.stated >= 9 * row.count && 100 * row.held >= 75 * row.stated);
+    assert!(100 * row.held >= 75 * row.stated);
     assert!(10 * row.close >= 9 * row.stated);
 }
