@@ -11,7 +11,7 @@ use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
 use hysteron::GivenFile;
 
 /// Numbers that have no unit: the loop of Explore is in units of its own signals, the rest are ratios.
-const PLAIN: [&str; 21] = [
+const PLAIN: [&str; 20] = [
     // As they were read off a test, in the units of its controller.
     "amplitude",
     "hysteresis",
@@ -25,7 +25,6 @@ const PLAIN: [&str; 21] = [
     "noise σ",
     "restitution",
     "gain before",
-    "half gap β",
     "relay gain k",
     "plant gain, times",
     "time constants, times",
@@ -38,15 +37,14 @@ const PLAIN: [&str; 21] = [
 ];
 
 /// Axes and columns that have no unit, but for those of the measurements, which are named by their columns.
-const PLAIN_AXES: [&str; 25] = [
+const PLAIN_AXES: [&str; 24] = [
     "real part",
     "imaginary part",
     "output y",
     "output y, input u",
     "output y, set point 1",
     "output y, load 1",
-    "runs of the relay",
-    "-H(-1), plant sampled every h",
+    "step n",
     "error of the amplitude, log10",
     "hysteresis ε",
     "relay gain k",

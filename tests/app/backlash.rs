@@ -36,15 +36,6 @@ fn the_page_opens_on_a_drive_whose_gap_the_motor_finds() {
     );
 }
 
-/// Fig. 8 stands below the plots; its modes have a test of their own.
-#[test]
-fn the_structure_of_the_drive_stands_below_the_plots() {
-    let mut harness = app("backlash", [1280.0, 1500.0]);
-    show(&mut harness, "v1;backlash;backlash.paused=1");
-    let title = "Fig. 8: two masses and the play between them";
-    assert!(texts(&harness).iter().any(|t| t == title));
-}
-
 #[test]
 fn figs_7_10_11_and_12_check_their_claims_on_screen() {
     let mut harness = page(WIDE);

@@ -11,7 +11,6 @@ mod access;
 mod backlash;
 mod care;
 mod compare;
-mod explore_further;
 mod german;
 mod habits;
 mod lessons;

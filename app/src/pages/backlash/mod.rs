@@ -1,11 +1,9 @@
 //! How wide is the hidden gap? A drive under a relay that makes it drift, simulated or measured.
 
-mod blocks;
 mod built_in;
 mod controls;
 mod design;
 mod drift;
-mod handover;
 mod picture;
 mod plots;
 mod scene;
@@ -333,17 +331,8 @@ impl Backlash {
                     plots::phase_ui(ui, scene, self.playback.clock, height);
                     plots::map_ui(ui, scene, self.playback.clock, height);
                 }
-                self.structure_ui(ui, scene, height);
             });
         });
-    }
-
-    /// Fig. 8 with its equations over time; of a measurement its modes are not known.
-    fn structure_ui(&self, ui: &mut egui::Ui, scene: &Scene, height: f32) {
-        if scene.input().is_some() {
-            blocks::ui(ui, scene, self.playback.clock);
-            handover::ui(ui, scene, self.playback.clock, height);
-        }
     }
 
     fn narrow_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
@@ -356,7 +345,6 @@ impl Backlash {
                     plots::time_ui(ui, scene, self.playback.clock, 220.0);
                     plots::phase_ui(ui, scene, self.playback.clock, 240.0);
                     plots::map_ui(ui, scene, self.playback.clock, 240.0);
-                    self.structure_ui(ui, scene, 220.0);
                 }
                 self.side_ui(ui, recent, targets);
             });

@@ -1,14 +1,11 @@
 //! A relay loop, live: what is predicted beside what happens.
 
 mod controls;
-mod further;
 mod hint;
 mod nyquist;
 mod plant_editor;
-mod play;
 mod settings;
 mod table;
-mod z_form;
 
 use std::collections::VecDeque;
 
@@ -24,7 +21,6 @@ use crate::theme;
 use crate::widgets::controls::claim_ui;
 use crate::widgets::playback::Playback;
 use crate::widgets::relay_loop::{self, TABLES, tables};
-use further::{WithPlay, ZForm};
 use nyquist::Nyquist;
 use plant_editor::PlantEditor;
 
@@ -35,10 +31,9 @@ const PERIODS_PER_SECOND: f64 = 0.6;
 const REMEMBERED: usize = 31;
 
 /// The page: what is set, and what follows from it.
+#[derive(Default)]
 pub struct Explore {
     input: ExploreInput,
-    /// Half gap of the play that is looked at, in the unit of the output.
-    half_gap: f64,
     editor: PlantEditor,
     nyquist: Nyquist,
     /// Number of the figure whose claim is checked.
@@ -51,28 +46,9 @@ pub struct Explore {
     took: VecDeque<f64>,
 }
 
-impl Default for Explore {
-    fn default() -> Self {
-        Self {
-            input: ExploreInput::default(),
-            half_gap: play::HALF_GAP,
-            editor: PlantEditor::default(),
-            nyquist: Nyquist::default(),
-            figure: None,
-            playback: Playback::default(),
-            line_at: None,
-            finished: None,
-            took: VecDeque::new(),
-        }
-    }
-}
-
 /// What was computed, and for what.
 struct Finished {
     input: ExploreInput,
-    half_gap: f64,
-    z_form: Option<ZForm>,
-    with_play: Option<WithPlay>,
     figure: Option<u32>,
     data: Result<(ExploreData, Vec<Check>), String>,
 }
@@ -153,7 +129,6 @@ impl Explore {
             .as_ref()
             .is_some_and(|f| f.input == self.input && f.figure == self.figure);
         if known {
-            self.compute_play();
             return;
         }
         let begin = web_time::Instant::now();
@@ -166,32 +141,11 @@ impl Explore {
         });
         self.took.truncate(REMEMBERED - 1);
         self.took.push_front(begin.elapsed().as_secs_f64());
-        let z_form = data
-            .as_ref()
-            .ok()
-            .and_then(|(d, _)| ZForm::new(&self.input, d));
         self.finished = Some(Finished {
             input: self.input.clone(),
-            half_gap: f64::NAN,
-            z_form,
-            with_play: None,
             figure: self.figure,
             data: data.map_err(|e| e.to_string()),
         });
-        self.compute_play();
-    }
-
-    /// Computes the cycles with play anew if its gap was changed.
-    fn compute_play(&mut self) {
-        if let Some(finished) = &mut self.finished
-            && finished.half_gap.to_bits() != self.half_gap.to_bits()
-        {
-            finished.half_gap = self.half_gap;
-            finished.with_play = match finished.data {
-                Ok(_) => WithPlay::new(&self.input, self.half_gap),
-                Err(_) => None,
-            };
-        }
     }
 
     /// Median time of the last computations, s.
@@ -245,7 +199,6 @@ impl Explore {
                     self.time_ui(ui, height);
                     self.phase_ui(ui, height);
                 }
-                self.further_ui(ui, height);
             });
         });
     }
@@ -261,31 +214,8 @@ impl Explore {
                 self.controls_ui(ui);
                 self.numbers_ui(ui);
                 self.phase_ui(ui, 260.0);
-                self.further_ui(ui, 220.0);
             });
         });
-    }
-
-    /// Equation (3) in the z-form, and the loop with play.
-    fn further_ui(&mut self, ui: &mut egui::Ui, height: f32) {
-        let Some(finished) = self.finished.as_ref().filter(|f| f.data.is_ok()) else {
-            return;
-        };
-        let half_gap = &mut self.half_gap;
-        if layout::room_for_two(ui) {
-            ui.columns(2, |columns| {
-                z_form::ui(&mut columns[0], finished.z_form.as_ref(), height);
-                play::ui(
-                    &mut columns[1],
-                    half_gap,
-                    finished.with_play.as_ref(),
-                    height,
-                );
-            });
-        } else {
-            z_form::ui(ui, finished.z_form.as_ref(), height);
-            play::ui(ui, half_gap, finished.with_play.as_ref(), height);
-        }
     }
 
     fn answer_ui(&self, ui: &mut egui::Ui) {

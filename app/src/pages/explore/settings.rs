@@ -14,16 +14,8 @@ pub struct Settings {
     figure: Option<u32>,
     /// Whether the point S is shown in the Nyquist plot.
     margin: bool,
-    /// Half gap of the play that is looked at, in the unit of the output.
-    #[serde(default = "half_gap")]
-    half_gap: f64,
     /// Where the playback stands still, s.
     paused: Option<f64>,
-}
-
-/// Links from before there was any have this.
-fn half_gap() -> f64 {
-    super::play::HALF_GAP
 }
 
 impl Settable for Explore {
@@ -33,7 +25,6 @@ impl Settable for Explore {
         Settings {
             figure: self.figure,
             margin: self.nyquist.margin,
-            half_gap: self.half_gap,
             paused: self.playback.paused(),
         }
     }
@@ -49,13 +40,6 @@ impl Settable for Explore {
         {
             return Err(format!("There is no figure {number} on this page."));
         }
-        if !(0.0..=1e6).contains(&settings.half_gap) {
-            return Err(format!(
-                "half gap is {}: must be 0 or more",
-                settings.half_gap
-            ));
-        }
-        self.half_gap = settings.half_gap;
         self.figure = settings.figure;
         self.nyquist.margin = settings.margin;
         self.playback.set(settings.paused);
