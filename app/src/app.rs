@@ -346,7 +346,8 @@ impl HysteronApp {
     fn overlays_ui(&mut self, ctx: &egui::Context, foot: f32) {
         // Another page than one that takes files makes way for the first that does.
         let front = self.pages.get(self.front).and_then(|p| p.door.as_ref());
-        let door = front.or_else(|| self.pages.iter().find_map(|p| p.door.as_ref()));
+        let elsewhere = || self.pages.iter().find(|page| page.takes_files());
+        let door = front.or_else(|| elsewhere()?.door.as_ref());
         if let Some(door) = door {
             drop_hint_ui(ctx, door.drop_hint);
         }
@@ -397,9 +398,9 @@ impl HysteronApp {
 
     /// Brings a page that takes files to the front, unless one is there.
     fn go_to_files(&mut self) -> Option<(&mut Box<dyn View>, &Door)> {
-        let takes = |page: &Page| page.door.is_some();
-        if !self.pages.get(self.front).is_some_and(takes) {
-            self.front = self.pages.iter().position(takes)?;
+        let has_door = |page: &Page| page.door.is_some();
+        if !self.pages.get(self.front).is_some_and(has_door) {
+            self.front = self.pages.iter().position(Page::takes_files)?;
         }
         let page = self.pages.get_mut(self.front)?;
         Some((&mut page.view, page.door.as_ref()?))

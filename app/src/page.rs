@@ -20,6 +20,8 @@ pub struct Page {
     pub view: Box<dyn View>,
     /// Where files come in, if it takes any.
     pub door: Option<Door>,
+    /// Whether it takes them only while it is in front.
+    pub in_front_only: bool,
 }
 
 impl Page {
@@ -30,7 +32,13 @@ impl Page {
             title,
             view: Box::new(view),
             door: None,
+            in_front_only: false,
         }
+    }
+
+    /// Whether files that come in while another page is in front are brought to it.
+    pub fn takes_files(&self) -> bool {
+        self.door.is_some() && !self.in_front_only
     }
 
     /// A page that takes the files that come in by this door.
@@ -38,6 +46,14 @@ impl Page {
         Self {
             door: Some(door),
             ..self
+        }
+    }
+
+    /// The same of one that takes them only while it is in front.
+    pub fn with_own_door(self, door: Door) -> Self {
+        Self {
+            in_front_only: true,
+            ..self.with_door(door)
         }
     }
 }

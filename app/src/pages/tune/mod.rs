@@ -75,7 +75,7 @@ pub fn page() -> Page {
     let mut view = Tune::default();
     let door = (view.measured.files)
         .door("Drop the record of a relay test, or the log of an auto-tuner, to get gains from it");
-    Page::new("tune", "Tune", view).with_door(door)
+    Page::new("tune", "Tune", view).with_own_door(door)
 }
 
 impl View for Tune {
