@@ -30,6 +30,10 @@ pub struct Margins {
 /// Largest turn of the characteristic function between two frequencies that is taken as it is.
 const TURN: f64 = 0.5;
 
+/// Angle, rad, by which a dead time turns the curve at most while it is followed: each turn takes work, and a fast lag with a
+/// dead time fades only after very many.
+const FARTHEST: f64 = 1e4;
+
 /// Halvings of an interval in which it turns by more.
 const SPLITS: usize = 48;
 
@@ -53,7 +57,7 @@ pub fn unstable_poles(plant: &TransferFunction, pid: &Pid) -> usize {
     let (low, mut high) = scan::range(&[&numerator, &denominator], plant.dead_time);
     for _ in 0..60 {
         let (own, delayed) = loop_parts(high);
-        if delayed.norm() < FADED * own.norm() {
+        if delayed.norm() < FADED * own.norm() || high * plant.dead_time > FARTHEST {
             break;
         }
         high *= 2.0;
