@@ -18,9 +18,9 @@ use hysteron_work::reading::Reading;
 use hysteron_work::tasks::{MeasuredReport, MeasuredTask, MeasuredTest, ReadTask};
 
 use super::draw::beside;
-use crate::export::{Table, Tables};
+use crate::export::Table;
 use crate::files::{Files, Held};
-use crate::jobs::{Job, News};
+use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::motion;
 use crate::page::{Hint, Offer};
@@ -106,21 +106,14 @@ impl Measured {
                 }
             }
         }
-        let news = self.job.as_mut().map(Job::news).unwrap_or_default();
-        for said in news {
-            match said {
-                News::Report(report) => self.take_report(report),
-                News::Failed(text) => {
-                    self.message = Some(text);
-                    self.job = None;
-                }
-                News::Progress(..) => {}
-            }
+        match ended(&mut self.job, |_, _| ()) {
+            Some(Ok(report)) => self.take_report(Box::new(report)),
+            Some(Err(text)) => self.message = Some(text),
+            None => {}
         }
     }
 
     fn take_report(&mut self, report: Box<MeasuredReport>) {
-        self.job = None;
         self.message = None;
         if let (From::Record, Some(file)) = (self.from, &self.file) {
             self.files.taken(&file.name, &file.reading);
@@ -234,10 +227,7 @@ impl Measured {
     }
 
     pub fn offer(&self) -> Offer<'_> {
-        Offer {
-            hint: Some(self.hint()),
-            tables: Tables::new(self.table_names(), || self.tables()),
-        }
+        Offer::new(self.hint(), self.table_names(), || self.tables())
     }
 
     fn hint(&self) -> Hint {
