@@ -2,7 +2,7 @@
 
 use super::select::{SMALL_SHARE, is_trifle, outweighs};
 use super::session::{Scored, Session};
-use super::step::{NOISE_FLOOR, StepJob};
+use super::step::StepJob;
 use crate::crew::Crew;
 use crate::diagnosis::{CriticismError, Diagnosis, Limits, Step, StepReport};
 use crate::effect::EffectId;
@@ -95,30 +95,11 @@ impl DiagnosisJob {
         model: &UserModel,
     ) -> Result<Self, CriticismError> {
         let job = StepJob::with_model(measurement, &[], model)?;
-        let input_check = Some(job.input_check().clone());
+        let input_check = job.input_check().clone();
         Ok(Self {
             job: Some(job),
             limits: Limits::of(measurement),
-            diagnosis: Diagnosis {
-                schema: 1,
-                kind: measurement.kind,
-                samples: measurement.len(),
-                noise_floor: NOISE_FLOOR,
-                noise: Vec::new(),
-                input_check,
-                steps: Vec::new(),
-                verdict: crate::diagnosis::Verdict {
-                    missing: Vec::new(),
-                    complete: false,
-                    unknown: false,
-                    next_experiment: None,
-                    experiments: Vec::new(),
-                    contradicted: Vec::new(),
-                    overruled: Vec::new(),
-                    text: String::new(),
-                },
-                seconds: 0.0,
-            },
+            diagnosis: Diagnosis::begun(measurement.kind, measurement.len(), input_check),
             detours: Vec::new(),
             detours_taken: 0,
             barred: Vec::new(),
@@ -164,7 +145,7 @@ impl DiagnosisJob {
         let before = self.diagnosis.steps.len();
         self.diagnosis.steps.push(report.step.clone());
         if self.first.is_none() {
-            self.first = Some(without_curves(&report));
+            self.first = Some(report.without_curves());
         }
         let Some(job) = self.job.take() else {
             return Progress::Done(self.diagnosis.clone());
@@ -342,22 +323,4 @@ fn trifling(diagnosis: &Diagnosis, session: &Session) -> bool {
     let last = diagnosis.steps.last().map(|s| s.error);
     last.zip(session.baseline.as_ref())
         .is_some_and(|(error, first)| is_trifle(error, first, SMALL_SHARE))
-}
-
-/// The report without what is as long as the measurement.
-fn without_curves(report: &StepReport) -> StepReport {
-    StepReport {
-        step: report.step.clone(),
-        replay: crate::diagnosis::Replay {
-            channels: Vec::new(),
-            window_starts: Vec::new(),
-        },
-        atlas: report.atlas.clone(),
-        fingerprints: Vec::new(),
-        verdict: report.verdict.clone(),
-        needless: report.needless.clone(),
-        missing: report.missing.clone(),
-        noise: report.noise.clone(),
-        ..*report
-    }
 }

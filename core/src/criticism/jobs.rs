@@ -5,10 +5,10 @@ use super::knowledge::contradictions;
 use super::next_experiment::{Design, TRYING};
 use super::screen::Screened;
 use super::session::Session;
-use super::tell::{NOISE_FLOOR, Tell};
+use super::tell::Tell;
 use crate::crew::Crew;
 use crate::diagnosis::{CriticismError, Diagnosis, Limits, StepReport};
-use crate::effect::{self, EffectId};
+use crate::effect::EffectId;
 use crate::measurement::Measurement;
 use crate::progress::Progress;
 use crate::user_model::UserModel;
@@ -29,19 +29,7 @@ impl Search {
         model: &UserModel,
     ) -> Result<Self, CriticismError> {
         let (session, screened) = Session::screened(measurement, model)?;
-        let present = model.present();
-        let added = effects.iter().filter(|id| !present.contains(id));
-        let held = present
-            .iter()
-            .chain(added)
-            .filter(|id| **id != effect::VISCOUS_FRICTION)
-            .map(|id| {
-                session
-                    .find(*id)
-                    .ok_or(CriticismError::WrongEffect { effect: *id })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        session.check_units(&held)?;
+        let held = session.chosen(model, effects)?;
         let explain = Explain::new(held);
         Ok(Self {
             explain,
@@ -143,8 +131,10 @@ impl StepJob {
 pub struct DiagnosisJob {
     search: Search,
     diagnosis: Diagnosis,
-    /// Effects of the models that were told, in their order; those not told yet.
+    /// Effects in the order in which they are added.
     order: Option<Vec<EffectId>>,
+    /// Effects of the next model that is told.
+    told: usize,
     first: Option<StepReport>,
     last: Option<StepReport>,
 }
@@ -161,29 +151,11 @@ impl DiagnosisJob {
         model: &UserModel,
     ) -> Result<Self, CriticismError> {
         let search = Search::new(measurement, &[], model)?;
-        let input_check = Some(search.session.input_check.clone());
+        let input_check = search.session.input_check.clone();
         Ok(Self {
+            diagnosis: Diagnosis::begun(measurement.kind, measurement.len(), input_check),
+            told: search.explain.held_ids().len(),
             search,
-            diagnosis: Diagnosis {
-                schema: 1,
-                kind: measurement.kind,
-                samples: measurement.len(),
-                noise_floor: NOISE_FLOOR,
-                noise: Vec::new(),
-                input_check,
-                steps: Vec::new(),
-                verdict: crate::diagnosis::Verdict {
-                    missing: Vec::new(),
-                    complete: false,
-                    unknown: true,
-                    next_experiment: None,
-                    experiments: Vec::new(),
-                    contradicted: Vec::new(),
-                    overruled: Vec::new(),
-                    text: String::new(),
-                },
-                seconds: 0.0,
-            },
             order: None,
             first: None,
             last: None,
@@ -223,16 +195,16 @@ impl DiagnosisJob {
             return Progress::Done(self.diagnosis.clone());
         }
         let order = self.order.get_or_insert_with(|| explain.order());
-        let held = explain.held_ids().len();
-        let told = held + self.diagnosis.steps.len();
+        let told = self.told;
         if told > order.len() {
             return Progress::Done(self.diagnosis.clone());
         }
+        self.told += 1;
         if let Some(report) = tell.report(session, explain, &order[..told]) {
             self.diagnosis.steps.push(report.step.clone());
             self.diagnosis.noise.clone_from(&report.noise);
-            if told == held {
-                self.first = Some(without_curves(&report));
+            if self.first.is_none() {
+                self.first = Some(report.without_curves());
             }
             if told == order.len() {
                 self.diagnosis.noise_floor = report.noise_floor;
@@ -251,23 +223,5 @@ impl DiagnosisJob {
     /// Once it is done: the reports on the baseline (without its curves) and on the last model.
     pub fn evidence(&self) -> Option<(&StepReport, &StepReport)> {
         self.first.as_ref().zip(self.last.as_ref())
-    }
-}
-
-/// The report without what is as long as the measurement.
-fn without_curves(report: &StepReport) -> StepReport {
-    StepReport {
-        step: report.step.clone(),
-        replay: crate::diagnosis::Replay {
-            channels: Vec::new(),
-            window_starts: Vec::new(),
-        },
-        atlas: report.atlas.clone(),
-        fingerprints: Vec::new(),
-        verdict: report.verdict.clone(),
-        needless: report.needless.clone(),
-        missing: report.missing.clone(),
-        noise: report.noise.clone(),
-        ..*report
     }
 }

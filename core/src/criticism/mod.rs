@@ -25,6 +25,7 @@ mod one_way;
 mod output;
 mod probes;
 mod race;
+mod ranking;
 mod record;
 mod residual_test;
 mod score;

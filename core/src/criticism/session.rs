@@ -248,6 +248,27 @@ impl Session {
         }
     }
 
+    /// Effects of the user's model, then `added` ones, as they may be in a model.
+    pub fn chosen(
+        &self,
+        model: &UserModel,
+        added: &[EffectId],
+    ) -> Result<Vec<&'static dyn Effect>, CriticismError> {
+        let present = model.present();
+        let added = added.iter().filter(|id| !present.contains(id));
+        let chosen = present
+            .iter()
+            .chain(added)
+            .filter(|id| **id != effect::VISCOUS_FRICTION)
+            .map(|id| {
+                self.find(*id)
+                    .ok_or(CriticismError::WrongEffect { effect: *id })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        self.check_units(&chosen)?;
+        Ok(chosen)
+    }
+
     /// Effects that may be in a model: those of the library and the user's own.
     fn known(&self) -> impl Iterator<Item = &'static dyn Effect> {
         effect::for_kind(self.kind()).chain(self.own.iter().copied())

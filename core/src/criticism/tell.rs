@@ -6,8 +6,9 @@ use super::knowledge::overruled;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, designs};
 use super::one_way::OneWay;
+use super::ranking::{noise_floor, rank};
 use super::residual_test::residual_tests;
-use super::score::{Score, share_left};
+use super::score::share_left;
 use super::select::{delta_bic, outweighs};
 use super::session::{Rest, Scored, Session};
 use super::verdict::{
@@ -19,9 +20,6 @@ use crate::diagnosis::{
     Candidate, Contradiction, Limits, NextExperiment, Step, StepReport, Verdict,
 };
 use crate::effect::{Effect, EffectId};
-
-/// Error of a perfect model in noise units.
-pub(super) const NOISE_FLOOR: f64 = 1.0;
 
 /// Fall of the error of either half from which an effect is mentioned though chance is not ruled out.
 const PROMISING: f64 = 0.3;
@@ -279,25 +277,6 @@ fn candidates(
         parameters: Vec::new(),
         equivalent_to: Vec::new(),
     }));
-    candidates.sort_by(|a, b| {
-        let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
-        let simpler = a.parameters.len().cmp(&b.parameters.len());
-        let better = rounded(a.error).total_cmp(&rounded(b.error)).then(simpler);
-        first(a).cmp(&first(b)).then(better)
-    });
+    rank(&mut candidates, suggestion);
     candidates
-}
-
-/// To the three digits that are shown.
-fn rounded(error: f64) -> f64 {
-    let digit = libm::exp10(libm::floor(libm::log10(error)) - 2.0);
-    libm::round(error / digit) * digit
-}
-
-/// What a perfect model would leave: where noise remembers, more than neighbouring samples show.
-fn noise_floor(rest: Rest, score: &Score) -> f64 {
-    match rest {
-        Rest::NoiseWithMemory | Rest::RandomForces => score.error_fit.max(NOISE_FLOOR),
-        Rest::Noise | Rest::More => NOISE_FLOOR,
-    }
 }

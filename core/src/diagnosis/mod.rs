@@ -30,6 +30,7 @@ pub use parameter::{Parameter, Status};
 pub use profile::{Profile, ProfileBin};
 pub use program::{Program, Sine};
 pub use replay::{Replay, ReplayChannel};
+pub(crate) use report::NOISE_FLOOR;
 pub use report::{Diagnosis, StepReport};
 pub use residual_test::{ResidualTest, ResidualTestKind};
 pub use screening::{InputCheck, InputVerdict, Screening, Subset};

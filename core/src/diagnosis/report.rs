@@ -13,6 +13,9 @@ use super::verdict::Verdict;
 use crate::effect::EffectId;
 use crate::measurement::Kind;
 
+/// Error of a perfect model, in units of the noise.
+pub(crate) const NOISE_FLOOR: f64 = 1.0;
+
 /// A whole diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Diagnosis {
@@ -64,4 +67,50 @@ pub struct StepReport {
     pub missing: Vec<MissingPart>,
     /// Present when nothing should be added: what is missing from the baseline, and how sure.
     pub verdict: Option<Verdict>,
+}
+
+impl Diagnosis {
+    /// A diagnosis of which nothing is known yet.
+    pub(crate) fn begun(kind: Kind, samples: usize, input_check: InputCheck) -> Self {
+        Self {
+            schema: 1,
+            kind,
+            samples,
+            noise_floor: NOISE_FLOOR,
+            noise: Vec::new(),
+            input_check: Some(input_check),
+            steps: Vec::new(),
+            verdict: Verdict {
+                missing: Vec::new(),
+                complete: false,
+                unknown: true,
+                next_experiment: None,
+                experiments: Vec::new(),
+                contradicted: Vec::new(),
+                overruled: Vec::new(),
+                text: String::new(),
+            },
+            seconds: 0.0,
+        }
+    }
+}
+
+impl StepReport {
+    /// The same without what is as long as the measurement.
+    pub(crate) fn without_curves(&self) -> Self {
+        Self {
+            step: self.step.clone(),
+            replay: Replay {
+                channels: Vec::new(),
+                window_starts: Vec::new(),
+            },
+            atlas: self.atlas.clone(),
+            fingerprints: Vec::new(),
+            verdict: self.verdict.clone(),
+            needless: self.needless.clone(),
+            missing: self.missing.clone(),
+            noise: self.noise.clone(),
+            ..*self
+        }
+    }
 }

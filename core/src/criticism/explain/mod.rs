@@ -355,9 +355,7 @@ impl Explain {
     fn without(&self, trial: usize, place: usize) -> Option<usize> {
         let mut ids = self.trials[trial].ids();
         ids.remove(place);
-        let same = |t: &Trial| t.effects().len() == ids.len() && ids.iter().all(|id| t.has(*id));
-        let found = (0..self.trials.len()).filter(|t| same(&self.trials[*t]));
-        found.min_by(|a, b| self.trials[*a].error().total_cmp(&self.trials[*b].error()))
+        self.of(&ids)
     }
 
     fn difference(&self, session: &Session, from: usize, to: usize) -> Difference {

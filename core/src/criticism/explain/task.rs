@@ -204,7 +204,9 @@ impl Task {
                 Sketch::part(session, fit, &ids)?.fitted(session)
             }
         };
-        fit.cost.is_finite().then(|| Trial::new(session, fit))
+        // What the first model is too large or too small for is said of it.
+        let is_base = matches!(self, Self::Base(_));
+        (is_base || fit.cost.is_finite()).then(|| Trial::new(session, fit))
     }
 }
 

@@ -17,13 +17,10 @@ use crate::crew::Crew;
 use crate::diagnosis::{
     Contradiction, CriticismError, InputCheck, Limits, NextExperiment, Step, StepReport,
 };
-use crate::effect::{self, Effect, EffectId};
+use crate::effect::{Effect, EffectId};
 use crate::measurement::Measurement;
 use crate::progress::Progress;
 use crate::user_model::UserModel;
-
-/// Error of a perfect model in noise units.
-pub(super) const NOISE_FLOOR: f64 = 1.0;
 
 /// Share of the cost of a model below which a fit once more is in another valley, and the one below which it is taken.
 const BETTER_VALLEY: f64 = 0.92;
@@ -100,19 +97,7 @@ impl StepJob {
         model: &UserModel,
     ) -> Result<Self, CriticismError> {
         let session = Session::new(measurement, model)?;
-        let present = model.present();
-        let added = effects.iter().filter(|id| !present.contains(id));
-        let wanted = present
-            .iter()
-            .chain(added)
-            .filter(|id| **id != effect::VISCOUS_FRICTION)
-            .map(|id| {
-                session
-                    .find(*id)
-                    .ok_or(CriticismError::WrongEffect { effect: *id })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        session.check_units(&wanted)?;
+        let wanted = session.chosen(model, effects)?;
         let search = Search::baseline(&session.data, &session.knowledge);
         let limits = Limits::of(measurement);
         Ok(Self::of(

@@ -1,13 +1,14 @@
 //! What a step tells: the model, what could be added, and the verdict where nothing is.
 
-use super::{NOISE_FLOOR, StepJob};
+use super::StepJob;
 use crate::criticism::fingerprint::fingerprints;
 use crate::criticism::judge::{alike, helps_clearly, nested};
 use crate::criticism::knowledge::overruled;
 use crate::criticism::missing::missing_parts;
 use crate::criticism::one_way::OneWay;
+use crate::criticism::ranking::{noise_floor, rank};
 use crate::criticism::residual_test::residual_tests;
-use crate::criticism::score::{Score, share_left};
+use crate::criticism::score::share_left;
 use crate::criticism::select::delta_bic;
 use crate::criticism::session::{Rest, Scored};
 use crate::criticism::verdict::{
@@ -172,27 +173,8 @@ impl StepJob {
             .map(|e| as_its_best_part(e, &candidates, model))
             .collect();
         candidates.extend(untried);
-        candidates.sort_by(|a, b| {
-            let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
-            let simpler = a.parameters.len().cmp(&b.parameters.len());
-            let better = rounded(a.error).total_cmp(&rounded(b.error)).then(simpler);
-            first(a).cmp(&first(b)).then(better)
-        });
+        rank(&mut candidates, suggestion);
         candidates
-    }
-}
-
-/// To the three digits that are shown.
-fn rounded(error: f64) -> f64 {
-    let digit = libm::exp10(libm::floor(libm::log10(error)) - 2.0);
-    libm::round(error / digit) * digit
-}
-
-/// What a perfect model would leave: where noise remembers, more than neighbouring samples show.
-fn noise_floor(rest: Rest, score: &Score) -> f64 {
-    match rest {
-        Rest::NoiseWithMemory | Rest::RandomForces => score.error_fit.max(NOISE_FLOOR),
-        Rest::Noise | Rest::More => NOISE_FLOOR,
     }
 }
 
