@@ -225,6 +225,15 @@ impl Data {
         self.blocks = cut::one_each(&self.windows, self.len());
     }
 
+    /// The same with what is fitted held back, and fitted what is held back.
+    pub fn turned(&self) -> Self {
+        let mut turned = self.clone();
+        for block in &mut turned.blocks {
+            block.held_back = !block.held_back;
+        }
+        turned
+    }
+
     /// Counts pieces of motion of a replay, of it or of a part.
     pub fn count_moves(&self, moves: u64) {
         self.moves.fetch_add(moves, Ordering::Relaxed);

@@ -7,10 +7,13 @@ mod correlation;
 mod cost;
 mod cut;
 mod data;
+
+mod explain;
 mod fingerprint;
 mod fit;
 mod guess;
 mod job;
+mod jobs;
 mod judge;
 mod knowledge;
 mod leap;
@@ -35,13 +38,15 @@ mod spectrum;
 mod split;
 mod step;
 mod structure;
+mod tell;
 mod units;
 mod verdict;
 mod window;
 mod window_sums;
 
-pub use job::DiagnosisJob;
+pub use jobs::{DiagnosisJob, StepJob};
 pub use next_experiment::{Controller, ExperimentJob};
 pub use noise::noise_level;
 pub use screen::screen;
-pub use step::StepJob;
+
+

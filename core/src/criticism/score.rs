@@ -2,6 +2,7 @@
 
 use super::correlation::product;
 use super::cost::{cost_between, fit_cost, informed_windows};
+use super::cut::Block;
 use super::data::Data;
 use super::fit::{Fit, Motion, residuals};
 use super::output::Output;
@@ -80,27 +81,33 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
 }
 
 /// Share of the motion that a model with this score misses on held-back data: root mean square of the residuals over that
-/// of the motion, each channel in units of its noise. The motion of a velocity or of an output is about the mean, that of a
-/// position about a straight line in each block, since a drive may go anywhere.
+/// of the motion, each channel in units of its noise.
 pub(super) fn share_left(data: &Data, score: &Score) -> f64 {
-    let held = || data.blocks.iter().filter(|b| b.held_back);
-    let motion = |o: &Output| -> f64 {
-        if !o.is_velocity {
-            return held().map(|b| bend_between(o, b.from, b.to)).sum();
-        }
-        let told = || held().flat_map(|b| (b.from..b.to).filter(|i| o.tells(*i)));
-        let count = told().count().max(1) as f64;
-        let mean = told().map(|i| o.values[i]).sum::<f64>() / count;
-        let about = told().map(|i| ((o.values[i] - mean) / o.noise).powi(2));
-        about.sum()
-    };
-    let count: usize = held().map(|b| data.measured(b.from, b.to)).sum();
-    let motion: f64 = data.outputs.iter().map(motion).sum();
+    let motion = motion_square(data, |b| b.held_back);
     if motion > 0.0 {
-        score.error / (motion / count.max(1) as f64).sqrt()
+        score.error / motion.sqrt()
     } else {
         0.0
     }
+}
+
+/// Mean square of the motion in these blocks, each channel in units of its noise. That of a velocity or of an output is
+/// about the mean, that of a position about a straight line in each block, since a drive may go anywhere.
+pub(super) fn motion_square(data: &Data, is_one: impl Fn(&Block) -> bool) -> f64 {
+    let blocks = || data.blocks.iter().filter(|b| is_one(b));
+    let motion = |o: &Output| -> f64 {
+        if !o.is_velocity {
+            return blocks().map(|b| bend_between(o, b.from, b.to)).sum();
+        }
+        let told = || blocks().flat_map(|b| (b.from..b.to).filter(|i| o.tells(*i)));
+        let count = told().count().max(1) as f64;
+        let mean = told().map(|i| o.values[i]).sum::<f64>() / count;
+        told()
+            .map(|i| ((o.values[i] - mean) / o.noise).powi(2))
+            .sum()
+    };
+    let count: usize = blocks().map(|b| data.measured(b.from, b.to)).sum();
+    data.outputs.iter().map(motion).sum::<f64>() / count.max(1) as f64
 }
 
 /// Half a step of a counter in its standard deviations, with a tenth of a step more: where a body rests, all that is known of

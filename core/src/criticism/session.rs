@@ -12,7 +12,7 @@ use super::locate::locate;
 use super::noise::{is_left_by_random_forces, is_noise_with_memory};
 use super::output::Output;
 use super::probes::{Probed, Probes};
-use super::score::{Score, score};
+use super::score::{Score, motion_square, score};
 use super::screen::screen;
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
@@ -123,6 +123,8 @@ pub(super) struct Session {
     pub held: Option<Rubbing>,
     /// Inertia and viscous friction of a drive that the screen told.
     screened_body: Option<[f64; 2]>,
+    /// Mean square of the motion in units of the noise.
+    pub motion_square: f64,
     /// What models that were met leave unexplained.
     probes: Probes,
     pub motion: Motion,
@@ -139,6 +141,15 @@ pub(super) struct Session {
 
 impl Session {
     pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
+        Self::with_screening(measurement, model, &screen(measurement))
+    }
+
+    /// The same of a record that was screened.
+    pub fn with_screening(
+        measurement: &Measurement,
+        model: &UserModel,
+        screening: &Screening,
+    ) -> Result<Self, CriticismError> {
         knowledge::check(model, measurement)?;
         let Sighted {
             gap,
@@ -153,8 +164,7 @@ impl Session {
         let plain = Baseline::plain();
         let guess = guess(&data, &data.excitation.effective_input(&plain))
             .unwrap_or_else(|| data.baseline.unknown());
-        let screening = screen(measurement);
-        let screened_body = told_body(&screening);
+        let screened_body = told_body(screening);
         // Where a regression sample by sample has run off, sizes are those that the weak form tells.
         let guessed: [f64; 2] = data.baseline.body(&guess).into();
         let run_off = |body: &[f64; 2]| far_apart(body[0], guessed[0]);
@@ -167,12 +177,14 @@ impl Session {
             scales,
             held: None,
             screened_body,
-            input_check: screening.input_check,
+            input_check: screening.input_check.clone(),
             screened: screening
                 .subsets
-                .into_iter()
+                .iter()
                 .filter(|subset| !subset.effects.is_empty())
+                .cloned()
                 .collect(),
+            motion_square: motion_square(&compared, |_| true),
             probes: Probes::default(),
             scout: compared.scout(),
             knowledge,
@@ -405,8 +417,14 @@ impl Session {
     /// Whether the newest effect of a fit is more than a trifle of the input: where a motion is unstable, its least
     /// disturbance grows until it is seen, and an asymmetry of the last digits of a record seems to explain it.
     pub fn is_sizeable(&self, fit: &Fit) -> bool {
+        let last = fit.structure.effects.len().checked_sub(1);
+        last.is_none_or(|place| self.is_sizeable_at(fit, place))
+    }
+
+    /// The same of the effect at a place.
+    pub fn is_sizeable_at(&self, fit: &Fit, place: usize) -> bool {
         let structure = &fit.structure;
-        let Some((place, newest)) = structure.effects.iter().enumerate().next_back() else {
+        let Some(newest) = structure.effects.get(place) else {
             return true;
         };
         let specs = newest.parameters();
@@ -488,16 +506,20 @@ impl Session {
         parameters
     }
 
+    /// Share of what there was at first that may be left beside noise by a model that explains the record.
+    pub fn small_share(&self, fit: &Fit) -> f64 {
+        if fit.structure.effects.iter().any(|e| e.is_of_record()) {
+            SAMPLED_SHARE
+        } else {
+            SMALL_SHARE
+        }
+    }
+
     /// What a fit of the whole record leaves.
     pub fn rest(&self, scored: &Scored) -> Rest {
         let remembers =
             || is_noise_with_memory(self.whole(), &scored.fit.motion, self.output_unit());
-        let effects = &scored.fit.structure.effects;
-        let small = if effects.iter().any(|e| e.is_of_record()) {
-            SAMPLED_SHARE
-        } else {
-            SMALL_SHARE
-        };
+        let small = self.small_share(&scored.fit);
         if self.is_too_heavy(&scored.fit) {
             Rest::More
         } else if is_noise(&scored.score, self.first(scored), small) {

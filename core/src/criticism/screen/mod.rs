@@ -16,14 +16,83 @@ mod tuning;
 mod window;
 
 use crate::diagnosis::Screening;
+use crate::effect::{Effect, EffectId};
 use crate::measurement::Measurement;
+use subsets::Tried;
 
 /// Screens a record. Linear in its samples.
 pub fn screen(measurement: &Measurement) -> Screening {
-    let signals = signals::Signals::new(measurement);
-    let widths = window::widths(&signals);
-    let prepared = prepare::Prepared::new(&signals, &widths);
-    let bench = prepared.bench();
-    let tried = bench.all();
-    say::screening(measurement, &signals, &widths, &bench, &tried)
+    Screened::new(measurement).screening
+}
+
+/// A screened record, of which any subset of effects can be asked.
+pub(super) struct Screened {
+    pub screening: Screening,
+    prepared: prepare::Prepared,
+    /// Every subset that can be, the best first.
+    tried: Vec<Tried>,
+}
+
+/// A subset of effects with the values from which it may be fitted.
+#[derive(Clone)]
+pub(super) struct Start {
+    pub effects: Vec<&'static dyn Effect>,
+    /// Inertia and viscous friction of a drive; gain, time constant and ambient of a process.
+    pub body: Vec<f64>,
+    /// Values of each effect.
+    pub values: Vec<Vec<f64>>,
+    /// Share of the motion that it leaves on blocks that its fit did not see.
+    pub left: f64,
+}
+
+impl Screened {
+    pub fn new(measurement: &Measurement) -> Self {
+        let signals = signals::Signals::new(measurement);
+        let widths = window::widths(&signals);
+        let prepared = prepare::Prepared::new(&signals, &widths);
+        let bench = prepared.bench();
+        let mut tried = bench.all();
+        let screening = say::screening(measurement, &signals, &widths, &bench, &tried);
+        tried.sort_by(|a, b| a.loss().total_cmp(&b.loss()));
+        Self {
+            screening,
+            prepared,
+            tried,
+        }
+    }
+
+    /// Subsets of so many effects that begin with these, the best first.
+    pub fn starts<'a>(
+        &'a self,
+        held: &'a [EffectId],
+        size: usize,
+    ) -> impl Iterator<Item = Start> + 'a {
+        let bench = self.prepared.bench();
+        let motion = bench.motion().max(f64::MIN_POSITIVE);
+        self.tried.iter().filter_map(move |tried| {
+            let ids = || tried.members.iter().map(|(c, _)| bench.choices[*c].effect.id());
+            let has_all = held.iter().all(|held| ids().any(|id| id == *held));
+            if tried.members.len() != size || !has_all {
+                return None;
+            }
+            let (body, values) = bench.start(&tried.members)?;
+            let effects = tried.members.iter().map(|(c, _)| bench.choices[*c].effect);
+            let mut own: Vec<(&'static dyn Effect, Vec<f64>)> = effects.zip(values).collect();
+            own.sort_by_key(|(e, _)| held.iter().position(|id| *id == e.id()).unwrap_or(held.len()));
+            let (effects, values) = own.into_iter().unzip();
+            Some(Start {
+                effects,
+                body,
+                values,
+                left: (tried.loss() / motion).sqrt(),
+            })
+        })
+    }
+
+    /// Values of an effect beside these, as the best subset has them.
+    pub fn values(&self, beside: &[EffectId], effect: EffectId) -> Option<Vec<f64>> {
+        let all: Vec<EffectId> = beside.iter().copied().chain([effect]).collect();
+        let start = self.starts(&all, all.len()).next()?;
+        start.values.last().cloned()
+    }
 }

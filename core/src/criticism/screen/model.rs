@@ -45,6 +45,17 @@ pub(super) struct Found {
     pub coefficients: Vec<f64>,
 }
 
+impl Found {
+    /// Values of the baseline model.
+    pub fn baseline(&self, kind: Kind) -> Vec<f64> {
+        let [inertia, damping] = self.body;
+        match kind {
+            Kind::Drive => vec![inertia, damping],
+            Kind::Process => vec![1.0 / damping, inertia / damping, self.offset / damping],
+        }
+    }
+}
+
 /// Regressors and, last, the target: the input of a drive, the rate of a process output, in which the noise is.
 pub(super) fn elements(kind: Kind, atoms: &[&Shaped]) -> Vec<Vec<usize>> {
     let mut input = vec![INPUT];

@@ -114,11 +114,7 @@ fn parameters(
     let subset = bench.subset(members);
     let all = |w: &[f64]| {
         let (found, effects) = values(bench.kind, w, &subset, bench.extent)?;
-        let [inertia, damping] = found.body;
-        let mut all = match bench.kind {
-            Kind::Drive => vec![inertia, damping],
-            Kind::Process => vec![1.0 / damping, inertia / damping, found.offset / damping],
-        };
+        let mut all = found.baseline(bench.kind);
         all.extend(effects.into_iter().flatten());
         Some(all)
     };

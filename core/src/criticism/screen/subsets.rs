@@ -191,6 +191,13 @@ impl<'a> Bench<'a> {
         found
     }
 
+    /// Values of the body and of each effect of a subset, fitted to all blocks.
+    pub fn start(&self, members: &[(usize, usize)]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let (_, w) = self.fitted(&self.all, members)?;
+        let (found, effects) = values(self.kind, &w, &self.subset(members), self.extent)?;
+        Some((found.baseline(self.kind), effects))
+    }
+
     /// Squares of the acceleration in all blocks.
     pub fn motion(&self) -> f64 {
         self.all[super::model::ACCELERATION * self.gram.size + super::model::ACCELERATION]

@@ -1,0 +1,101 @@
+//! Many models from many starting points: those that may win are found on a part of the record by successive halving
+//! (Jamieson and Talwalkar 2016).
+
+use std::collections::VecDeque;
+
+use super::task::Sketch;
+use super::tuning::{FAR, HEATS, HOPE};
+use crate::criticism::fit::{Fit, same_place};
+use crate::criticism::session::Session;
+use crate::effect::EffectId;
+
+/// Models in a race on the scout.
+#[derive(Default)]
+pub(super) struct Heat {
+    /// Each with its cost before the round.
+    waiting: VecDeque<(f64, Fit)>,
+    over: Vec<(f64, Fit)>,
+    round: usize,
+}
+
+impl Heat {
+    pub fn new(session: &Session, sketches: Vec<Sketch>) -> Self {
+        let crew = &session.data.crew;
+        let begun = crew.gather(sketches.len(), |i| sketches[i].begun(session));
+        Self {
+            waiting: begun
+                .into_iter()
+                .filter(|fit| fit.cost.is_finite())
+                .map(|fit| (fit.cost, fit))
+                .collect(),
+            over: Vec::new(),
+            round: 0,
+        }
+    }
+
+    pub fn add(&mut self, session: &Session, sketches: Vec<Sketch>) {
+        self.waiting.extend(Self::new(session, sketches).waiting);
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.waiting.is_empty() && self.over.is_empty()
+    }
+
+    /// Does some iterations; true while there are more.
+    pub fn advance(&mut self, session: &Session) -> bool {
+        let crew = &session.data.crew;
+        let width = crew.width().min(self.waiting.len());
+        let mut batch: Vec<(f64, Fit)> = self.waiting.drain(..width).collect();
+        let (iterations, _) = HEATS[self.round];
+        crew.for_each(batch.iter_mut().collect(), |(before, fit): &mut (f64, Fit)| {
+            *before = fit.cost;
+            for _ in 0..iterations {
+                fit.iterate(&session.scout, &session.scales);
+            }
+        });
+        self.over.extend(batch);
+        if self.waiting.is_empty() {
+            self.cull();
+            self.round += 1;
+            if self.round < HEATS.len() {
+                self.waiting = self.over.drain(..).collect();
+            }
+        }
+        !self.waiting.is_empty()
+    }
+
+    /// Leaves the best of each set of effects, and none that is far behind.
+    fn cull(&mut self) {
+        let (_, starts) = HEATS[self.round];
+        // What still falls fast is judged by where it may come to.
+        let hoped = |(before, fit): &(f64, Fit)| {
+            let falls = if fit.done { 0.0 } else { before - fit.cost };
+            (fit.cost - HOPE * falls).max(0.0)
+        };
+        let last = self.round + 1 == HEATS.len();
+        let key = |entry: &(f64, Fit)| if last { entry.1.cost } else { hoped(entry) };
+        self.over.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.1.cost.total_cmp(&b.1.cost)));
+        let least = self.over.iter().map(|(_, fit)| fit.cost).fold(f64::INFINITY, f64::min);
+        let mut kept: Vec<(Vec<EffectId>, Vec<f64>)> = Vec::new();
+        let far = FAR[self.round];
+        self.over.retain(|entry| {
+            let (fit, hoped) = (&entry.1, key(entry));
+            let mut ids = fit.structure.ids();
+            ids.sort_unstable();
+            let alike = || kept.iter().filter(|(k, _)| *k == ids);
+            let twin = alike().any(|(_, values)| same_place(values, &fit.values));
+            let stays = hoped <= far * least && alike().count() < starts && !twin;
+            if stays {
+                kept.push((ids, fit.values.clone()));
+            }
+            stays
+        });
+    }
+
+    /// The best so many, of those that cost no more than a limit; and none is left.
+    pub fn best(&mut self, count: usize, limit: f64) -> Vec<Sketch> {
+        let over = std::mem::take(self).over.into_iter();
+        let near = over.map(|(_, fit)| fit).filter(|fit| fit.cost <= limit).take(count);
+        near.map(Sketch::reached).collect()
+    }
+}

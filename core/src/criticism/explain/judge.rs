@@ -1,0 +1,73 @@
+//! Is one model better than another? By blocks that neither fit has seen.
+//!
+//! Two-fold blocked cross-validation: every block is judged by the fit to the other half. Two models are compared by the
+//! paired difference of the logarithm of what they leave of a block, beside its noise and what no model is right to, over the
+//! standard error of its mean (Student's t).
+
+use super::Trial;
+use super::tuning::{DISCREPANCY, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, UNCHANGED};
+
+/// How a model differs from another one.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::criticism) struct Difference {
+    /// Mean paired difference over its standard error; positive where the second is better.
+    pub t: f64,
+    /// Blocks in which they differ.
+    pub blocks: usize,
+    /// Relative fall of the error from the first to the second.
+    pub fall: f64,
+    /// The same of the half where it is less.
+    pub least_fall: f64,
+}
+
+/// The difference from one trial to another, on a record with this mean square of the motion in units of its noise.
+pub(super) fn difference(from: &Trial, to: &Trial, motion_square: f64) -> Difference {
+    let floor = 1.0 + DISCREPANCY * DISCREPANCY * motion_square;
+    let pairs = from.held.iter().zip(&to.held);
+    let changes: Vec<f64> = pairs
+        .filter(|(a, b)| (*a - *b).abs() > UNCHANGED * a.max(**b))
+        .map(|(a, b)| libm::log((a + floor) / (b + floor)))
+        .collect();
+    let count = changes.len() as f64;
+    let mean = changes.iter().sum::<f64>() / count;
+    let squares: f64 = changes.iter().map(|c| (c - mean).powi(2)).sum();
+    let t = if changes.len() < 2 {
+        0.0
+    } else {
+        mean / (squares / (count - 1.0) / count).sqrt().max(f64::MIN_POSITIVE)
+    };
+    let fall = |a: f64, b: f64| if b.is_finite() { 1.0 - b / a } else { f64::NEG_INFINITY };
+    let halves = from.halves().zip(to.halves());
+    let least = halves.map(|(a, b)| fall(a.score.error, b.score.error));
+    Difference {
+        t: if t.is_finite() { t } else { 0.0 },
+        blocks: changes.len(),
+        fall: fall(from.error(), to.error()),
+        least_fall: least.fold(f64::INFINITY, f64::min),
+    }
+}
+
+/// Student's quantile for so many degrees of freedom, from that of the normal distribution (Cornish and Fisher 1960).
+fn student(normal: f64, freedom: f64) -> f64 {
+    let (z, z3) = (normal, normal.powi(3));
+    let (z5, z7) = (normal.powi(5), normal.powi(7));
+    z + (z3 + z) / (4.0 * freedom)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * freedom.powi(2))
+        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * freedom.powi(3))
+}
+
+impl Difference {
+    fn is_certain(&self, t: f64) -> bool {
+        self.blocks > 2 && t > student(QUANTILE, self.blocks as f64 - 1.0)
+    }
+
+    /// Whether the second model is better.
+    pub fn is_better(&self) -> bool {
+        self.least_fall > GREAT_FALL || self.fall > LEAST_FALL && self.is_certain(self.t)
+    }
+
+    /// Whether neither is better.
+    pub fn is_same(&self) -> bool {
+        self.fall.abs() < SAME || (self.fall.abs() < LEAST_FALL && !self.is_certain(self.t.abs()))
+    }
+}

@@ -1,0 +1,525 @@
+//! Which effects explain a record? Exact fits of the few subsets that the screen found, judged on blocks that they did not see.
+//!
+//! Subsets are fitted by their size. A larger one is taken where it is better than the best smaller one and each of its effects
+//! is needed; then every other effect that may is tried in the place of each.
+
+mod heat;
+mod judge;
+mod task;
+mod trial;
+mod tuning;
+
+use std::collections::VecDeque;
+
+use super::screen::Screened;
+use super::select::is_noise;
+use super::session::Session;
+use crate::effect::{Dimension, Effect, EffectId};
+use heat::Heat;
+use judge::{Difference, difference};
+use task::{Sketch, Task};
+pub(super) use trial::Trial;
+use tuning::{ALIKE, FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, MOST_SWAPS, STARTS};
+
+/// What is under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Fitting the model that effects are added to.
+    Base,
+    /// Fitting subsets with so many more effects.
+    Level(usize),
+    /// The same with a hidden body.
+    Hidden(usize),
+    /// Doing without each effect of the subset that leads.
+    Check(usize),
+    /// Trying others in the place of each effect.
+    Swap,
+    /// Fitting the models on the way to the best.
+    Path,
+    /// Everything is known.
+    Done,
+}
+
+/// An effect that could stand in the place of one in the best model.
+#[derive(Clone)]
+pub(super) struct Rival {
+    /// Place of the one that it replaces among the effects of the best model.
+    pub place: usize,
+    pub effect: &'static dyn Effect,
+    pub trial: usize,
+}
+
+/// Whether an effect brings a second body, whose motion is not measured.
+fn is_hidden_body(effect: &dyn Effect) -> bool {
+    let mut parameters = effect.parameters().iter();
+    parameters.any(|p| p.dimension == Dimension::Inertia)
+}
+
+/// Whether the values of two effects mean the same.
+fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
+    let dimensions = |e: &dyn Effect| e.parameters().iter().map(|p| p.dimension).collect::<Vec<_>>();
+    dimensions(a) == dimensions(b)
+}
+
+/// A search that goes on piece by piece.
+pub(super) struct Explain {
+    held: Vec<&'static dyn Effect>,
+    pub trials: Vec<Trial>,
+    tasks: VecDeque<Task>,
+    /// Models in a race on the scout.
+    heat: Heat,
+    /// Trials of which it is known what each effect adds; and what each effect that the screen does not tell.
+    extended: [Vec<usize>; 2],
+    /// Cost on the scout up to which they are fitted.
+    limit: f64,
+    stage: Stage,
+    /// Of the subset of each number of added effects that leads.
+    leads: Vec<usize>,
+    /// Leads of the present size that were looked at.
+    looked_at: Vec<usize>,
+    pub best: usize,
+    misses: usize,
+    pub rivals: Vec<Rival>,
+    swaps: usize,
+    done: usize,
+}
+
+impl Explain {
+    /// Explains what a model with these effects leaves.
+    pub fn new(held: Vec<&'static dyn Effect>) -> Self {
+        let tasks = VecDeque::from([Task::Base(held.clone())]);
+        Self {
+            held,
+            trials: Vec::new(),
+            tasks,
+            heat: Heat::default(),
+            extended: [Vec::new(), Vec::new()],
+            limit: f64::INFINITY,
+            stage: Stage::Base,
+            leads: Vec::new(),
+            looked_at: Vec::new(),
+            best: 0,
+            misses: 0,
+            rivals: Vec::new(),
+            swaps: 0,
+            done: 0,
+        }
+    }
+
+    /// Does some work; true while there is more.
+    pub fn advance(&mut self, session: &mut Session, screened: &Screened) -> bool {
+        if self.stage == Stage::Done {
+            return false;
+        }
+        let crew = session.data.crew.clone();
+        if !self.heat.is_empty() {
+            if !self.heat.advance(session) {
+                let best = self.heat.best(FITTED, self.limit);
+                self.tasks.extend(best.into_iter().map(Task::Fit));
+            }
+        } else {
+            let width = crew.width().min(self.tasks.len());
+            let batch: Vec<Task> = self.tasks.drain(..width).collect();
+            let (own, trials) = (&*session, &self.trials);
+            let found = crew.gather(batch.len(), |i| batch[i].run(own, screened, trials));
+            self.trials.extend(found.into_iter().flatten());
+        }
+        self.done += 1;
+        while self.tasks.is_empty() && self.heat.is_empty() && self.stage != Stage::Done {
+            self.go_on(session, screened);
+        }
+        self.stage != Stage::Done
+    }
+
+    /// Has a trial raced with each effect that can be added: of those that the screen tells with its values, of others with
+    /// those that they find in what the trial leaves.
+    fn extend(&mut self, session: &Session, screened: &Screened, from: usize, seen: bool) {
+        let extended = &mut self.extended[usize::from(!seen)];
+        if extended.contains(&from) {
+            return;
+        }
+        extended.push(from);
+        let fit = &self.trials[from].scored.fit;
+        let ids = self.trials[from].ids();
+        let mut sketches = Vec::new();
+        for effect in session.library().filter(|e| self.is_open(from, *e)) {
+            let hidden = is_hidden_body(effect);
+            if seen {
+                let beside = screened.values(&ids, effect.id());
+                let alone = screened.values(&[], effect.id());
+                let own: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
+                if own.is_empty() && !hidden {
+                    sketches.extend(Sketch::sought(session, fit, effect));
+                }
+                sketches.extend(own.iter().map(|own| Sketch::with(fit, effect, own)));
+            } else if hidden {
+                sketches.extend(Sketch::sought(session, fit, effect));
+            }
+        }
+        self.take(session, sketches);
+    }
+
+    /// Has these scanned.
+    fn take(&mut self, session: &Session, sketches: impl IntoIterator<Item = Sketch>) {
+        let all = sketches.into_iter().flat_map(|sketch| sketch.variants(session));
+        self.heat.add(session, all.collect());
+    }
+
+    /// Share of what is to be done, roughly, and what is under way.
+    pub fn progress(&self) -> (f64, String) {
+        let text = match self.stage {
+            Stage::Base => "Fitting the model".to_owned(),
+            Stage::Level(_) | Stage::Hidden(_) => self.tasks.front().map_or_else(String::new, Task::text),
+            Stage::Check(_) => "Checking that every effect is needed".to_owned(),
+            Stage::Swap => "Checking what else could explain it".to_owned(),
+            Stage::Path | Stage::Done => "Done".to_owned(),
+        };
+        let done = self.done as f64;
+        (done / (done + 8.0), text)
+    }
+
+    /// Number of effects that a trial has more than the model.
+    fn size(&self, trial: usize) -> usize {
+        self.trials[trial].effects().len().saturating_sub(self.held.len())
+    }
+
+    fn go_on(&mut self, session: &mut Session, screened: &Screened) {
+        match self.stage {
+            Stage::Base => {
+                if self.trials.is_empty() {
+                    self.stage = Stage::Done;
+                    return;
+                }
+                self.best = 0;
+                session.baseline.get_or_insert_with(|| self.trials[0].scored.score.clone());
+                self.open_level(session, screened, 1);
+            }
+            Stage::Level(size) => self.open_hidden(session, screened, size),
+            Stage::Hidden(size) => self.judge_level(session, screened, size),
+            Stage::Check(size) => self.judge_check(session, screened, size),
+            Stage::Swap => self.judge_swaps(session, screened),
+            Stage::Path => self.stage = Stage::Done,
+            Stage::Done => {}
+        }
+    }
+
+    fn is_noise(&self, session: &Session, trial: usize) -> bool {
+        let trial = &self.trials[trial];
+        let small = session.small_share(&trial.scored.fit);
+        trial.halves().all(|scored| is_noise(&scored.score, session.first(scored), small))
+    }
+
+    /// Tasks of subsets with so many more effects.
+    fn open_level(&mut self, session: &mut Session, screened: &Screened, size: usize) {
+        self.stage = Stage::Level(size);
+        self.looked_at.clear();
+        let enough = size > 1 && session.data.tried_enough();
+        if size > MOST_SIZE || enough || self.is_noise(session, self.best) {
+            self.open_swaps(session, screened);
+            return;
+        }
+        let from = self.leads.last().copied().unwrap_or(0);
+        session.look_where_left(&self.trials[from].scored.fit);
+        self.limit = f64::INFINITY;
+        let held = self.held_ids();
+        let starts = screened.starts(&held, held.len() + size);
+        let sketches = starts.filter_map(|start| Sketch::of(session, &start));
+        let sketches: Vec<Sketch> = sketches.take(STARTS).collect();
+        self.take(session, sketches);
+        self.extend(session, screened, from, true);
+    }
+
+    /// Tasks of subsets with a hidden body, where those without leave more than noise.
+    fn open_hidden(&mut self, session: &mut Session, screened: &Screened, size: usize) {
+        self.stage = Stage::Hidden(size);
+        if self.trials.iter().enumerate().any(|(k, _)| self.size(k) == size && self.is_noise(session, k)) {
+            return;
+        }
+        let from = self.leads.last().copied().unwrap_or(0);
+        self.extend(session, screened, from, false);
+        if size != 2 {
+            return;
+        }
+        let held = self.held_ids();
+        for effect in session.library().filter(|e| is_hidden_body(*e)) {
+            let alone = [held.as_slice(), &[effect.id()]].concat();
+            if let Some(alone) = self.of(&alone).filter(|alone| *alone != from) {
+                self.extend(session, screened, alone, true);
+            }
+        }
+    }
+
+    /// Whether an effect can be added to a trial.
+    fn is_open(&self, trial: usize, effect: &dyn Effect) -> bool {
+        let effects = self.trials[trial].effects();
+        effects.iter().all(|own| own.id() != effect.id() && !own.has_part(effect.id()) && !effect.has_part(own.id()))
+    }
+
+    fn judge_level(&mut self, session: &mut Session, screened: &Screened, size: usize) {
+        let of_size = |t: &usize| self.size(*t) == size && self.holds(*t);
+        let of_size: Vec<usize> = (0..self.trials.len()).filter(of_size).collect();
+        if self.looked_at.is_empty() {
+            self.leads.extend(self.lead(session, &of_size));
+        }
+        // A smaller one may have come up as a part of one that was looked at.
+        let open = |t: &usize| self.size(*t) <= size && !self.looked_at.contains(t) && self.holds(*t);
+        let better = |t: &usize| self.difference(session, self.best, *t).is_better();
+        let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
+        let lead = self.lead(session, &better).filter(|_| self.looked_at.len() < MOST_LEADS);
+        let Some(lead) = lead else {
+            self.misses += usize::from(self.size(self.best) < size);
+            self.next_level(session, screened, size);
+            return;
+        };
+        self.looked_at.push(lead);
+        self.stage = Stage::Check(size);
+        // A smaller model may not have found the valley in which this one is.
+        for place in self.held.len()..self.trials[lead].effects().len() {
+            if size > 1 || self.without(lead, place).is_none() {
+                self.tasks.push_back(Task::Without { from: lead, place });
+            }
+        }
+    }
+
+    fn judge_check(&mut self, session: &mut Session, screened: &Screened, size: usize) {
+        let lead = self.looked_at.last().copied();
+        if let Some(lead) = lead.filter(|lead| self.is_needed(session, *lead)) {
+            self.best = lead;
+            self.misses = 0;
+        }
+        self.judge_level(session, screened, size);
+    }
+
+    fn holds(&self, trial: usize) -> bool {
+        self.held.iter().all(|e| self.trials[trial].has(e.id()))
+    }
+
+    fn next_level(&mut self, session: &mut Session, screened: &Screened, size: usize) {
+        if self.misses > MOST_MISSES {
+            self.open_swaps(session, screened);
+        } else {
+            self.open_level(session, screened, size + 1);
+        }
+    }
+
+    fn values(&self, trial: usize) -> usize {
+        self.trials[trial].scored.fit.values.len()
+    }
+
+    /// Whether a model has fewer values than another, or as many and a part in the place of the whole.
+    fn is_simpler(&self, a: usize, b: usize) -> bool {
+        let (own, other) = (self.trials[a].effects(), self.trials[b].effects());
+        let part = || other.iter().any(|whole| own.iter().any(|e| whole.has_part(e.id())));
+        let (own, other) = (self.values(a), self.values(b));
+        own < other || own == other && part()
+    }
+
+    /// The one that leaves least; of those that are the same, the one with fewest values.
+    fn lead(&self, session: &Session, trials: &[usize]) -> Option<usize> {
+        let error = |t: &usize| self.trials[*t].error();
+        let least = trials.iter().copied().min_by(|a, b| error(a).total_cmp(&error(b)))?;
+        trials
+            .iter()
+            .copied()
+            .filter(|t| self.is_simpler(*t, least) && self.difference(session, least, *t).is_same())
+            .min_by(|a, b| self.values(*a).cmp(&self.values(*b)).then(error(a).total_cmp(&error(b))))
+            .or(Some(least))
+    }
+
+    /// The trial with the effects of this one but that at a place.
+    fn without(&self, trial: usize, place: usize) -> Option<usize> {
+        let mut ids = self.trials[trial].ids();
+        ids.remove(place);
+        let same = |t: &Trial| t.effects().len() == ids.len() && ids.iter().all(|id| t.has(*id));
+        let found = (0..self.trials.len()).filter(|t| same(&self.trials[*t]));
+        found.min_by(|a, b| self.trials[*a].error().total_cmp(&self.trials[*b].error()))
+    }
+
+    fn difference(&self, session: &Session, from: usize, to: usize) -> Difference {
+        difference(&self.trials[from], &self.trials[to], session.motion_square)
+    }
+
+    /// Whether each of the added effects explains more than it leaves, or is needed for what is left to be noise.
+    fn is_needed(&self, session: &Session, trial: usize) -> bool {
+        (self.held.len()..self.trials[trial].effects().len()).all(|place| self.needs(session, trial, place))
+    }
+
+    pub fn needs(&self, session: &Session, trial: usize, place: usize) -> bool {
+        let Some(without) = self.without(trial, place) else {
+            return true;
+        };
+        let noise = self.is_noise(session, trial);
+        let (before, after) = (self.trials[without].error(), self.trials[trial].error());
+        let outweighs = super::select::outweighs(before, after);
+        // Below that an effect only mends what a clock, a rig or an equation is off by.
+        let first = session.baseline.as_ref().map_or(0.0, |first| first.error);
+        let matters = (before.powi(2) - after.powi(2)).max(0.0).sqrt() > super::select::SMALL_SHARE * first;
+        let better = self.difference(session, without, trial).is_better();
+        let of_record = session.tells_of_record(&self.trials[trial].scored.fit, place);
+        let explains = noise && outweighs && !self.is_noise(session, without);
+        session.is_sizeable_at(&self.trials[trial].scored.fit, place)
+            && (of_record || matters)
+            && (better && (noise || outweighs || of_record) || explains)
+    }
+
+    fn open_swaps(&mut self, session: &mut Session, screened: &Screened) {
+        self.stage = Stage::Swap;
+        let best = &self.trials[self.best];
+        session.look_where_left(&best.scored.fit);
+        let fit = best.scored.fit.clone();
+        self.limit = ALIKE * session.scouted(&fit);
+        for place in self.held.len()..fit.structure.effects.len() {
+            let Some(without) = self.without(self.best, place) else {
+                self.tasks.push_back(Task::Without { from: self.best, place });
+                continue;
+            };
+            self.replace(session, screened, place, without);
+        }
+    }
+
+    /// Has other effects raced in the place of one of the best model: what can stand there speaks of the same body.
+    fn replace(&mut self, session: &Session, screened: &Screened, place: usize, without: usize) {
+        let fit = &self.trials[self.best].scored.fit;
+        let rest = &self.trials[without];
+        let (ids, own) = (rest.ids(), fit.structure.effects[place]);
+        let own_values = &fit.values[fit.structure.range(place)];
+        let mut sketches = Vec::new();
+        for effect in session.library().filter(|e| self.is_open(without, *e) && e.id() != own.id()) {
+            if effect.has_part(own.id()) || is_hidden_body(effect) && !is_hidden_body(own) {
+                continue;
+            }
+            let told = screened.values(&ids, effect.id()).or_else(|| screened.values(&[], effect.id()));
+            let mut starts: Vec<Vec<f64>> = told.into_iter().collect();
+            if same_dimensions(own, effect) {
+                starts.push(own_values.to_vec());
+            }
+            if starts.is_empty() {
+                let probed = session.probed(&rest.scored.fit);
+                starts = probed.starts(effect, 1.0);
+                starts.extend(probed.starts_with_body(effect, 1.0).into_iter().map(|(_, own)| own));
+            }
+            sketches.extend(starts.iter().map(|start| Sketch::replacing(fit, place, effect, start)));
+        }
+        self.take(session, sketches);
+    }
+
+    /// Trials that differ from the best in one effect that was added, with the place of that; no richer ones.
+    fn swapped(&self) -> Vec<Rival> {
+        let best = &self.trials[self.best];
+        let (own, held) = (best.ids(), self.held.len());
+        let values = best.scored.fit.values.len();
+        let mut found: Vec<Rival> = Vec::new();
+        for (index, trial) in self.trials.iter().enumerate() {
+            let ids = trial.ids();
+            let gone: Vec<usize> = (held..own.len()).filter(|k| !ids.contains(&own[*k])).collect();
+            let new: Vec<&'static dyn Effect> =
+                trial.effects().iter().copied().filter(|e| !own.contains(&e.id())).collect();
+            let ([place], [effect]) = (gone.as_slice(), new.as_slice()) else { continue };
+            let replaced = best.effects()[*place];
+            let fair = !effect.has_part(replaced.id()) && !effect.limits().contains(&replaced.id());
+            if ids.len() == own.len() && fair && trial.scored.fit.values.len() <= values {
+                let rival = Rival { place: *place, effect: *effect, trial: index };
+                match found.iter_mut().find(|r| r.place == *place && r.effect.id() == effect.id()) {
+                    Some(known) if self.trials[known.trial].error() > trial.error() => *known = rival,
+                    Some(_) => {}
+                    None => found.push(rival),
+                }
+            }
+        }
+        found
+    }
+
+    fn judge_swaps(&mut self, session: &mut Session, screened: &Screened) {
+        let rivals = self.swapped();
+        let is_simpler = |r: &Rival| {
+            self.is_simpler(r.trial, self.best) && self.difference(session, r.trial, self.best).is_same()
+        };
+        let better: Vec<usize> = rivals
+            .iter()
+            .filter(|r| self.difference(session, self.best, r.trial).is_better())
+            .map(|r| r.trial)
+            .collect();
+        let simpler: Vec<usize> = rivals.iter().filter(|r| is_simpler(r)).map(|r| r.trial).collect();
+        let other = self.lead(session, &better).or_else(|| self.lead(session, &simpler));
+        if let Some(other) = other.filter(|_| self.swaps < MOST_SWAPS) {
+            self.swaps += 1;
+            self.best = other;
+            self.open_swaps(session, screened);
+            return;
+        }
+        let same = |r: &Rival| {
+            let own = &self.trials[self.best];
+            self.difference(session, self.best, r.trial).is_same() && own.same_body(&self.trials[r.trial])
+        };
+        self.rivals = rivals.into_iter().filter(same).collect();
+        self.open_path(session);
+    }
+
+    /// Effects of the best model in the order in which they are added: each leaves least beside those before.
+    pub fn order(&self) -> Vec<EffectId> {
+        let mut order: Vec<EffectId> = self.held.iter().map(|e| e.id()).collect();
+        let mut rest: Vec<EffectId> = self.trials[self.best].ids().into_iter().filter(|id| !order.contains(id)).collect();
+        while !rest.is_empty() {
+            let error = |id: &EffectId| {
+                let with: Vec<EffectId> = order.iter().copied().chain([*id]).collect();
+                self.of(&with).map_or(f64::INFINITY, |t| self.trials[t].error())
+            };
+            let next = (0..rest.len()).min_by(|a, b| error(&rest[*a]).total_cmp(&error(&rest[*b]))).unwrap_or(0);
+            order.push(rest.remove(next));
+        }
+        order
+    }
+
+    /// The trial of these effects.
+    pub fn of(&self, ids: &[EffectId]) -> Option<usize> {
+        let same = |t: &Trial| t.effects().len() == ids.len() && ids.iter().all(|id| t.has(*id));
+        let found = (0..self.trials.len()).filter(|t| same(&self.trials[*t]));
+        found.min_by(|a, b| self.trials[*a].error().total_cmp(&self.trials[*b].error()))
+    }
+
+    fn open_path(&mut self, session: &Session) {
+        self.stage = Stage::Path;
+        let order = self.order();
+        for count in self.held.len()..order.len() {
+            if self.of(&order[..count]).is_none() {
+                let sketch = Sketch::part(session, &self.trials[self.best].scored.fit, &order[..count]);
+                self.tasks.extend(sketch.map(Task::Fit));
+            }
+        }
+        // Of the model as it was given it is asked as well which of its effects are needed.
+        for place in 0..self.held.len() {
+            if self.size(self.best) == 0 && self.without(self.best, place).is_none() {
+                self.tasks.push_back(Task::Without { from: self.best, place });
+            }
+        }
+    }
+
+    /// Trials with one effect more than these.
+    pub fn with_one_more(&self, ids: &[EffectId]) -> Vec<(EffectId, &Trial)> {
+        let mut found: Vec<(EffectId, &Trial)> = Vec::new();
+        for trial in &self.trials {
+            let own = trial.ids();
+            if own.len() != ids.len() + 1 || !ids.iter().all(|id| own.contains(id)) {
+                continue;
+            }
+            let Some(more) = own.iter().find(|id| !ids.contains(id)) else { continue };
+            match found.iter_mut().find(|(id, _)| id == more) {
+                Some(known) if known.1.error() > trial.error() => known.1 = trial,
+                Some(_) => {}
+                None => found.push((*more, trial)),
+            }
+        }
+        found.sort_by(|a, b| a.1.error().total_cmp(&b.1.error()));
+        found
+    }
+
+    /// Effects of the model that others are added to.
+    pub fn held_ids(&self) -> Vec<EffectId> {
+        self.held.iter().map(|e| e.id()).collect()
+    }
+
+    /// How two trials differ.
+    pub fn compared(&self, session: &Session, from: &Trial, to: &Trial) -> Difference {
+        difference(from, to, session.motion_square)
+    }
+}

@@ -1,0 +1,214 @@
+//! One model to be fitted.
+
+use super::Trial;
+use super::heat::Heat;
+use super::tuning::{CROSSINGS, SETTLED, SETTLING};
+use crate::criticism::fit::Fit;
+use crate::criticism::screen::{Screened, Start};
+use crate::criticism::search::Search;
+use crate::criticism::session::Session;
+use crate::criticism::structure::Structure;
+use crate::effect::baseline::Baseline;
+use crate::effect::{Effect, EffectId, Range};
+
+/// A model with values from which it may be fitted.
+#[derive(Clone)]
+pub(super) struct Sketch {
+    structure: Structure,
+    values: Vec<f64>,
+}
+
+impl Sketch {
+    /// The baseline with these effects, and values of both in order.
+    fn new(session: &Session, effects: &[&'static dyn Effect], mut values: Vec<f64>) -> Self {
+        let structure = session.structure(effects);
+        structure.begin(&mut values, 0);
+        Self { structure, values }
+    }
+
+    /// A subset with the values that the screen told; none where an effect is not in the library.
+    pub fn of(session: &Session, start: &Start) -> Option<Self> {
+        let effects: Option<Vec<_>> = start.effects.iter().map(|e| session.find(e.id())).collect();
+        let mut values = match session.data.baseline {
+            Baseline::Integrator => vec![start.body.first()? / start.body.get(1)?],
+            Baseline::Drive | Baseline::Lag { .. } => start.body.clone(),
+        };
+        values.extend(start.values.iter().flatten());
+        Some(Self::new(session, &effects?, values))
+    }
+
+    /// A fit with one more effect that has these values.
+    pub fn with(fit: &Fit, effect: &'static dyn Effect, own: &[f64]) -> Self {
+        let structure = fit.structure.with(effect);
+        let mut values = fit.values.clone();
+        values.extend(own);
+        structure.begin(&mut values, fit.values.len());
+        Self { structure, values }
+    }
+
+    /// A fit with another effect, which has these values, at a place.
+    pub fn replacing(fit: &Fit, place: usize, effect: &'static dyn Effect, own: &[f64]) -> Self {
+        let mut structure = fit.structure.clone();
+        let mut values = fit.values.clone();
+        values.splice(structure.range(place), own.iter().copied());
+        structure.effects[place] = effect;
+        structure.load_begin = crate::model::LoadBegin::Followed;
+        structure.begin(&mut values, structure.range(place).start);
+        Self { structure, values }
+    }
+
+    /// The same with a body of its own.
+    pub fn with_body(fit: &Fit, effect: &'static dyn Effect, body: [f64; 2], own: &[f64]) -> Self {
+        let mut sketch = Self::with(fit, effect, own);
+        sketch.values[..2].copy_from_slice(&body);
+        sketch.structure.begin(&mut sketch.values, 0);
+        sketch
+    }
+
+    /// A fit with one more effect, from where that finds itself in what the fit leaves.
+    pub fn sought(session: &Session, fit: &Fit, effect: &'static dyn Effect) -> Vec<Self> {
+        let probed = session.probed(fit);
+        let own = probed.starts(effect, 1.0).into_iter();
+        let own = own.map(|own| Self::with(fit, effect, &own));
+        let with_body = probed.starts_with_body(effect, 1.0).into_iter();
+        own.chain(with_body.map(|(body, own)| Self::with_body(fit, effect, body, &own)))
+            .collect()
+    }
+
+    /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way.
+    pub fn variants(self, session: &Session) -> Vec<Self> {
+        let open: Vec<usize> = (0..self.structure.effects.len())
+            .flat_map(|k| {
+                let effect = self.structure.effects[k];
+                self.structure.range(k).zip(effect.parameters())
+            })
+            .filter(|(j, spec)| spec.range == Range::Short && self.values[*j] == 0.0)
+            .map(|(j, _)| j)
+            .collect();
+        if open.is_empty() {
+            return vec![self];
+        }
+        let crossed = session.scales.crossed();
+        let with = |samples: f64| {
+            let mut sketch = self.clone();
+            for j in &open {
+                sketch.values[*j] = samples * crossed;
+            }
+            sketch
+        };
+        CROSSINGS.map(with).to_vec()
+    }
+
+    /// A fit with these of its effects alone.
+    pub fn part(session: &Session, fit: &Fit, ids: &[EffectId]) -> Option<Self> {
+        let mut values = fit.values[..fit.structure.baseline_len()].to_vec();
+        let mut effects = Vec::new();
+        for id in ids {
+            let place = fit.structure.effects.iter().position(|e| e.id() == *id)?;
+            effects.push(fit.structure.effects[place]);
+            values.extend_from_slice(&fit.values[fit.structure.range(place)]);
+        }
+        Some(Self::new(session, &effects, values))
+    }
+
+    pub fn effects(&self) -> &[&'static dyn Effect] {
+        &self.structure.effects
+    }
+
+    /// Its fit on the scout, not begun.
+    pub fn begun(&self, session: &Session) -> Fit {
+        let (scout, scales) = (&session.scout, &session.scales);
+        let starts = scout.guessed_starts();
+        Fit::new(scout, self.structure.clone(), self.values.clone(), starts, scales)
+    }
+
+    /// The model that a fit on the scout came to.
+    pub fn reached(fit: Fit) -> Self {
+        Self {
+            structure: fit.structure,
+            values: fit.values,
+        }
+    }
+
+    /// Fitted to the whole record.
+    pub fn fitted(&self, session: &Session) -> Fit {
+        let (data, scales) = (&session.data, &session.scales);
+        let starts = data.guessed_starts();
+        let mut fit = Fit::new(data, self.structure.clone(), self.values.clone(), starts, scales);
+        for _ in 0..SETTLING {
+            let before = fit.cost;
+            while !fit.done {
+                fit.iterate(data, scales);
+            }
+            fit.polish_starts(data, scales);
+            let ordered = fit.put_in_order(data, scales);
+            if !ordered && fit.cost > SETTLED * before {
+                break;
+            }
+            let Fit { structure, values, starts, .. } = fit;
+            fit = Fit::new(data, structure, values, starts, scales);
+        }
+        fit.mend_odd_windows(data, scales);
+        fit
+    }
+}
+
+/// A model to be fitted.
+#[derive(Clone)]
+pub(super) enum Task {
+    /// The baseline with these effects.
+    Base(Vec<&'static dyn Effect>),
+    /// A model from values that are known.
+    Fit(Sketch),
+    /// A trial without the effect at a place.
+    Without { from: usize, place: usize },
+}
+
+impl Task {
+    pub fn text(&self) -> String {
+        let names = |effects: &[&'static dyn Effect]| {
+            let names: Vec<&str> = effects.iter().map(|e| e.name()).collect();
+            format!("Trying: {}", names.join(", "))
+        };
+        match self {
+            Self::Base(_) | Self::Without { .. } => "Fitting the model".to_owned(),
+            Self::Fit(sketch) => names(sketch.effects()),
+        }
+    }
+
+    pub fn run(&self, session: &Session, screened: &Screened, trials: &[Trial]) -> Option<Trial> {
+        let fit = match self {
+            Self::Base(held) => base(session, screened, held)?,
+            Self::Fit(sketch) => sketch.fitted(session),
+            Self::Without { from, place } => {
+                let fit = &trials[*from].scored.fit;
+                let mut ids = fit.structure.ids();
+                ids.remove(*place);
+                Sketch::part(session, fit, &ids)?.fitted(session)
+            }
+        };
+        fit.cost.is_finite().then(|| Trial::new(session, fit))
+    }
+}
+
+/// The model that effects are added to: from what the screen told, and one effect after the other.
+fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) -> Option<Fit> {
+    let ids: Vec<EffectId> = held.iter().map(|e| e.id()).collect();
+    let told = screened.starts(&ids, ids.len()).next();
+    let told = told.and_then(|start| Sketch::of(session, &start));
+    let told = told.map(|sketch| sketch.fitted(session));
+    let mut fit = session.found(Search::baseline(&session.data, &session.knowledge))?;
+    for effect in held {
+        let beside = screened.values(&fit.structure.ids(), effect.id());
+        let told = beside.or_else(|| screened.values(&[], effect.id()));
+        let told = told.into_iter().map(|own| Sketch::with(&fit, *effect, &own));
+        let sought = Sketch::sought(session, &fit, *effect);
+        let all = told.chain(sought).flat_map(|sketch| sketch.variants(session));
+        let mut heat = Heat::new(session, all.collect());
+        while heat.advance(session) {}
+        fit = heat.best(1, f64::INFINITY).pop()?.fitted(session);
+    }
+    let complete = |fit: &Fit| fit.structure.effects.len() == held.len();
+    let all = told.into_iter().chain([fit]).filter(complete);
+    all.min_by(|a, b| a.cost.total_cmp(&b.cost))
+}

@@ -1,0 +1,86 @@
+//! A model fitted to either half of the blocks of a record.
+
+use super::tuning::{OTHER_HALF, SAME_BODY};
+use crate::criticism::fit::Fit;
+use crate::criticism::score::score;
+use crate::criticism::search::Search;
+use crate::criticism::session::{Scored, Session};
+use crate::criticism::structure::Structure;
+use crate::effect::{Effect, EffectId};
+
+/// A model fitted to either half of the blocks.
+#[derive(Clone)]
+pub(in crate::criticism) struct Trial {
+    /// Fitted to the half that the record gives to the fit.
+    pub scored: Scored,
+    /// Fitted to the other half.
+    other: Scored,
+    /// Mean squared residual of every block by the fit that did not see it, in units of the noise.
+    pub held: Vec<f64>,
+}
+
+impl Trial {
+    pub fn new(session: &Session, fit: Fit) -> Self {
+        let scored = session.scored(fit);
+        let turned = session.data.turned();
+        let Fit { structure, values, starts, .. } = scored.fit.clone();
+        let mut fit = Fit::new(&turned, structure, values, starts, &session.scales);
+        for _ in 0..OTHER_HALF {
+            fit.iterate(&turned, &session.scales);
+        }
+        fit.polish_starts(&turned, &session.scales);
+        let other = Scored { score: score(&turned, &fit), fit };
+        let mut halves = [scored.score.held_blocks.iter(), other.score.held_blocks.iter()];
+        let blocks = session.data.blocks.iter();
+        let held = blocks.map(|block| halves[usize::from(!block.held_back)].next().copied().unwrap_or(f64::INFINITY));
+        let held = held.map(|m| if m.is_finite() { m } else { f64::MAX.sqrt() }).collect();
+        Self { scored, other, held }
+    }
+
+    /// The fits to either half.
+    pub fn halves(&self) -> impl Iterator<Item = &Scored> {
+        [&self.scored, &self.other].into_iter()
+    }
+
+    /// Root mean square of what is left of all blocks, in units of the noise.
+    pub fn error(&self) -> f64 {
+        let squares: f64 = self.halves().map(|s| s.score.error.powi(2) * s.score.held_count).sum();
+        let count: f64 = self.halves().map(|s| s.score.held_count).sum();
+        let error = (squares / count).sqrt();
+        if error.is_finite() { error } else { f64::INFINITY }
+    }
+
+    pub fn effects(&self) -> &[&'static dyn Effect] {
+        &self.scored.fit.structure.effects
+    }
+
+    pub fn ids(&self) -> Vec<EffectId> {
+        self.scored.fit.structure.ids()
+    }
+
+    pub fn has(&self, id: EffectId) -> bool {
+        self.effects().iter().any(|e| e.id() == id)
+    }
+
+    /// Whether two models agree on the body, which the user knows roughly.
+    pub fn same_body(&self, other: &Self) -> bool {
+        let essential = self.scored.fit.structure.baseline.essential();
+        let pairs = self.scored.fit.values.iter().zip(&other.scored.fit.values);
+        pairs.take(essential).all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
+    }
+}
+
+impl Session {
+    /// A search run to its end.
+    pub(super) fn found(&self, mut search: Search) -> Option<Fit> {
+        while search.scan(&self.data, &self.scout, &self.scales) {}
+        while search.iterate(&self.data, &self.scales) {}
+        search.finish(&self.data, &self.scales)
+    }
+
+    /// The baseline with these effects.
+    pub(super) fn structure(&self, effects: &[&'static dyn Effect]) -> Structure {
+        let empty = Structure::new(self.data.baseline, Vec::new(), self.knowledge.clone());
+        effects.iter().fold(empty, |with, effect| with.with(*effect))
+    }
+}

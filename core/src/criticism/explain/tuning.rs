@@ -1,0 +1,63 @@
+//! Every constant of fit and judge: what it is, its unit, and why it has that value.
+
+/// Subsets of the screen of one size that are scanned.
+pub(super) const STARTS: usize = 8;
+
+/// Rounds on the scout: iterations, and starting points of a set of effects that go on to the next.
+pub(super) const HEATS: [(usize, usize); 4] = [(1, 4), (2, 3), (4, 2), (8, 2)];
+
+/// Times the least cost beyond which a model does not go on, after each round.
+pub(super) const FAR: [f64; 4] = [100.0, 20.0, 5.0, 3.0];
+
+/// Times its last fall by which the cost of a model may fall yet.
+pub(super) const HOPE: f64 = 3.0;
+
+/// Models that are fitted to the whole record after that.
+pub(super) const FITTED: usize = 6;
+
+/// Samples of the usual motion over which a dry contact builds up its force: hard, and seen.
+pub(super) const CROSSINGS: [f64; 3] = [0.003, 0.35, 0.8];
+
+/// Times the cost on the scout, with an effect, up to which what may stand in its place is fitted.
+pub(super) const ALIKE: f64 = 1.1;
+
+/// Times that a fit begins anew with the states of its windows improved, and the share of its cost above which it has settled.
+pub(super) const SETTLING: usize = 3;
+pub(super) const SETTLED: f64 = 0.98;
+
+/// Most effects that are added.
+pub(super) const MOST_SIZE: usize = 4;
+
+/// Sizes in a row that may bring nothing: two effects may show only together.
+pub(super) const MOST_MISSES: usize = 1;
+
+/// Subsets of one size that are looked at, the best first.
+pub(super) const MOST_LEADS: usize = 5;
+
+/// Iterations of the fit to the other half of the blocks, from the values of the first.
+pub(super) const OTHER_HALF: usize = 8;
+
+/// Share of the motion, root mean square, that no equation, clock or rig is right to: a block that is left with less says no
+/// more than by how much.
+pub(super) const DISCREPANCY: f64 = 0.01;
+
+/// Relative change of a block below which a step has changed nothing there.
+pub(super) const UNCHANGED: f64 = 0.02;
+
+/// Normal quantile of one comparison: 1 in 2000, so that some twenty comparisons are right in 99 of 100 records (Bonferroni).
+pub(super) const QUANTILE: f64 = 3.29;
+
+/// Relative fall of the error below which a difference is none, whatever its sign is known to be.
+pub(super) const LEAST_FALL: f64 = 0.03;
+
+/// Relative difference of the error up to which two models are the same.
+pub(super) const SAME: f64 = 0.01;
+
+/// Fall of the error of both halves that needs no count of blocks.
+pub(super) const GREAT_FALL: f64 = 0.7;
+
+/// Relative difference of inertia (of a process: gain and time constant) up to which two models speak of the same body.
+pub(super) const SAME_BODY: f64 = 0.2;
+
+/// Times that another effect takes the place of one in the best model.
+pub(super) const MOST_SWAPS: usize = 3;

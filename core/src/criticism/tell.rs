@@ -1,0 +1,252 @@
+//! What is told of a model: where it fails, what could be added, and the verdict where nothing should be.
+
+use super::explain::{Explain, Trial};
+use super::fingerprint::fingerprints;
+use super::missing::missing_parts;
+use super::next_experiment::{Design, Rival, designs};
+use super::one_way::OneWay;
+use super::residual_test::residual_tests;
+use super::score::{Score, share_left};
+use super::select::{delta_bic, outweighs};
+use super::session::{Rest, Scored, Session};
+use super::verdict::{
+    Class, add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle, add_imitations,
+    add_input_check, add_integrating, add_limited, add_pauses, add_rest, verdict,
+};
+use crate::diagnosis::{Candidate, Contradiction, Limits, NextExperiment, Step, StepReport, Verdict};
+use crate::effect::{Effect, EffectId};
+
+/// Error of a perfect model in noise units.
+pub(super) const NOISE_FLOOR: f64 = 1.0;
+
+/// Fall of the error of either half from which an effect is mentioned though chance is not ruled out.
+const PROMISING: f64 = 0.3;
+
+/// What is known beside the fits.
+pub(super) struct Tell {
+    limits: Limits,
+    pub experiments: Vec<NextExperiment>,
+    pub contradicted: Vec<Contradiction>,
+}
+
+impl Tell {
+    pub fn within(limits: Limits) -> Self {
+        Self {
+            limits,
+            experiments: Vec::new(),
+            contradicted: Vec::new(),
+        }
+    }
+
+    /// Searches for the experiments that tell apart what this one cannot: none where the model does not explain the record.
+    pub fn designs(&self, session: &Session, explain: &Explain) -> Vec<Design> {
+        let Some(best) = explain.trials.get(explain.best) else {
+            return Vec::new();
+        };
+        if explain.rivals.is_empty() || session.rest(&session.completed(&best.scored)) == Rest::More {
+            return Vec::new();
+        }
+        let rivals: Vec<Rival> = explain
+            .rivals
+            .iter()
+            .map(|r| Rival {
+                place: r.place,
+                effect: r.effect.id(),
+                model: explain.trials[r.trial].scored.clone(),
+            })
+            .collect();
+        designs(session, &best.scored, best.effects(), &rivals, self.limits)
+    }
+
+    /// The report on the model with these effects, which is on the way to the best one.
+    pub fn report(&self, session: &Session, explain: &Explain, ids: &[EffectId]) -> Option<StepReport> {
+        let place = explain.of(ids)?;
+        let trial = &explain.trials[place];
+        let model = &trial.scored;
+        let order = explain.order();
+        let suggestion = order.get(ids.len()).copied().filter(|_| self.contradicted.is_empty());
+        let whole = session.completed(model);
+        let parameters = session.parameters(&whole);
+        let rest = session.rest(&whole);
+        let findings = match rest {
+            Rest::More => session.findings(&whole),
+            Rest::Noise | Rest::NoiseWithMemory | Rest::RandomForces => Vec::new(),
+        };
+        let needless = if suggestion.is_none() && self.contradicted.is_empty() {
+            self.needless(session, explain, place)
+        } else {
+            Vec::new()
+        };
+        let (present, needless): (Vec<EffectId>, Vec<EffectId>) =
+            needless.into_iter().partition(|id| session.knowledge.has(*id));
+        let tried = explain.with_one_more(ids);
+        let last = suggestion.is_none() && needless.is_empty();
+        let verdict = last.then(|| {
+            let mut verdict = self.verdict(session, explain, trial, &whole, rest, &parameters);
+            let first = session.first(&whole).error;
+            add_rest(&mut verdict, rest, &whole.score, first, &findings);
+            add_integrating(&mut verdict, &parameters);
+            add_hint(&mut verdict, hint(session, explain, trial, &tried));
+            add_idle(&mut verdict, &present, &[]);
+            add_input_check(&mut verdict, &session.input_check);
+            let whole = session.whole();
+            add_glitches(&mut verdict, whole.glitches);
+            add_pauses(&mut verdict, whole.pauses);
+            add_held(&mut verdict, whole);
+            add_limited(&mut verdict, whole);
+            verdict
+        });
+        let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
+        let scored: Vec<(EffectId, &Scored)> = tried.iter().map(|(id, t)| (*id, &t.scored)).collect();
+        Some(StepReport {
+            fingerprints: fingerprints(session, model, &scored, &findings),
+            missing: if unknown { missing_parts(session, &whole) } else { Vec::new() },
+            step: Step {
+                effects: session.effects(&model.fit),
+                error: whole.score.error,
+                error_fit: whole.score.error_fit,
+                left: share_left(session.whole(), &whole.score),
+                parameters,
+                findings,
+                tests: residual_tests(session.whole(), &whole.fit.motion),
+                candidates: candidates(session, explain, trial, &whole, &tried, suggestion),
+            },
+            noise_floor: noise_floor(rest, &whole.score),
+            noise: session.channel_noise(),
+            replay: session.replay(&whole.fit),
+            atlas: session.atlas(&whole.fit),
+            suggestion,
+            needless,
+            verdict,
+        })
+    }
+
+    /// Effects without which the model explains as much.
+    fn needless(&self, session: &Session, explain: &Explain, place: usize) -> Vec<EffectId> {
+        let effects = explain.trials[place].effects();
+        (0..effects.len()).filter(|k| !explain.needs(session, place, *k)).map(|k| effects[k].id()).collect()
+    }
+
+    fn verdict(
+        &self,
+        session: &Session,
+        explain: &Explain,
+        trial: &Trial,
+        whole: &Scored,
+        rest: Rest,
+        parameters: &[crate::diagnosis::Parameter],
+    ) -> Verdict {
+        let order = explain.order();
+        let effects = trial.effects();
+        let mut places: Vec<usize> = (0..effects.len()).filter(|k| !session.knowledge.has(effects[*k].id())).collect();
+        places.sort_by_key(|k| order.iter().position(|id| *id == effects[*k].id()));
+        let class = |place: usize| -> Class {
+            let rivals = explain.rivals.iter().filter(|r| r.place == place);
+            rivals.map(|r| r.effect).collect()
+        };
+        let (mut added, mut classes): (Vec<(&'static dyn Effect, bool)>, Vec<Class>) = places
+            .into_iter()
+            .map(|k| ((effects[k], session.tells_of_record(&trial.scored.fit, k)), class(k)))
+            .unzip();
+        let one_way = OneWay::of(session);
+        let is_joined = one_way.is_some_and(|o| o.join(session, &trial.scored.fit, &mut added, &mut classes));
+        let mut verdict = verdict(&added, &classes, parameters, whole, rest, self.contradicted.clone());
+        add_imitations(&mut verdict, &[]);
+        if is_joined {
+            add_both_ways(&mut verdict);
+        } else {
+            add_experiments(&mut verdict, &self.experiments);
+        }
+        verdict
+    }
+}
+
+/// The effect that would lower the error most, and to what, where that is much and yet not beyond chance, or explains less
+/// than it leaves.
+fn hint(session: &Session, explain: &Explain, model: &Trial, tried: &[(EffectId, &Trial)]) -> Option<(EffectId, f64)> {
+    let best = tried.first()?;
+    let difference = explain.compared(session, model, best.1);
+    (difference.least_fall > PROMISING).then(|| (best.0, session.completed(&best.1.scored).score.error))
+}
+
+/// Every effect of the library, the best first; the suggested one leads.
+fn candidates(
+    session: &Session,
+    explain: &Explain,
+    model: &Trial,
+    whole: &Scored,
+    tried: &[(EffectId, &Trial)],
+    suggestion: Option<EffectId>,
+) -> Vec<Candidate> {
+    let before = &model.scored.score;
+    let length = model.scored.fit.values.len();
+    // Models are compared on a part of a long record: their errors are put in proportion to all of it.
+    let share = if before.error > 0.0 { whole.score.error / before.error } else { 1.0 };
+    let share = if share.is_finite() { share } else { 1.0 };
+    let count = libm::log(before.fit_count);
+    let mut candidates: Vec<Candidate> = tried
+        .iter()
+        .map(|(id, trial)| {
+            let difference = explain.compared(session, model, trial);
+            let (after, values) = (&trial.scored.score, trial.scored.fit.values.len());
+            let worse = trial.error() > model.error();
+            let noise = !outweighs(after.error, 1.0);
+            let most = outweighs(before.error, after.error) || noise;
+            Candidate {
+                effects: vec![*id],
+                // Every effect contains "none of it", so it never has to make things worse.
+                error: share * if worse { before.error } else { after.error },
+                delta_bic: if worse {
+                    (values as f64 - length as f64) * count
+                } else {
+                    delta_bic(before, length, after, values)
+                },
+                significant: difference.is_better() && most,
+                promising: difference.least_fall > PROMISING && !difference.is_better(),
+                parameters: session
+                    .parameters(&trial.scored)
+                    .into_iter()
+                    .filter(|p| p.effect == Some(*id))
+                    .collect(),
+                equivalent_to: tried
+                    .iter()
+                    .filter(|(other, t)| other != id && explain.compared(session, trial, t).is_same() && difference.is_better())
+                    .map(|(other, _)| *other)
+                    .collect(),
+            }
+        })
+        .collect();
+    let open = session.library().filter(|e| {
+        model.effects().iter().all(|own| own.id() != e.id() && !own.has_part(e.id())) && tried.iter().all(|(id, _)| *id != e.id())
+    });
+    candidates.extend(open.map(|e| Candidate {
+        effects: vec![e.id()],
+        error: whole.score.error,
+        delta_bic: e.parameters().len() as f64 * count,
+        significant: false,
+        promising: false,
+        parameters: Vec::new(),
+        equivalent_to: Vec::new(),
+    }));
+    candidates.sort_by(|a, b| {
+        let first = |c: &Candidate| suggestion.is_none_or(|s| c.effects[0] != s);
+        let simpler = a.parameters.len().cmp(&b.parameters.len());
+        let better = rounded(a.error).total_cmp(&rounded(b.error)).then(simpler);
+        first(a).cmp(&first(b)).then(better)
+    });
+    candidates
+}
+
+/// To the three digits that are shown.
+fn rounded(error: f64) -> f64 {
+    let digit = libm::exp10(libm::floor(libm::log10(error)) - 2.0);
+    libm::round(error / digit) * digit
+}
+
+/// What a perfect model would leave: where noise remembers, more than neighbouring samples show.
+fn noise_floor(rest: Rest, score: &Score) -> f64 {
+    match rest {
+        Rest::NoiseWithMemory | Rest::RandomForces => score.error_fit.max(NOISE_FLOOR),
+        Rest::Noise | Rest::More => NOISE_FLOOR,
+    }
+}
