@@ -12,7 +12,7 @@ mod tuning;
 use std::collections::VecDeque;
 
 use super::screen::Screened;
-use super::select::is_noise;
+use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, outweighs};
 use super::session::Session;
 use crate::effect::{Dimension, Effect, EffectId};
 use heat::Heat;
@@ -191,6 +191,7 @@ impl Explain {
                     return;
                 }
                 self.best = 0;
+                session.settle_sizes(&self.trials[0].scored.fit);
                 session.baseline.get_or_insert_with(|| self.trials[0].scored.score.clone());
                 self.open_level(session, screened, 1);
             }
@@ -206,7 +207,10 @@ impl Explain {
     fn is_noise(&self, session: &Session, trial: usize) -> bool {
         let trial = &self.trials[trial];
         let small = session.small_share(&trial.scored.fit);
-        trial.halves().all(|scored| is_noise(&scored.score, session.first(scored), small))
+        trial.halves().all(|scored| {
+            let score = &scored.score;
+            is_all_that_counters_show(score) || is_noise(score, session.first(scored), small)
+        })
     }
 
     /// Tasks of subsets with so many more effects.
@@ -350,14 +354,17 @@ impl Explain {
         };
         let noise = self.is_noise(session, trial);
         let (before, after) = (self.trials[without].error(), self.trials[trial].error());
-        let outweighs = super::select::outweighs(before, after);
+        let outweighs = outweighs(before, after);
         // Below that an effect only mends what a clock, a rig or an equation is off by.
         let first = session.baseline.as_ref().map_or(0.0, |first| first.error);
-        let matters = (before.powi(2) - after.powi(2)).max(0.0).sqrt() > super::select::SMALL_SHARE * first;
+        let matters = (before.powi(2) - after.powi(2)).max(0.0).sqrt() > SMALL_SHARE * first;
         let better = self.difference(session, without, trial).is_better();
         let of_record = session.tells_of_record(&self.trials[trial].scored.fit, place);
         let explains = noise && outweighs && !self.is_noise(session, without);
-        session.is_sizeable_at(&self.trials[trial].scored.fit, place)
+        let scored = &self.trials[trial].scored;
+        let shown = scored.shows_marks_of(scored.fit.structure.effects[place], &session.scales);
+        shown
+            && session.is_sizeable_at(&scored.fit, place)
             && (of_record || matters)
             && (better && (noise || outweighs || of_record) || explains)
     }
@@ -452,7 +459,11 @@ impl Explain {
             self.difference(session, self.best, r.trial).is_same() && own.same_body(&self.trials[r.trial])
         };
         self.rivals = rivals.into_iter().filter(same).collect();
-        self.open_path(session);
+        if session.settle_baseline(&self.trials[self.best].scored) {
+            *self = Self::new(std::mem::take(&mut self.held));
+        } else {
+            self.open_path(session);
+        }
     }
 
     /// Effects of the best model in the order in which they are added: each leaves least beside those before.

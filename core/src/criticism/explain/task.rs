@@ -5,7 +5,7 @@ use super::heat::Heat;
 use super::tuning::{CROSSINGS, SETTLED, SETTLING};
 use crate::criticism::fit::Fit;
 use crate::criticism::screen::{Screened, Start};
-use crate::criticism::search::Search;
+use crate::criticism::guess::guess;
 use crate::criticism::session::Session;
 use crate::criticism::structure::Structure;
 use crate::effect::baseline::Baseline;
@@ -197,7 +197,10 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
     let told = screened.starts(&ids, ids.len()).next();
     let told = told.and_then(|start| Sketch::of(session, &start));
     let told = told.map(|sketch| sketch.fitted(session));
-    let mut fit = session.found(Search::baseline(&session.data, &session.knowledge))?;
+    let plain = Baseline::plain();
+    let guessed = guess(&session.data, &session.data.excitation.effective_input(&plain));
+    let guessed = guessed.unwrap_or_else(|| session.data.baseline.unknown());
+    let mut fit = Sketch::new(session, &[], guessed).fitted(session);
     for effect in held {
         let beside = screened.values(&fit.structure.ids(), effect.id());
         let told = beside.or_else(|| screened.values(&[], effect.id()));

@@ -3,7 +3,6 @@
 use super::tuning::{OTHER_HALF, SAME_BODY};
 use crate::criticism::fit::Fit;
 use crate::criticism::score::score;
-use crate::criticism::search::Search;
 use crate::criticism::session::{Scored, Session};
 use crate::criticism::structure::Structure;
 use crate::effect::{Effect, EffectId};
@@ -71,13 +70,6 @@ impl Trial {
 }
 
 impl Session {
-    /// A search run to its end.
-    pub(super) fn found(&self, mut search: Search) -> Option<Fit> {
-        while search.scan(&self.data, &self.scout, &self.scales) {}
-        while search.iterate(&self.data, &self.scales) {}
-        search.finish(&self.data, &self.scales)
-    }
-
     /// The baseline with these effects.
     pub(super) fn structure(&self, effects: &[&'static dyn Effect]) -> Structure {
         let empty = Structure::new(self.data.baseline, Vec::new(), self.knowledge.clone());
