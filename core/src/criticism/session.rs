@@ -20,11 +20,10 @@ use super::split::hold_back;
 use crate::crew::Crew;
 use crate::diagnosis::{
     ChannelNoise, CriticismError, InputCheck, InputVerdict, Parameter, Replay, ReplayChannel,
-    Screening, Subset,
+    Screening,
 };
 use crate::effect::{
-    self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
-    Rubbing, Scales, SeenGap,
+    self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range, Scales, SeenGap,
     baseline::{self, Baseline},
 };
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
@@ -47,6 +46,14 @@ impl Scored {
     fn inflation(&self) -> f64 {
         let left = self.score.error_fit.powi(2).max(1.0);
         left * self.score.correlation.max(1.0)
+    }
+
+    /// Whether a parameter that tells of the effect at a place is not 0 by these errors: its 95 % interval leaves 0 out.
+    pub fn tells_of(&self, place: usize) -> bool {
+        let structure = &self.fit.structure;
+        let errors = self.standard_errors();
+        let mut telling = structure.range(place).take(structure.effects[place].telling());
+        telling.any(|j| self.fit.values[j].abs() > TELLING * errors[j])
     }
 
     /// Whether what makes an effect in the model what it is stands out by these errors.
@@ -73,6 +80,9 @@ const MOST_REMEMBERED: f64 = 2.0;
 
 /// Error up to which small random forces may be what is left.
 const MOST_PUSHED: f64 = 2.5;
+
+/// Standard errors by which a parameter that tells of an effect must differ from 0.
+const TELLING: f64 = 1.96;
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;

@@ -14,6 +14,7 @@ use std::collections::VecDeque;
 use super::screen::Screened;
 use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, outweighs};
 use super::session::Session;
+use crate::diagnosis::InputVerdict;
 use crate::effect::{Dimension, Effect, EffectId};
 use heat::Heat;
 use judge::{Difference, difference};
@@ -218,7 +219,12 @@ impl Explain {
         self.stage = Stage::Level(size);
         self.looked_at.clear();
         let enough = size > 1 && session.data.tried_enough();
-        if size > MOST_SIZE || enough || self.is_noise(session, self.best) {
+        // Where the input is not what acted, an effect would be one of another machine.
+        let other = matches!(
+            session.input_check.verdict,
+            InputVerdict::Sign | InputVerdict::ClosedLoop
+        );
+        if size > MOST_SIZE || enough || other || self.is_noise(session, self.best) {
             self.open_swaps(session, screened);
             return;
         }
@@ -364,6 +370,7 @@ impl Explain {
         let scored = &self.trials[trial].scored;
         let shown = scored.shows_marks_of(scored.fit.structure.effects[place], &session.scales);
         shown
+            && scored.tells_of(place)
             && session.is_sizeable_at(&scored.fit, place)
             && (of_record || matters)
             && (better && (noise || outweighs || of_record) || explains)

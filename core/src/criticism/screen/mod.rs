@@ -41,8 +41,6 @@ pub(super) struct Start {
     pub body: Vec<f64>,
     /// Values of each effect.
     pub values: Vec<Vec<f64>>,
-    /// Share of the motion that it leaves on blocks that its fit did not see.
-    pub left: f64,
 }
 
 impl Screened {
@@ -68,7 +66,6 @@ impl Screened {
         size: usize,
     ) -> impl Iterator<Item = Start> + 'a {
         let bench = self.prepared.bench();
-        let motion = bench.motion().max(f64::MIN_POSITIVE);
         self.tried.iter().filter_map(move |tried| {
             let ids = || tried.members.iter().map(|(c, _)| bench.choices[*c].effect.id());
             let has_all = held.iter().all(|held| ids().any(|id| id == *held));
@@ -84,7 +81,6 @@ impl Screened {
                 effects,
                 body,
                 values,
-                left: (tried.loss() / motion).sqrt(),
             })
         })
     }

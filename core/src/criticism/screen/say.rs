@@ -8,7 +8,7 @@ use super::tuning::LISTED;
 use super::window::Width;
 use crate::diagnosis::{InputVerdict, Parameter, Screening, Status, Subset};
 use crate::effect::{Dimension, EffectId, VISCOUS_FRICTION, baseline};
-use crate::measurement::{Kind, Measurement};
+use crate::measurement::Measurement;
 
 /// Version of the layout.
 const SCHEMA: u32 = 1;
