@@ -3,7 +3,7 @@
 use crate::support::case::{Case, Hidden};
 use crate::support::diagnosis::classes;
 use crate::support::{drive_cases, process_cases};
-use hysteron_core::criticism::second::{DiagnosisJob, StepJob};
+use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::{Diagnosis, StepReport};
 use hysteron_core::measurement::Measurement;
 use hysteron_core::progress::Progress;

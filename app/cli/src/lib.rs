@@ -6,7 +6,6 @@
 mod arguments;
 mod batch;
 mod diagnose;
-mod engine;
 mod gap;
 mod limit_cycle;
 mod limit_cycle_drive;

@@ -66,11 +66,6 @@ impl Knowledge {
         self.present.contains(&id)
     }
 
-    /// Effects of the user's model.
-    pub fn present(&self) -> &[EffectId] {
-        &self.present
-    }
-
     /// Whether no value is held.
     pub fn is_free(&self) -> bool {
         self.entries.iter().all(|(_, k)| k.status.is_free())

@@ -31,9 +31,6 @@ pub(crate) struct BaselineParameter {
     pub effect: Option<EffectId>,
 }
 
-/// Place of the viscous friction in the baseline of a drive.
-pub(crate) const DAMPING: usize = 1;
-
 /// Place of the ambient in that of a process which comes to rest.
 const AMBIENT: usize = 2;
 

@@ -385,7 +385,7 @@ impl Explain {
         let shown = scored.shows_marks_of(scored.fit.structure.effects[place], &session.scales);
         shown
             && scored.tells_of(place)
-            && session.is_sizeable_at(&scored.fit, place)
+            && session.is_sizeable(&scored.fit, place)
             && (of_record || matters)
             && (better && (noise || outweighs || of_record) || explains)
     }
