@@ -103,13 +103,22 @@ impl Heat {
         });
     }
 
-    /// The best so many, of those that cost no more than a limit; and none is left.
+    /// The best of each of so many sets of effects, of those that cost no more than a limit, and a second of the first; and
+    /// none is left.
     pub fn best(&mut self, count: usize, limit: f64) -> Vec<Sketch> {
         let over = std::mem::take(self).over.into_iter();
-        let near = over
-            .map(|(_, fit)| fit)
-            .filter(|fit| fit.cost <= limit)
-            .take(count);
-        near.map(Sketch::reached).collect()
+        let mut sets: Vec<Vec<EffectId>> = Vec::new();
+        let near = over.map(|(_, fit)| fit).filter(|fit| fit.cost <= limit);
+        let chosen = near.filter(|fit| {
+            let mut ids = fit.structure.ids();
+            ids.sort_unstable();
+            let known = sets.iter().filter(|set| **set == ids).count();
+            let is_first = known == 0 || known == 1 && sets[0] == ids;
+            if is_first {
+                sets.push(ids);
+            }
+            is_first
+        });
+        chosen.take(count).map(Sketch::reached).collect()
     }
 }
