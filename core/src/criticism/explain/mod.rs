@@ -135,7 +135,10 @@ impl Explain {
         extended.push(from);
         let fit = &self.trials[from].scored.fit;
         let ids = self.trials[from].ids();
-        let mut sketches = Vec::new();
+        let mut sketches: Vec<Sketch> = Sketch::again(fit)
+            .filter(|_| !hidden && !ids.is_empty())
+            .into_iter()
+            .collect();
         for effect in session
             .library()
             .filter(|e| is_hidden_body(*e) == hidden && self.is_open(from, *e))
