@@ -3,6 +3,7 @@
 mod atlas;
 mod axes;
 mod before;
+mod contradicted;
 mod correlation;
 mod cost;
 mod cut;

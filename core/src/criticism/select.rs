@@ -1,32 +1,6 @@
-//! Does an effect help beyond chance, and can two effects be told apart?
-//!
-//! Models are compared on held-back data by `n_eff ln(SSE_before / SSE_after)`, the likelihood-ratio
-//! statistic with the number of residuals divided by their autocorrelation, so that structured
-//! residuals do not pass for evidence.
+//! Is what a model leaves noise, or a trifle, and does a step explain more than it leaves?
 
 use super::score::Score;
-
-/// Least statistic for an effect to be added. For a needless effect it is chi-squared with a few
-/// degrees of freedom; 30 keeps the chance below 1e-5 even for five parameters, and there are some
-/// ten candidates in each of a few steps.
-const LEAST_STATISTIC: f64 = 30.0;
-
-/// Least relative fall of the held-back error: what changes the error by less may be real, but is
-/// not what the model is missing.
-pub(super) const LEAST_FALL: f64 = 0.03;
-
-/// Relative fall of the error on both parts that counts whatever the statistic says, and in however few blocks: that is no
-/// chance however few independent stretches a record has, and what is left is correlated because something else is missing.
-const GREAT_FALL: f64 = 0.7;
-
-/// Of the held-back blocks in which a step changes the error, the least share in which it falls, and the least number
-/// of these (fewer do if they are that share of all, or if nothing but noise is left in them).
-const LEAST_BLOCKS: f64 = 0.6;
-const FEWEST_BETTER: usize = 3;
-
-/// Relative change of the squared error of a block below which the step does nothing there: a limit of the input acts
-/// only where the input is as large.
-const UNCHANGED: f64 = 0.02;
 
 /// Error, in noise units, and autocorrelation up to which a residual is noise: the noise level
 /// itself is known to some per cent only.
@@ -57,42 +31,6 @@ pub(super) const SAMPLED_SHARE: f64 = 2e-2;
 /// left, where a model explains all the rest.
 const ODD_STRETCHES: f64 = 0.35;
 const STRETCH_SHARE: f64 = 0.02;
-
-/// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
-fn statistic(before: &Score, after: &Score) -> f64 {
-    let effective = after.held_count / after.correlation.max(1.0);
-    2.0 * effective * libm::log(before.error / after.error)
-}
-
-/// Relative fall of the held-back error from `before` to `after`.
-pub(super) fn fall(before: &Score, after: &Score) -> f64 {
-    1.0 - after.error / before.error
-}
-
-/// Relative fall of the error on the held-back or on the fitted part, whichever is less.
-pub(super) fn fall_on_both(before: &Score, after: &Score) -> f64 {
-    fall(before, after).min(1.0 - after.error_fit / before.error_fit)
-}
-
-/// Whether held-back data want the step from `before` to `after`.
-pub(super) fn helps(before: &Score, after: &Score) -> bool {
-    fall_on_both(before, after) > GREAT_FALL
-        || (statistic(before, after) > LEAST_STATISTIC
-            && fall(before, after) > LEAST_FALL
-            && helps_widely(&before.held_blocks, &after.held_blocks))
-}
-
-/// Whether the error falls in most of the blocks in which it changes, and not only somewhat in one or two.
-fn helps_widely(before: &[f64], after: &[f64]) -> bool {
-    let least = |count: usize| LEAST_BLOCKS * count as f64;
-    let falls = |(from, to): &(&f64, &f64)| **to < (1.0 - UNCHANGED) * **from;
-    let better = || before.iter().zip(after).filter(falls);
-    let worse = after.iter().zip(before).filter(falls).count();
-    let count = better().count();
-    let explained = || better().all(|(_, left)| *left < NOISE_ERROR * NOISE_ERROR);
-    count as f64 > least(count + worse)
-        && (count >= FEWEST_BETTER || count as f64 > least(before.len()) || explained())
-}
 
 /// Whether the step from the error `before` to that `after` it explains more than it leaves beyond the noise.
 pub(super) fn outweighs(before: f64, after: f64) -> bool {
@@ -167,32 +105,6 @@ pub(super) fn delta_bic(before: &Score, before_len: usize, after: &Score, after_
 mod tests {
     use super::*;
 
-    /// Ten blocks, the first of them with these mean squares.
-    fn blocks(first: &[f64], rest: f64) -> Vec<f64> {
-        let mut all = first.to_vec();
-        all.resize(10, rest);
-        all
-    }
-
-    #[test]
-    fn an_effect_may_act_in_a_few_blocks_or_explain_one_or_two() {
-        let helps = |acting: &[f64], rest: f64| {
-            let before = blocks(&vec![400.0; acting.len()], 1.0);
-            helps_widely(&before, &blocks(acting, rest))
-        };
-        assert!(helps(&[3.0, 3.0, 3.0], 1.01));
-        assert!(!helps(&[3.0, 3.0], 1.01));
-        assert!(helps(&[1.1], 1.01));
-        assert!(!helps(&[1.0, 1.0, 1.0], 1.05));
-        assert!(helps(&[1.0; 7], 1.05));
-    }
-
-    #[test]
-    fn of_few_blocks_most_must_become_better() {
-        assert!(helps_widely(&[9.0, 4.0], &[1.0, 1.0]));
-        assert!(!helps_widely(&[9.0, 1.0], &[2.0, 1.0]));
-    }
-
     /// White noise within the steps of a counter, with these errors.
     fn noise(error: f64, error_fit: f64) -> Score {
         Score {
@@ -205,25 +117,6 @@ mod tests {
             correlation: 1.0,
             within_counts: true,
         }
-    }
-
-    #[test]
-    fn what_takes_away_most_on_both_parts_helps_however_few_stretches_there_are() {
-        let few = |error: f64, error_fit: f64| Score {
-            held_count: 400.0,
-            correlation: 200.0,
-            ..noise(error, error_fit)
-        };
-        assert!(helps(&few(30.0, 32.0), &few(5.0, 5.5)));
-        assert!(!helps(&few(30.0, 32.0), &few(5.0, 25.0)));
-        assert!(!helps(&few(30.0, 32.0), &few(15.0, 16.0)));
-        let in_one_block = |error: f64, error_fit: f64, most: f64, rest: f64| Score {
-            held_blocks: blocks(&[most], rest),
-            ..few(error, error_fit)
-        };
-        let before = in_one_block(300.0, 4000.0, 9e5, 1.0);
-        assert!(helps(&before, &in_one_block(6.0, 1.5, 300.0, 1.3)));
-        assert!(!helps(&before, &in_one_block(6.0, 3000.0, 300.0, 1.3)));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! What is told of a model: where it fails, what could be added, and the verdict where nothing should be.
 
+use super::contradicted::overruled;
 use super::explain::{Explain, Trial, difference as between};
 use super::fingerprint::fingerprints;
-use super::knowledge::overruled;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, designs};
 use super::one_way::OneWay;

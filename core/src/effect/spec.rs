@@ -101,6 +101,8 @@ pub enum Range {
     Fraction,
     /// 0 to 1.
     UnitInterval,
+    /// The same of a dry contact that sticks, where it swings for less than the record shows.
+    OfContact,
     /// Up to `STIFFEST` times its [`Scales::of`], and so stiff that the body swings within the record.
     Stiff,
     /// The same up to `HARDEST` times it: a contact may well be over between two samples.
@@ -112,8 +114,8 @@ pub enum Range {
     /// At least `RIGID_CROSSINGS` times [`Scales::crossed`], at most the travel: friction that built up over more
     /// would be a spring.
     Long,
-    /// At least `SEEN_TURN` times its [`Scales::of`]: what repeats over the position goes through most of a wave within
-    /// the travel.
+    /// At least `SEEN_TURN` times its [`Scales::of`]: what repeats over the position is seen to do so within the
+    /// travel.
     Repeating,
 }
 
@@ -167,9 +169,9 @@ pub const HARDEST: f64 = 300.0;
 /// A load lighter than this share of the motor is part of it.
 pub const LIGHTEST: f64 = 0.03;
 
-/// Radians in the travel from which a periodic force is known by its wave, three quarters of a turn; less of it may look
-/// like any other force.
-pub const SEEN_TURN: f64 = 0.75 * TAU;
+/// Radians in the travel from which a periodic force is seen to repeat, a turn and a half; less of it may look like any other
+/// force.
+pub const SEEN_TURN: f64 = 1.5 * TAU;
 
 /// A wave within this factor of the longest is at the end of its range.
 const AT_END: f64 = 1.001;
@@ -181,6 +183,11 @@ const MOST_OF_THE_WAY: f64 = 0.3;
 pub const LEAST_SHARE: f64 = 1e-4;
 
 impl ParameterSpec {
+    /// Whether it only says how a hard contact builds up its force, between two samples or nearly so.
+    pub fn is_of_contact(&self) -> bool {
+        matches!(self.range, Range::Short | Range::OfContact)
+    }
+
     /// Whether the parameter is a size, which changes by factors rather than by differences.
     pub fn is_size(&self) -> bool {
         matches!(
@@ -213,7 +220,7 @@ impl ParameterSpec {
             Range::NonNegative => value.max(0.0),
             Range::Positive => value.max(LEAST_SHARE * scale),
             Range::Fraction => value.clamp(-0.9, 0.9),
-            Range::UnitInterval => value.clamp(0.0, 1.0),
+            Range::UnitInterval | Range::OfContact => value.clamp(0.0, 1.0),
             Range::Stiff | Range::Hard => {
                 let most = if self.range == Range::Stiff {
                     STIFFEST

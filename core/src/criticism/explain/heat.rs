@@ -58,23 +58,6 @@ impl Heat {
         );
         self.over.extend(batch);
         if self.waiting.is_empty() {
-            if std::env::var("EXH").is_ok() {
-                for (b, f) in &self.over {
-                    eprintln!(
-                        "heat {} {:?} {:.4e} -> {:.4e} done {} {:?}",
-                        self.round,
-                        f.structure
-                            .ids()
-                            .iter()
-                            .map(|e| e.as_str())
-                            .collect::<Vec<_>>(),
-                        b,
-                        f.cost,
-                        f.done,
-                        f.values
-                    );
-                }
-            } // DEBUG
             self.cull();
             self.round += 1;
             if self.round < HEATS.len() {

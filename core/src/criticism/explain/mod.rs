@@ -22,7 +22,7 @@ pub(super) use judge::{Difference, difference};
 use swap::Rival;
 use task::{Sketch, Task};
 pub(super) use trial::Trial;
-use tuning::{FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
+use tuning::{ALIKE, FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
 
 /// What is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ pub(super) struct Explain {
     limit: f64,
     stage: Stage,
     /// The subset of each size that leads; and of those with a hidden body.
-    leads: [Vec<usize>; 2],
+    leads: [Vec<Option<usize>>; 2],
     /// Leads of the present size that were looked at.
     looked_at: Vec<usize>,
     pub best: usize,
@@ -115,7 +115,11 @@ impl Explain {
             let found = crew.gather(batch.len(), |i| batch[i].run(own, screened, trials));
             self.trials.extend(found.into_iter().flatten());
         } else if !self.heat.advance(session) {
-            let best = self.heat.best(FITTED, self.limit);
+            let places = match self.stage {
+                Stage::Swap => self.size(self.best).max(1),
+                _ => 1,
+            };
+            let best = self.heat.best(FITTED * places, self.limit);
             self.tasks.extend(best.into_iter().map(Task::Fit));
         }
         self.done += 1;
@@ -252,7 +256,10 @@ impl Explain {
             }
             return;
         }
-        let lead = |hidden: bool| self.leads[usize::from(hidden)].get(size - 2).copied();
+        let lead = |hidden: bool| {
+            let leads = &self.leads[usize::from(hidden)];
+            leads.get(size - 2).copied().flatten()
+        };
         let (visible, with_hidden) = if size > 1 {
             (lead(false), lead(true))
         } else {
@@ -261,7 +268,7 @@ impl Explain {
         if let Some(from) = visible.or(with_hidden) {
             session.look_where_left(&self.trials[from].scored.fit);
         }
-        self.limit = f64::INFINITY;
+        self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
         let held = self.held_ids();
         let starts = screened.starts(&held, held.len() + size);
         let of_level = |start: &Start| start.effects.iter().any(|e| is_hidden_body(*e)) == hidden;
@@ -303,29 +310,8 @@ impl Explain {
             let of_level: Vec<usize> = (0..self.trials.len())
                 .filter(|t| self.is_of(*t, level))
                 .collect();
-            if std::env::var("EX").is_ok() {
-                // DEBUG
-                for t in &of_level {
-                    // DEBUG
-                    let d = self.difference(session, self.best, *t); // DEBUG
-                    let tr = &self.trials[*t]; // DEBUG
-                    let e: Vec<f64> = tr.halves().map(|h| h.score.error).collect(); // DEBUG
-                    eprintln!(
-                        "size {size} {:?} err {:.3} halves {e:.3?} t {:.2} blocks {}/{} fall {:.3} least {:.3} better {} values {:.4?}",
-                        tr.ids().iter().map(|e| e.as_str()).collect::<Vec<_>>(),
-                        tr.error(),
-                        d.t,
-                        d.blocks,
-                        tr.held.len(),
-                        d.fall,
-                        d.least_fall,
-                        d.is_better(),
-                        tr.scored.fit.values
-                    ); // DEBUG
-                } // DEBUG
-            } // DEBUG
             let lead = self.lead(session, &of_level);
-            self.leads[usize::from(hidden)].extend(lead);
+            self.leads[usize::from(hidden)].push(lead);
         }
         // A smaller one may have come up as a part of one that was looked at.
         let open =
@@ -360,21 +346,6 @@ impl Explain {
 
     fn judge_check(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let lead = self.looked_at.last().copied();
-        if let Some(l) = lead.filter(|_| std::env::var("EX").is_ok()) {
-            // DEBUG
-            eprintln!(
-                "check {:?} noise {} needs {:?}",
-                self.trials[l].ids(),
-                self.is_noise(session, l),
-                (self.held.len()..self.trials[l].effects().len())
-                    .map(|p| (
-                        self.needs(session, l, p),
-                        self.without(l, p)
-                            .map(|w| (self.difference(session, w, l), self.trials[w].error()))
-                    ))
-                    .collect::<Vec<_>>()
-            ); // DEBUG
-        } // DEBUG
         if let Some(lead) = lead.filter(|lead| self.is_needed(session, *lead)) {
             self.best = lead;
         }
@@ -385,36 +356,45 @@ impl Explain {
         self.held.iter().all(|e| self.trials[trial].has(e.id()))
     }
 
-    fn values(&self, trial: usize) -> usize {
-        self.trials[trial].scored.fit.values.len()
+    /// Whether a model has, in the place of an effect of another, a part of that or what that comes near to.
+    fn has_part_of(&self, part: usize, whole: usize) -> bool {
+        let (own, other) = (&self.trials[part], &self.trials[whole]);
+        let mut wholes = other.effects().iter().filter(|e| !own.has(e.id()));
+        own.effects().len() == other.effects().len()
+            && wholes.any(|whole| {
+                own.effects()
+                    .iter()
+                    .any(|e| whole.has_part(e.id()) || whole.limits().contains(&e.id()))
+            })
     }
 
     /// Whether a model has fewer values than another, or as many and a part in the place of the whole.
     fn is_simpler(&self, a: usize, b: usize) -> bool {
-        let (own, other) = (self.trials[a].effects(), self.trials[b].effects());
-        let part = || {
-            other
-                .iter()
-                .any(|whole| own.iter().any(|e| whole.has_part(e.id())))
-        };
-        let (own, other) = (self.values(a), self.values(b));
-        own < other || own == other && part()
+        let (own, other) = (self.trials[a].values(), self.trials[b].values());
+        own < other || own == other && self.has_part_of(a, b)
     }
 
-    /// The one that leaves least; of those that are the same, the one with fewest values.
+    /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect must that is
+    /// added.
+    fn does_as_well(&self, session: &Session, simpler: usize, other: usize) -> bool {
+        let difference = self.difference(session, simpler, other);
+        let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
+        let worth =
+            difference.is_better() && (self.is_noise(session, other) || outweighs(before, after));
+        difference.is_same() || self.has_part_of(simpler, other) && !worth
+    }
+
+    /// The one that leaves least; of those that do as well, the one with fewest values.
     fn lead(&self, session: &Session, trials: &[usize]) -> Option<usize> {
         let error = |t: &usize| self.trials[*t].error();
-        let least = trials
-            .iter()
-            .copied()
-            .min_by(|a, b| error(a).total_cmp(&error(b)))?;
-        trials
-            .iter()
-            .copied()
-            .filter(|t| self.is_simpler(*t, least) && self.difference(session, least, *t).is_same())
+        let all = || trials.iter().copied();
+        let least = all().min_by(|a, b| error(a).total_cmp(&error(b)))?;
+        all()
+            .filter(|t| self.is_simpler(*t, least) && self.does_as_well(session, *t, least))
             .min_by(|a, b| {
-                self.values(*a)
-                    .cmp(&self.values(*b))
+                let values = |t: &usize| self.trials[*t].values();
+                values(a)
+                    .cmp(&values(b))
                     .then(error(a).total_cmp(&error(b)))
             })
             .or(Some(least))

@@ -80,6 +80,12 @@ impl Trial {
         }
     }
 
+    /// Number of values that its effects say something with: how a dry contact builds up its force is seen of few.
+    pub fn values(&self) -> usize {
+        let specs = self.effects().iter().flat_map(|e| e.parameters());
+        specs.filter(|spec| !spec.is_of_contact()).count()
+    }
+
     pub fn effects(&self) -> &[&'static dyn Effect] {
         &self.scored.fit.structure.effects
     }

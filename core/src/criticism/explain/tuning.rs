@@ -18,8 +18,9 @@ pub(super) const FITTED: usize = 6;
 /// Samples of the usual motion over which a dry contact builds up its force: hard, and seen.
 pub(super) const CROSSINGS: [f64; 3] = [0.003, 0.35, 0.8];
 
-/// Times the cost on the scout, with an effect, up to which what may stand in its place is fitted.
-pub(super) const ALIKE: f64 = 1.1;
+/// Times the cost on the scout of what there is up to which a model is fitted to the record: so much a race of a few iterations on
+/// a part of it is off.
+pub(super) const ALIKE: f64 = 2.0;
 
 /// Times that a fit begins anew with the states of its windows improved, and the share of its cost above which it has settled.
 pub(super) const SETTLING: usize = 3;
