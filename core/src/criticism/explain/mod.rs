@@ -114,7 +114,7 @@ impl Explain {
             let (own, trials) = (&*session, &self.trials);
             let found = crew.gather(batch.len(), |i| batch[i].run(own, screened, trials));
             self.trials.extend(found.into_iter().flatten());
-        } else if !self.heat.advance(session) {
+        } else if !self.heat.advance(session, self.alike()) {
             let places = match self.stage {
                 Stage::Swap => self.size(self.best).max(1),
                 _ => 1,
@@ -127,6 +127,14 @@ impl Explain {
             self.go_on(session, screened);
         }
         self.stage != Stage::Done
+    }
+
+    /// Cost on the scout of what may stand in the place of an effect of the best.
+    fn alike(&self) -> f64 {
+        match self.stage {
+            Stage::Swap => self.limit,
+            _ => 0.0,
+        }
     }
 
     /// Has a trial raced with each effect that can be added, or each hidden body: with the values that the screen tells, and
