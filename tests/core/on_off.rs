@@ -329,6 +329,31 @@ fn harmonic_by_hand(amplitude: f64, on: f64, off: f64) -> num_complex::Complex<f
     num_complex::Complex::new(sum[0], sum[1])
 }
 
+/// A heater alone, 0 or 1: around half of what it can reach it is the relay of 0.5 to either side; elsewhere the mean counts.
+#[test]
+fn the_first_harmonic_of_a_heater_alone() {
+    let both = continuous(three_lags(0.0), relay(0.5, 0.05));
+    let [same] = describing_function(&both).unwrap()[..] else {
+        panic!("one balance");
+    };
+    for reference in [0.5, 0.35] {
+        let mut controller = relay(0.5, 0.05);
+        controller.relay.bias = 0.5;
+        controller.reference = reference;
+        let loop_ = continuous(three_lags(0.0), controller);
+        let [balance] = describing_function(&loop_).unwrap()[..] else {
+            panic!("one balance");
+        };
+        if reference == 0.5 {
+            close(balance.period, same.period, 1e-6);
+            close(balance.amplitude, same.amplitude, 1e-6);
+        }
+        let found = settled(&loop_).unwrap();
+        close(balance.period, cycle_of(&found).period, 0.05);
+        close(balance.amplitude, cycle_of(&found).amplitude, 0.1);
+    }
+}
+
 /// Within the dead zone nothing moves, and a strong dead zone lets every swing die.
 #[test]
 fn a_wide_dead_zone_brings_rest() {

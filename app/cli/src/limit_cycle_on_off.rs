@@ -7,6 +7,8 @@ use hysteron_core::on_off::{
 };
 use serde_json::{Value, json};
 
+use crate::output::off_by;
+
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
 
@@ -15,6 +17,8 @@ pub struct OnOffReport {
     /// `None` where the first harmonic does not tell.
     describing_function: Option<Vec<Balance>>,
     settled: Settled,
+    /// Whether there are shortest times to keep.
+    holds: bool,
 }
 
 impl OnOffReport {
@@ -22,19 +26,35 @@ impl OnOffReport {
         Ok(Self {
             settled: settled(on_off).map_err(|e| e.to_string())?,
             describing_function: describing_function(on_off),
+            holds: on_off.relay.min_on.max(on_off.relay.min_off) > 0.0,
         })
     }
 
     /// What is said, with a word where the describing function says nothing.
     fn sentences(&self) -> String {
-        let none = match &self.describing_function {
+        let exact = self.settled.exact.as_ref();
+        let stable = |b: &&Balance| b.stable == Some(true);
+        let beside = match &self.describing_function {
             None => {
-                " The describing function is not given: it is known for outputs alike in both directions and a reference of 0."
+                " The describing function is not given: with three positions it is known for outputs alike in both \
+                 directions and a reference of 0."
+                    .to_owned()
             }
-            Some(all) if all.is_empty() => " The describing function sees no oscillation.",
-            Some(_) => "",
+            Some(all) if all.is_empty() && self.holds => {
+                " The describing function sees no oscillation that keeps the shortest times.".to_owned()
+            }
+            Some(all) if all.is_empty() => {
+                " The describing function sees no oscillation.".to_owned()
+            }
+            Some(all) => all
+                .iter()
+                .find(stable)
+                .zip(exact)
+                .map_or_else(String::new, |(b, c)| {
+                    off_by([b.period, b.amplitude], [c.period, c.amplitude])
+                }),
         };
-        format!("{}{none}", self.settled.text)
+        format!("{}{beside}", self.settled.text)
     }
 
     pub fn json(&self) -> Value {

@@ -7,6 +7,8 @@ use hysteron_core::hunting::{
 };
 use serde_json::{Value, json};
 
+use crate::output::off_by;
+
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
 
@@ -25,12 +27,18 @@ impl ServoReport {
     }
 
     fn sentences(&self) -> String {
-        let none = if self.describing_function.is_empty() {
-            " The describing function sees no oscillation."
+        let stable = |b: &&HuntingBalance| b.stable == Some(true);
+        let beside = if self.describing_function.is_empty() {
+            " The describing function sees no oscillation.".to_owned()
         } else {
-            ""
+            let found = self.describing_function.iter().find(stable);
+            found
+                .zip(self.settled.exact.as_ref())
+                .map_or_else(String::new, |(b, c)| {
+                    off_by([b.period, b.amplitude], [c.period, c.amplitude])
+                })
         };
-        format!("{}{none}", self.settled.text)
+        format!("{}{beside}", self.settled.text)
     }
 
     pub fn json(&self) -> Value {

@@ -10,6 +10,9 @@ const TOLERANCE: f64 = 1e-11;
 /// Longest step, in typical times of the loop.
 const LONGEST: f64 = 0.1;
 
+/// Shortest step, in the same.
+const SHORTEST: f64 = 1e-12;
+
 /// It runs away that is so many times as far away as it should go.
 const RUNAWAY: f64 = 1e6;
 
@@ -138,8 +141,7 @@ impl<'a> Course<'a> {
 
     /// Moves in one direction, until it stands or the time is up.
     fn slip(&mut self, until: f64) -> End {
-        let (servo, way) = (self.servo, self.way);
-        let typical = servo.typical_time();
+        let way = self.way;
         loop {
             self.steps += 1;
             let finite = self.place.x.is_finite() && self.place.v.is_finite();
@@ -150,49 +152,10 @@ impl<'a> Course<'a> {
             if left <= 0.0 {
                 return End::Time;
             }
-            // Behind the play it stays, or goes along at a distance.
-            let taken = self.place.x - way * servo.half_gap;
-            let along = way * (taken - self.place.w) >= 0.0;
-            if along {
-                self.place.w = taken;
-            }
-            let fixed = self.place.w;
-            let behind = |x: f64| {
-                if along {
-                    x - way * servo.half_gap
-                } else {
-                    fixed
-                }
-            };
-            let rate = |y: &[f64; 3]| {
-                let [x, v, integral] = *y;
-                let w = behind(x);
-                let u = servo.limited(servo.asked(w, v, integral));
-                let dry = way * servo.friction.moving(v);
-                let force = u - servo.viscous * v - dry - servo.cogging(x);
-                [
-                    v,
-                    force / servo.inertia,
-                    servo.integral_rate(w, v, integral),
-                ]
-            };
+            let slip = Slip::new(self.servo, way, &mut self.place);
             let from = [self.place.x, self.place.v, self.place.integral];
-            let mut h = self.h.min(LONGEST * typical).min(left);
-            let (mut to, share) = {
-                let (to, error) = step(&rate, &from, h);
-                let reach = self.size.max(from[0].abs()).max(from[1].abs() * typical);
-                let stiffness = servo.controller.proportional;
-                let scales = [reach, reach / typical, stiffness * reach];
-                let off = error.iter().zip(scales).map(|(e, s)| (e / s).abs());
-                (to, off.fold(0.0, f64::max) / TOLERANCE)
-            };
-            let factor = 0.9 * libm::pow(share.max(1e-10), -0.2);
-            if share > 1.0 && h > 1e-12 * typical {
-                self.h = h * factor.max(0.2);
-                continue;
-            }
-            self.h = (h * factor.clamp(0.2, 4.0)).max(1e-12 * typical);
-            let at = |h: f64| step(&rate, &from, h).0;
+            let (mut h, mut to) = self.step(&slip, &from, left);
+            let at = |h: f64| step(&|y| slip.rate(y), &from, h).0;
             let mut stands = way * to[1] <= 0.0 && way * from[1] > 0.0;
             // Just broken away it has no speed as yet; it may turn back at once.
             let failed = way * to[1] <= 0.0 && way * from[1] <= 0.0;
@@ -200,30 +163,104 @@ impl<'a> Course<'a> {
                 h = illinois((0.0, from[1]), (h, to[1]), |h| at(h)[1]);
                 to = at(h);
             }
-            let engages = |x: f64| way * (x - way * servo.half_gap - fixed);
-            if !along && engages(to[0]) > 0.0 {
-                let gap = |h: f64| engages(at(h)[0]);
+            let takes_up = !slip.along && slip.ahead(to[0]) > 0.0;
+            if takes_up {
+                let gap = |h: f64| slip.ahead(at(h)[0]);
                 h = illinois((0.0, gap(0.0)), (h, gap(h)), gap);
                 to = at(h);
                 stands = false;
             }
             self.now = if h == left { until } else { self.now + h };
-            self.place = Place {
-                x: to[0],
-                v: to[1],
-                integral: to[2],
-                w: behind(to[0]),
+            let w = if takes_up {
+                slip.taken(to[0])
+            } else {
+                slip.behind(to[0])
             };
-            if !along && engages(to[0]).abs() <= 1e-12 * self.size {
-                self.place.w = self.place.x - way * servo.half_gap;
-            }
+            let [x, v, integral] = to;
+            self.place = Place { x, v, integral, w };
             if stands || failed {
                 self.set_off();
                 return End::Standstill;
             }
-            if self.now >= until {
-                return End::Time;
-            }
         }
+    }
+
+    /// A step of `left` s at most that is accurate enough, and where it leads.
+    fn step(&mut self, slip: &Slip<'_>, from: &[f64; 3], left: f64) -> (f64, [f64; 3]) {
+        let typical = self.servo.typical_time();
+        let reach = self.size.max(from[0].abs()).max(from[1].abs() * typical);
+        let stiffness = self.servo.controller.proportional;
+        let scales = [reach, reach / typical, stiffness * reach];
+        let shortest = SHORTEST * typical;
+        loop {
+            let h = self.h.min(LONGEST * typical).min(left);
+            let (to, error) = step(&|y| slip.rate(y), from, h);
+            let off = error.iter().zip(scales).map(|(e, s)| (e / s).abs());
+            let share = off.fold(0.0, f64::max) / TOLERANCE;
+            let factor = 0.9 * libm::pow(share.max(1e-10), -0.2);
+            if share > 1.0 && h > shortest {
+                self.h = h * factor.max(0.2);
+                continue;
+            }
+            self.h = (h * factor.clamp(0.2, 4.0)).max(shortest);
+            return (h, to);
+        }
+    }
+}
+
+/// A motion in one direction: what is behind the play stays, or goes along at a distance.
+struct Slip<'a> {
+    servo: &'a Servo,
+    way: f64,
+    along: bool,
+    fixed: f64,
+}
+
+impl<'a> Slip<'a> {
+    /// The motion from a place, of which what is behind the play is set right where it goes along.
+    fn new(servo: &'a Servo, way: f64, place: &mut Place) -> Self {
+        let taken = place.x - way * servo.half_gap;
+        let along = way * (taken - place.w) >= 0.0;
+        if along {
+            place.w = taken;
+        }
+        Self {
+            servo,
+            way,
+            along,
+            fixed: place.w,
+        }
+    }
+
+    /// Where what goes along is.
+    fn taken(&self, x: f64) -> f64 {
+        x - self.way * self.servo.half_gap
+    }
+
+    fn behind(&self, x: f64) -> f64 {
+        if self.along {
+            self.taken(x)
+        } else {
+            self.fixed
+        }
+    }
+
+    /// How far the motor is beyond where it takes along what is behind the play.
+    fn ahead(&self, x: f64) -> f64 {
+        self.way * (self.taken(x) - self.fixed)
+    }
+
+    /// How position, velocity and integral change.
+    fn rate(&self, y: &[f64; 3]) -> [f64; 3] {
+        let ([x, v, integral], servo) = (*y, self.servo);
+        let w = self.behind(x);
+        let u = servo.limited(servo.asked(w, v, integral));
+        let dry = self.way * servo.friction.moving(v);
+        let force = u - servo.viscous * v - dry - servo.cogging(x);
+        [
+            v,
+            force / servo.inertia,
+            servo.integral_rate(w, v, integral),
+        ]
     }
 }

@@ -4,7 +4,12 @@ use std::f64::consts::PI;
 
 use num_complex::Complex;
 
+use super::plant::OnOffPlant;
+use super::relay::OnOffRelay;
 use super::run::OnOffLoop;
+use crate::limit_cycle::{self, Intersection};
+use crate::plant::TransferFunction;
+use crate::relay::Relay;
 use crate::root::{SECTIONS, golden_section, illinois};
 
 /// A solution of the harmonic balance.
@@ -37,7 +42,7 @@ const MOST: usize = 40;
 /// ```
 ///
 /// (Tsypkin 1984; Gelb and Vander Velde 1968.) 0 where the sine does not reach the thresholds.
-pub fn gain(loop_: &OnOffLoop, amplitude: f64) -> Complex<f64> {
+fn gain(loop_: &OnOffLoop, amplitude: f64) -> Complex<f64> {
     let relay = &loop_.relay;
     let [on, off] = [1.0, -1.0].map(|sign| relay.dead_zone + sign * relay.relay.hysteresis);
     if amplitude <= on {
@@ -51,35 +56,58 @@ pub fn gain(loop_: &OnOffLoop, amplitude: f64) -> Complex<f64> {
     )
 }
 
-/// All balances, by rising frequency; `None` where the first harmonic does not tell: outputs that are not symmetric, or
-/// a reference that is not 0. A sampled controller acts half its sampling time later in the mean; in discrete time the
-/// samples of plant and controller are the same, and do not. A balance that breaks a shortest time is left out.
+/// All balances, by rising frequency; `None` where the first harmonic is not known: three positions with outputs that differ
+/// or a reference that is not 0, and these in discrete time. With two positions they are a bias, and the mean balances as
+/// well. A sampled controller acts half its sampling time later in the mean; in discrete time the samples of plant and
+/// controller are the same, and do not. A balance that breaks a shortest time is left out.
 pub fn describing_function(loop_: &OnOffLoop) -> Option<Vec<Balance>> {
+    loop_.validate().ok()?;
     let relay = &loop_.relay;
-    let known = relay.relay.is_symmetric() && relay.relay.bias == 0.0 && relay.reference == 0.0;
-    if !known || loop_.validate().is_err() {
-        return None;
-    }
-    let scan = Scan::new(loop_);
-    let mut found = Vec::new();
-    for outer in [false, true] {
-        let mut last: Option<(f64, f64)> = None;
-        for i in 0..=POINTS {
-            let omega = scan.omega(i);
-            let next = scan.phase(omega, outer).map(|(phase, _)| (omega, phase));
-            if let (Some(a), Some(b)) = (last, next) {
-                // The phase is known up to whole turns: a jump by one is no crossing.
-                let crosses = (a.1 < 0.0) != (b.1 < 0.0) && (a.1 - b.1).abs() < PI;
-                if crosses {
-                    found.extend(scan.solve(a, b, outer));
-                }
-            }
-            last = next;
+    let symmetric = relay.relay.is_symmetric() && relay.relay.bias == 0.0;
+    let mut found = match &loop_.plant {
+        _ if symmetric && relay.reference == 0.0 => Scan::new(loop_).balances(),
+        OnOffPlant::Continuous(plant, _) if !relay.has_three_positions() => {
+            two_positions(plant, relay)?
         }
-    }
+        _ => return None,
+    };
     found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     found.truncate(MOST);
     Some(found)
+}
+
+/// Two positions with a reference: that of a relay with a bias that puts the output there in the mean. `None` where no
+/// bias does.
+fn two_positions(plant: &TransferFunction, relay: &OnOffRelay) -> Option<Vec<Balance>> {
+    let gain = plant.dc_gain();
+    let needed = if relay.reference == 0.0 {
+        0.0
+    } else {
+        relay.reference / gain
+    };
+    if !needed.is_finite() || (relay.reference != 0.0 && !gain.is_finite()) {
+        return None;
+    }
+    let around = Relay {
+        bias: relay.relay.bias - needed,
+        delay: relay.relay.delay + 0.5 * relay.sampling.unwrap_or(0.0),
+        ..relay.relay
+    };
+    let levels = [true, false].map(|high| around.output(high));
+    let keeps_its_times = |i: &&Intersection| {
+        // The share of the period in which it is up is what the mean of the output takes.
+        let mean = if gain.is_finite() { i.mean / gain } else { 0.0 };
+        let up = (mean - levels[0]) / (levels[1] - levels[0]);
+        up * i.cycle.period >= relay.min_on && (1.0 - up) * i.cycle.period >= relay.min_off
+    };
+    let all = limit_cycle::describing_function(plant, &around);
+    let balance = |i: &Intersection| Balance {
+        omega: i.omega,
+        period: i.cycle.period,
+        amplitude: i.cycle.amplitude,
+        stable: i.cycle.stable,
+    };
+    Some(all.iter().filter(keeps_its_times).map(balance).collect())
 }
 
 struct Scan<'a> {
@@ -98,13 +126,10 @@ impl<'a> Scan<'a> {
         let relay = &loop_.relay;
         let centre = 1.0 / (loop_.plant.typical_time() + loop_.lag());
         let spread = libm::pow(10_f64, DECADES);
-        let (delay, highest) = match loop_.plant.sampling() {
-            Some(step) => (relay.relay.delay, PI / step),
-            None => {
-                let half = 0.5 * relay.sampling.unwrap_or(0.0);
-                (relay.relay.delay + half, f64::INFINITY)
-            }
-        };
+        let step = loop_.plant.sampling();
+        let highest = step.map_or(f64::INFINITY, |step| PI / step);
+        let half = 0.5 * relay.sampling.filter(|_| step.is_none()).unwrap_or(0.0);
+        let delay = relay.relay.delay + half;
         let least = relay.dead_zone + relay.relay.hysteresis;
         let size = |log: f64| gain(loop_, least * libm::exp(log)).norm();
         // It rises from 0 with a dead zone, and else falls at once.
@@ -121,6 +146,26 @@ impl<'a> Scan<'a> {
             peak,
             least,
         }
+    }
+
+    fn balances(&self) -> Vec<Balance> {
+        let mut found = Vec::new();
+        for outer in [false, true] {
+            let mut last: Option<(f64, f64)> = None;
+            for i in 0..=POINTS {
+                let omega = self.omega(i);
+                let next = self.phase(omega, outer).map(|(phase, _)| (omega, phase));
+                if let (Some(a), Some(b)) = (last, next) {
+                    // The phase is known up to whole turns: a jump by one is no crossing.
+                    let crosses = (a.1 < 0.0) != (b.1 < 0.0) && (a.1 - b.1).abs() < PI;
+                    if crosses {
+                        found.extend(self.solve(a, b, outer));
+                    }
+                }
+                last = next;
+            }
+        }
+        found
     }
 
     fn omega(&self, i: i32) -> f64 {

@@ -8,9 +8,11 @@ mod course;
 mod cycle;
 mod describing_function;
 mod discrete;
+mod pattern;
 mod plant;
 mod relay;
 mod run;
+mod simulation;
 mod stability;
 
 pub use cycle::{OnOffCycle, Settled, settled};
@@ -18,4 +20,5 @@ pub use describing_function::{Balance, describing_function};
 pub use discrete::DiscretePlant;
 pub use plant::OnOffPlant;
 pub use relay::{OnOffRelay, Position};
-pub use run::{Cause, OnOffLoop, OnOffRun, Switch, run};
+pub use run::{Cause, OnOffLoop, OnOffRun, Switch};
+pub use simulation::run;

@@ -61,7 +61,7 @@ impl OnOffRelay {
                 .ok_or(RelayError { name, value, range })
         };
         let at_least_0 = [
-            ("dead_zone", self.dead_zone, "0 or more"),
+            ("dead zone", self.dead_zone, "0 or more"),
             ("min_on", self.min_on, "0 s or more"),
             ("min_off", self.min_off, "0 s or more"),
         ];

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, RowDVector};
 
-use super::cycle::Pattern;
+use super::pattern::Pattern;
 use super::run::Cause;
 use crate::simulate::State;
 

@@ -72,12 +72,11 @@ impl OnOffScenario {
     /// Line and column of what is no TOML or not expected, or the table and value that cannot be.
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
         let file: File = toml::from_str(text).map_err(|e| located(text, &e))?;
-        let plant = match file.plant.read_discrete() {
-            Some(plant) => OnOffPlant::Discrete(plant?),
-            None => {
-                let (plant, space) = file.plant.read()?;
-                OnOffPlant::Continuous(plant, space)
-            }
+        let plant = if let Some(plant) = file.plant.read_discrete() {
+            OnOffPlant::Discrete(plant?)
+        } else {
+            let (plant, space) = file.plant.read()?;
+            OnOffPlant::Continuous(plant, space)
         };
         if file.run.noise.is_some() {
             return Err(ScenarioError::Noise);
