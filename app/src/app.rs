@@ -375,7 +375,7 @@ impl HysteronApp {
         if count > 1 {
             let name = file.path().file_name().unwrap_or_default();
             let name = name.to_string_lossy();
-            let saying = format!("Of {count} files one is opened: {name}.");
+            let saying = format!("Only one of the {count} files is opened: {name}.");
             self.notice = Some(Notice::done(ctx, saying));
         }
     }

@@ -185,7 +185,7 @@ fn png(bytes: &[u8]) -> ([usize; 2], usize) {
 fn every_plot_gives_its_picture_and_its_numbers() {
     let mut harness = app("explore", WIDE);
     finish(&mut harness);
-    let menu = "Menu of the plot: its rate dy/dt [1/s] over output y";
+    let menu = "Menu of the plot: its rate of change [1/s] over output y";
     let (name, bytes) = ask(&mut harness, menu, "Data of this plot (CSV)");
     assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.csv");
     let text = String::from_utf8(bytes).expect("text");
@@ -193,8 +193,8 @@ fn every_plot_gives_its_picture_and_its_numbers() {
     assert_eq!(
         lines.next(),
         Some(
-            "from the start: output y,from the start: its rate dy/dt [1/s],\
-             limit cycle: output y,limit cycle: its rate dy/dt [1/s],now: output y,now: its rate dy/dt [1/s]"
+            "from the start: output y,from the start: its rate of change [1/s],\
+             limit cycle: output y,limit cycle: its rate of change [1/s],now: output y,now: its rate of change [1/s]"
         )
     );
     // The largest output on the limit cycle is its amplitude.
@@ -207,7 +207,7 @@ fn every_plot_gives_its_picture_and_its_numbers() {
     let (name, bytes) = ask(&mut harness, menu, "Picture of this plot (SVG)");
     assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.svg");
     let svg = String::from_utf8(bytes).expect("text");
-    for word in ["output y", "its rate dy/dt [1/s]"] {
+    for word in ["output y", "its rate of change [1/s]"] {
         assert!(svg.contains(word), "{word}");
     }
     for elsewhere in ["real part", "Relay", "thresholds"] {
@@ -363,7 +363,7 @@ fn a_file_that_was_opened_is_opened_again_by_one_click() {
     opened(&mut harness);
     finish(&mut harness);
     click(&mut harness, "Open another");
-    harness.get_by_label("Opened before:");
+    harness.get_by_label("Recent files:");
     harness.get_by_label("drive-02.csv").click();
     opened(&mut harness);
 }

@@ -36,7 +36,7 @@ fn what_cannot_be_told_apart_comes_with_an_experiment_that_opens_in_explore() {
     click(&mut harness, "Light");
     picture(&mut harness, "compare_next_experiment_light");
     press(&mut harness, "Limits of the experiment");
-    press(&mut harness, "What other experiments would tell");
+    press(&mut harness, "What other experiments would show");
     harness.get_by_label_contains("Largest input");
     press(&mut harness, "Limits of the experiment");
     // Either explanation with either gain: what one would see.

@@ -234,7 +234,7 @@ fn what_may_help_is_offered_though_chance_is_not_ruled_out() {
     let csv = rig.measure().to_csv();
     harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
     finish(&mut harness);
-    harness.get_by_label("Perhaps, though it may be chance");
+    harness.get_by_label("Perhaps, but it may be chance");
     let state = state(&harness);
     let hint = state["hint"].as_str().expect("a hint");
     assert!(hint.starts_with("Perhaps "), "{hint}");

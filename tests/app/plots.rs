@@ -263,7 +263,7 @@ fn a_moment_that_is_pointed_at_is_marked_in_the_other_plots() {
         (
             "v1;explore;explore.paused=20",
             "output y, input u over time [s]",
-            &["its rate dy/dt [1/s] over output y"][..],
+            &["its rate of change [1/s] over output y"][..],
         ),
         (
             "v1;backlash;backlash.paused=1",

@@ -17,13 +17,13 @@ pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
 use super::chart_keys::Worked;
 use super::chart_menu;
-pub use super::chart_reading::significant;
 use super::chart_reading::{Reader, reading};
 use super::chart_zoom::Zoomed;
 use crate::export::Table;
 use crate::language::tr;
 use crate::theme;
 pub use hysteron_core::curve::{envelope, extremes, sparse};
+pub use hysteron_core::uncertain::significant;
 
 /// How near a point must be to be pointed at, points on the screen.
 const REACH: f32 = 8.0;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::PlantError;
 use crate::relay::RelayError;
+use crate::uncertain::brief;
 
 /// Why there is no controller.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
@@ -92,7 +93,8 @@ pub enum TuningError {
     },
     /// The gain adaptation did not reach the wanted amplitude.
     #[error(
-        "the gain adaptation stands at gain {gain:.4} with a relative amplitude error of {error:.2e} after {runs} relay runs: the wanted phase may be out of this plant's reach"
+        "the gain adaptation stands at gain {gain:.4} with a relative amplitude error of {} after {runs} relay runs: the wanted phase may be out of this plant's reach",
+        brief(*error)
     )]
     NotConverged {
         /// Relay runs made.

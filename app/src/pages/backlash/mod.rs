@@ -427,7 +427,7 @@ impl Backlash {
             )
         } else {
             Hint::open(
-                "Give friction and delay back: they make an uneven relay drift through the gap.",
+                "Put friction and delay back: with them an asymmetric relay drifts through the gap.",
                 "v1;backlash",
             )
         }

@@ -83,11 +83,11 @@ fn sentence(print: &Fingerprint) -> String {
     let name = name_of(print.effect);
     let alike = two_digits(print.likeness);
     if print.likeness >= SAME {
-        format!("What is left looks like {name}: likeness {alike}, where 1 is the same.")
+        format!("The residual looks like {name}: similarity {alike}, where 1 is identical.")
     } else if print.likeness >= ALIKE {
-        format!("{name} explains a part of what is left: likeness {alike}, where 1 is the same.")
+        format!("{name} explains part of the residual: similarity {alike}, where 1 is identical.")
     } else {
-        format!("What is left does not look like {name}: likeness {alike}, where 1 is the same.")
+        format!("The residual does not look like {name}: similarity {alike}, where 1 is identical.")
     }
 }
 

@@ -205,6 +205,9 @@ impl Compare {
         if self.parts.fresh {
             return;
         }
+        if self.look == Look::Time {
+            self.missing_ui(ui, targets, commands);
+        }
         match self.look {
             Look::Time => plots::ui(self, ui, height),
             Look::Places => atlas::ui(self, ui),

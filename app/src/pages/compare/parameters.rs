@@ -2,7 +2,7 @@
 
 use hysteron_core::diagnosis::{Parameter, StepReport};
 use hysteron_core::effect::name_of;
-use hysteron_core::uncertain::{NOT_TOLD, in_table, interval};
+use hysteron_core::uncertain::{interval, with_error};
 
 use crate::language::tr;
 use crate::theme;
@@ -28,12 +28,9 @@ pub(super) fn ui(report: &StepReport, ui: &mut egui::Ui) {
                         ui.vertical(|ui| {
                             ui.spacing_mut().item_spacing.y = 0.0;
                             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-                            ui.label(tr(in_table(p.value, p.std_error, &p.unit)))
+                            ui.label(tr(with_error(p.value, p.std_error, &p.unit)))
                                 .on_hover_text(tr(hover));
                             ui.small(tr(&p.label));
-                            if !p.is_told() {
-                                ui.small(tr(NOT_TOLD));
-                            }
                         });
                         interval_ui(p, ui);
                         ui.end_row();

@@ -38,8 +38,7 @@ const ROOM: f64 = 0.08;
 const GROUND: f32 = 0.75;
 
 /// What jumps of the residual are.
-const RESTARTED: &str = "The model is restarted in short windows from estimated states: where one begins, the residual \
-                         may jump.";
+const RESTARTED: &str = "The model starts afresh from an estimated state in each short window: where one begins, the residual (measured minus model) may jump.";
 
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
@@ -109,7 +108,7 @@ fn curves(page: &Compare, modelled: bool) -> Vec<Key<'static>> {
         if page.before && page.report_before().is_some() {
             curves.push(("the step before", theme::BEFORE, Shape::Line));
         }
-        curves.push(("noise, 2 sigma", theme::NOISE, Shape::Dashes));
+        curves.push(("noise, ±2σ", theme::NOISE, Shape::Dashes));
     }
     curves
 }
@@ -279,7 +278,7 @@ fn residual_plot(
                 .width(1.2),
         );
         for side in [2.0, -2.0] {
-            let line = HLine::new(tr("noise, 2 sigma"), side * modelled.noise);
+            let line = HLine::new(tr("noise, ±2σ"), side * modelled.noise);
             plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
         }
         drawn

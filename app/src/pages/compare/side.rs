@@ -168,7 +168,7 @@ fn candidates_ui(
         card_ui(page, report, candidate, ui, targets, commands);
     }
     if !perhaps.is_empty() {
-        ui.strong(tr("Perhaps, though it may be chance"));
+        ui.strong(tr("Perhaps, but it may be chance"));
     }
     for candidate in perhaps {
         card_ui(page, report, candidate, ui, targets, commands);
@@ -218,13 +218,13 @@ fn card_ui(
                 commands.push(Command::Add(id));
             }
             ui.label(
-                RichText::new(tr(format!("leaves {}", times_noise(candidate.error)))).strong(),
+                RichText::new(tr(format!("leaves {} × noise", times_noise(candidate.error)))).strong(),
             );
             if report.fingerprints.iter().any(|f| f.effect == id) {
                 let chosen = page.look == Look::Fingerprint && page.chosen() == Some(id);
                 let show = ui
                     .selectable_label(chosen, tr("Fingerprint"))
-                    .on_hover_text(tr("What it would leave, beside what is left"));
+                    .on_hover_text(tr("The residual that it would leave if it were missing, beside the present one"));
                 targets.note(format!("fingerprint:{id}"), ui, &show);
                 if show.clicked() {
                     commands.push(Command::Fingerprint(id));
@@ -249,7 +249,7 @@ fn card_ui(
             ui.colored_label(
                 ui.visuals().warn_fg_color,
                 tr(format!(
-                    "These data cannot tell it from {}.",
+                    "These data cannot tell it apart from {}.",
                     names.join(" or ")
                 )),
             );

@@ -44,14 +44,14 @@ impl PlantEditor {
         }
         if let Some(error) = &self.error {
             ui.colored_label(ui.visuals().warn_fg_color, tr(error));
-            ui.small(tr(format!("Still shown: P(s) = {}", formula(plant))));
+            ui.small(tr(format!("Still showing P(s) = {}", formula(plant))));
             if ui.button(tr("Back to this plant")).clicked() {
                 self.error = None;
                 self.read = None;
             }
         } else {
             ui.small(tr(
-                "Type as you write it: 2 e^{-0.5s}/(3s+1), (1-s)/((s+1)(s+2))",
+                "Type it as you would write it: 2 e^{-0.5s}/(3s+1), (1-s)/((s+1)(s+2))",
             ));
         }
         describe_ui(ui, plant);

@@ -95,7 +95,8 @@ fn difference(value: f64, exact: f64) -> String {
     if percent.abs() < ROUNDING {
         "same".to_owned()
     } else if percent.abs() < 0.005 {
-        format!("{percent:+.0e} %")
+        let sign = if percent > 0.0 { "+" } else { "" };
+        format!("{sign}{} %", significant(percent, 1))
     } else {
         format!("{percent:+.2} %")
     }
@@ -128,7 +129,7 @@ pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
             ui.label(tr_number(format!("{:.3} %", 100.0 * share)));
         });
     }
-    ui.small(tr("The describing function sees the first only."));
+    ui.small(tr("The describing function sees only the first."));
 }
 
 /// The equations behind the page.
@@ -147,7 +148,7 @@ mod tests {
     fn a_short_period_has_its_digits() {
         assert_eq!(four_digits(4.7881), "4.7881");
         assert_eq!(four_digits(0.001_234_5), "0.001234");
-        assert_eq!(four_digits(3.2e-5), "3.200e-5");
+        assert_eq!(four_digits(3.2e-5), "3.2 × 10⁻⁵");
         assert_eq!(four_digits(0.0), "0");
     }
 }

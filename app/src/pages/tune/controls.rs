@@ -46,7 +46,7 @@ impl Tune {
             "asymmetry a",
         )
         .on_hover_text(tr(
-            "Of the relay in step 4 only: without it a test tells no static gain",
+            "For the relay in step 4 only: without it a test says nothing about the static gain",
         ));
         slider(
             ui,
@@ -57,7 +57,7 @@ impl Tune {
             "delay [s]",
         )
         .on_hover_text(tr(
-            "How late the actuator acts; part of the plant for the controller",
+            "How late the actuator responds; to the controller it is part of the plant",
         ));
     }
 
@@ -112,7 +112,7 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     let plant = &mut desk.relay_loop.plant;
     let chosen = all.iter().find(|p| p.plant == *plant);
     egui::ComboBox::from_label(tr("plant"))
-        .selected_text(tr(chosen.map_or("that of Explore", |p| p.name)))
+        .selected_text(tr(chosen.map_or("the one in Explore", |p| p.name)))
         .width(220.0)
         .show_ui(ui, |ui| {
             for preset in &all {
@@ -126,7 +126,7 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
         ui.small(tr(preset.sentence));
     }
     ui.small(tr(
-        "Plant and relay are those of Explore; the asymmetry is that of step 4.",
+        "Plant and relay are those in Explore; the asymmetry is that of step 4.",
     ));
 }
 
