@@ -19,6 +19,7 @@ use crate::document::Document;
 #[cfg(target_arch = "wasm32")]
 use crate::edges;
 use crate::files::Door;
+use crate::fonts;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
@@ -183,6 +184,7 @@ impl HysteronApp {
     /// One frame: takes what came in, draws the page, publishes the state.
     pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
         if self.frame == 0 {
+            fonts::apply(ui.ctx());
             theme::apply(ui.ctx());
             let look = self.look.unwrap_or_else(|| Look::of_system(ui.ctx()));
             self.set_look(ui.ctx(), look);

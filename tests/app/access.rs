@@ -187,7 +187,7 @@ fn every_plot_gives_its_picture_and_its_numbers() {
     finish(&mut harness);
     let menu = "Menu of the plot: its rate of change [1/s] over output y";
     let (name, bytes) = ask(&mut harness, menu, "Data of this plot (CSV)");
-    assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.csv");
+    assert_eq!(name, "explore-its-rate-of-change-over-output-y.csv");
     let text = String::from_utf8(bytes).expect("text");
     let mut lines = text.lines();
     assert_eq!(
@@ -205,7 +205,7 @@ fn every_plot_gives_its_picture_and_its_numbers() {
     assert!((largest / amplitude.expect("a cycle") - 1.0).abs() < 1e-3);
 
     let (name, bytes) = ask(&mut harness, menu, "Picture of this plot (SVG)");
-    assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.svg");
+    assert_eq!(name, "explore-its-rate-of-change-over-output-y.svg");
     let svg = String::from_utf8(bytes).expect("text");
     for word in ["output y", "its rate of change [1/s]"] {
         assert!(svg.contains(word), "{word}");
@@ -214,7 +214,7 @@ fn every_plot_gives_its_picture_and_its_numbers() {
         assert!(!svg.contains(elsewhere), "{elsewhere}");
     }
     let (name, bytes) = ask(&mut harness, menu, "Picture of this plot (PNG)");
-    assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.png");
+    assert_eq!(name, "explore-its-rate-of-change-over-output-y.png");
     let (size, colours) = png(&bytes);
     // A part of the page, and not a blank one.
     assert!(size[0] > 300 && size[0] < 1000, "{size:?}");

@@ -188,22 +188,22 @@ fn a_number_that_cannot_be_changes_nothing_and_is_said() {
         (
             "delay [s]",
             "2 kg",
-            "2 kg cannot be taken: a number in s is wanted.",
+            "2 kg is not accepted: enter a number in s.",
         ),
         (
             "delay [s]",
             "1e",
-            "1e cannot be taken: a number in s is wanted.",
+            "1e is not accepted: enter a number in s.",
         ),
         (
             "delay [s]",
             "50",
-            "50 cannot be taken: the range goes from 0 to 2 s.",
+            "50 is not accepted: the range is 0 to 2 s.",
         ),
         (
             "noise σ",
             "50 ms",
-            "50 ms cannot be taken: enter a number without a unit.",
+            "50 ms is not accepted: enter a number without a unit.",
         ),
     ] {
         type_number(&mut harness, name, text);
@@ -540,7 +540,7 @@ fn of_several_files_it_is_said_which_one_is_opened() {
         harness.input_mut().dropped_files.push(file);
     }
     harness.step();
-    assert_eq!(notice(&harness), "Of 2 files one is opened: a.csv.");
+    assert_eq!(notice(&harness), "Only one of the 2 files is opened: a.csv.");
 }
 
 #[test]

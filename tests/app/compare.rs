@@ -60,7 +60,7 @@ fn what_cannot_be_told_apart_comes_with_an_experiment_that_opens_in_explore() {
     assert_eq!(number(&relay, "bias"), 0.0);
     // It says what it is for, until something else is shown there.
     let purpose =
-        "Experiment that tells Gain asymmetry and Constant load apart, for drive-05. Here if it is";
+        "Experiment that tells Gain asymmetry and Constant load apart, for drive-05. Shown here for the case";
     harness.get_by_label(&format!("{purpose} Gain asymmetry."));
     picture(&mut harness, "explore_experiment");
     click(&mut harness, "Back to Compare");
@@ -98,7 +98,7 @@ fn the_way_goes_back_and_forth_and_shows_the_step_before() {
         state(&harness)["compare"]["fingerprint"],
         "coulomb_friction"
     );
-    harness.get_by_label_contains("What is left looks like Coulomb friction");
+    harness.get_by_label_contains("The residual looks like Coulomb friction");
     picture(&mut harness, "compare_fingerprint");
     press(&mut harness, "Add Coulomb friction");
     let after = error(&harness);
@@ -233,7 +233,7 @@ fn the_hint_follows_what_is_open_and_what_was_found() {
     says(&harness, "Coulomb friction helps most");
     click(&mut harness, "Try it");
     assert!(state(&harness)["error"].as_f64().is_some_and(|e| e < 1.2));
-    says(&harness, "Nothing more is missing: see beside it");
+    says(&harness, "Nothing more is missing: compare with");
     click(&mut harness, "Try it");
     let link = state(&harness)["link"].clone();
     assert!(
@@ -267,7 +267,7 @@ fn the_hint_says_what_is_under_way_needless_or_contradicted() {
     let ctx = harness.ctx.clone();
     assert_eq!(harness.state_mut().open_link(&ctx, text), Ok(()));
     harness.step();
-    says(&harness, "Every effect of the library is tried now");
+    says(&harness, "Every effect in the library is being tried");
     finish(&mut harness);
     says(&harness, "Quadratic drag is not needed: leave it out");
     press(&mut harness, "Try it");

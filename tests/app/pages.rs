@@ -168,7 +168,7 @@ fn an_effect_of_ones_own_can_be_undone_and_done_again() {
     harness.get_by_label("Add your effect").click_accesskit();
     harness.step();
     finish(&mut harness);
-    harness.get_by_label_contains("with bump or without");
+    harness.get_by_label_contains("with or without bump");
     for (button, effects) in [
         ("Undo", vec!["input_delay"]),
         ("Redo", vec!["input_delay", "bump"]),

@@ -44,7 +44,7 @@ const RESTARTED: &str = "The model starts afresh from an estimated state in each
 const CAPTION: f32 = 26.0;
 
 /// Least width of the labels of y: the plots line up at the widest.
-const AXIS_WIDTH: f32 = 106.0;
+const AXIS_WIDTH: f32 = 64.0;
 
 /// Less is rounding, points.
 const PIXEL: f32 = 1.0;
