@@ -540,7 +540,10 @@ fn of_several_files_it_is_said_which_one_is_opened() {
         harness.input_mut().dropped_files.push(file);
     }
     harness.step();
-    assert_eq!(notice(&harness), "Only one of the 2 files is opened: a.csv.");
+    assert_eq!(
+        notice(&harness),
+        "Only one of the 2 files is opened: a.csv."
+    );
 }
 
 #[test]

@@ -59,8 +59,7 @@ fn what_cannot_be_told_apart_comes_with_an_experiment_that_opens_in_explore() {
     );
     assert_eq!(number(&relay, "bias"), 0.0);
     // It says what it is for, until something else is shown there.
-    let purpose =
-        "Experiment that tells Gain asymmetry and Constant load apart, for drive-05. Shown here for the case";
+    let purpose = "Experiment that tells Gain asymmetry and Constant load apart, for drive-05. Shown here for the case";
     harness.get_by_label(&format!("{purpose} Gain asymmetry."));
     picture(&mut harness, "explore_experiment");
     click(&mut harness, "Back to Compare");
@@ -269,7 +268,7 @@ fn the_hint_says_what_is_under_way_needless_or_contradicted() {
     harness.step();
     says(&harness, "Every effect in the library is being tried");
     finish(&mut harness);
-    says(&harness, "Quadratic drag is not needed: leave it out");
+    says(&harness, "Quadratic drag is not needed: remove it");
     press(&mut harness, "Try it");
     assert!(state(&harness)["error"].as_f64().is_some_and(|e| e < 1.2));
     says(&harness, "Nothing more is missing");
@@ -279,7 +278,7 @@ fn the_hint_says_what_is_under_way_needless_or_contradicted() {
         .state_mut()
         .open(&ctx, "wrong.toml", known.as_bytes());
     finish(&mut harness);
-    says(&harness, "Correct the known J1 in your model");
+    says(&harness, "Correct the given value of J1 in your model");
 }
 
 #[test]

@@ -37,7 +37,7 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     let page = state(&teacher)["link"].as_str().expect("a link").to_owned();
     assert!(!page.contains("delay") && !page.contains("whale"), "{page}");
     let hint = state(&teacher)["hint"].as_str().expect("a hint").to_owned();
-    assert!(hint.starts_with("Hand on the mystery"), "{hint}");
+    assert!(hint.starts_with("Share the file or link"), "{hint}");
     // What is chosen afterwards is not in it.
     let remark = "This is still the mystery that was made: your choices have changed since.";
     assert!(teacher.query_by_label(remark).is_none());

@@ -54,6 +54,7 @@ const ROOMS: [&str; 36] = [
     "effect",
     "diagnosis",
     "user_model",
+    "by_hand",
     "criticism",
     "report",
     "mystery",

@@ -26,6 +26,10 @@ pub use hysteron_core::curve::{envelope, extremes, sparse};
 use hysteron_core::uncertain::Scale;
 pub use hysteron_core::uncertain::significant;
 
+/// How much fainter the lines of the grid are the closer they stand: fainter than any curve.
+const GRID_FADE: f32 = 1.0;
+const GRID: f32 = 0.3;
+
 /// How near a point must be to be pointed at, points on the screen.
 const REACH: f32 = 8.0;
 
@@ -71,6 +75,7 @@ impl<'a> Chart<'a> {
         let plot = Plot::new(salt)
             .height(height)
             .allow_scroll(false)
+            .grid_fade(GRID_FADE)
             .y_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[1])));
         Self {
             plot,
@@ -179,6 +184,7 @@ impl<'a> Chart<'a> {
                 [x / across, p.y / up]
             })
         });
+        plot = plot.grid_color(ui.visuals().text_color().gamma_multiply(GRID));
         plot = with_axes(plot, names, factors, decades, [width, height]);
         let menu = egui::Popup::is_any_open(&ctx);
         let keys = chart_cursor::live(&ctx).is_some();

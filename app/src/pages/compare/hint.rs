@@ -112,9 +112,7 @@ impl Compare {
     /// Where structure is left that no effect explains.
     fn where_it_fails(&self) -> Hint {
         if !self.forms().is_empty() {
-            return Hint::say(
-                "Nothing in the library fits: try one of the simplest forms of the missing force.",
-            );
+            return Hint::say("Nothing fits: try one of the simplest forms of the missing force.");
         }
         if self.look == Look::Places {
             return Hint::say("No effect explains the rest: write one of your own.");
@@ -158,12 +156,10 @@ fn helps(what: &Either, reach: Reach, left: f64) -> String {
             format!("{names} helps most; this record cannot tell which.")
         }
         (Either::One(name) | Either::Several(name), Reach::Part) => {
-            format!(
-                "No single effect explains the rest. {name} helps most, but leaves {left:.0} % of the error."
-            )
+            format!("{name} helps most, but leaves {left:.0} % of the error.")
         }
         (Either::One(name) | Either::Several(name), Reach::Little) => {
-            format!("Nothing in the library fits: even {name} leaves {left:.0} % of the error.")
+            format!("Nothing fits: even {name} leaves {left:.0} % of the error.")
         }
     }
 }
