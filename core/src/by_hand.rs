@@ -20,6 +20,9 @@ const STEPS: usize = 3;
 /// Share of the noise by which a state is moved for a derivative.
 const MOVED: f64 = 1e-3;
 
+/// Fewest samples.
+const LEAST: usize = 10;
+
 /// Share by which the error with the fitted values may differ from that of the fit: a model with more states than are known
 /// here, such as a load that was felt, cannot be set by hand.
 const ALIKE: f64 = 0.1;
@@ -27,7 +30,7 @@ const ALIKE: f64 = 0.1;
 /// What a model with values set by hand says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HandReplay {
-    /// One entry per measured output, as long as the measurement; `NaN` where it was not replayed.
+    /// One entry per measured output, a value for each of the samples.
     pub modelled: Vec<Vec<f64>>,
     /// Error in noise units, comparable with that of the step.
     pub error: f64,
@@ -53,9 +56,18 @@ pub struct ByHand {
 }
 
 impl ByHand {
-    /// Of a step and its record; none where the model has more than can be set here: an effect of the user's own, or a
-    /// load that its contacts tell.
-    pub fn new(measurement: &Measurement, report: &StepReport) -> Option<Self> {
+    /// Of a step and these samples of its record; none where the model has more than can be set here: an effect of the
+    /// user's own, or a load that its contacts tell.
+    pub fn new(
+        measurement: &Measurement,
+        report: &StepReport,
+        (from, to): (usize, usize),
+    ) -> Option<Self> {
+        let to = to.min(measurement.len());
+        let samples = from..to;
+        if samples.len() < LEAST {
+            return None;
+        }
         let step = &report.step;
         let own = step.parameters.iter().filter(|p| p.effect.is_none());
         let baseline = match (measurement.kind, own.count()) {
@@ -80,18 +92,23 @@ impl ByHand {
             .map(|(output, channel)| Output {
                 is_velocity: output.quantity != Quantity::Position,
                 noise: channel.noise,
-                values: output.values.clone(),
+                values: output
+                    .values
+                    .get(samples.clone())
+                    .unwrap_or_default()
+                    .to_vec(),
             })
             .collect();
-        let fitted: Vec<Vec<f64>> = channels.iter().map(|c| c.modelled.clone()).collect();
+        let fitted = channels.iter().map(|c| c.modelled.get(samples.clone()));
+        let fitted: Vec<Vec<f64>> = fitted.map(|m| m.unwrap_or_default().to_vec()).collect();
         let values: Vec<f64> = step.parameters.iter().map(|p| p.value).collect();
         let mut hand = Self {
-            excitation: excitation(measurement, &outputs, false)?,
+            excitation: excitation(measurement, from, &outputs, false)?,
             kind: measurement.kind,
             baseline,
             effects,
             outputs,
-            starts: starts(measurement, report),
+            starts: starts(measurement, report, (from, to)),
             unit: 1.0,
         };
         let of_fit = hand.rms(&fitted);
@@ -100,12 +117,18 @@ impl ByHand {
         let mut ways = at_rest.into_iter();
         // What acted before the record is not said: its first sample, or nothing.
         let alike = ways.any(|at_rest| {
-            let excitation = excitation(measurement, &hand.outputs, at_rest);
+            let excitation = excitation(measurement, from, &hand.outputs, at_rest);
             hand.excitation = excitation.unwrap_or_else(|| hand.excitation.clone());
             hand.starts.clone_from(&first);
-            hand.starts = hand.settled_starts(&values);
-            let error = hand.replay(&values, None).error;
-            (error / step.error - 1.0).abs() < ALIKE
+            let alike = |hand: &Self| {
+                let error = hand.replay(&values).error;
+                (error / step.error - 1.0).abs() < ALIKE
+            };
+            // What the replay of the fit shows is the state itself, but for a slow sensor or a velocity that is not there.
+            alike(&hand) || {
+                hand.starts = hand.settled_starts(&values);
+                alike(&hand)
+            }
         });
         alike.then_some(hand)
     }
@@ -136,18 +159,26 @@ impl ByHand {
         self.excitation.is_empty()
     }
 
-    /// The samples of the whole windows that have these samples, the last one excluded.
-    pub fn windows_about(&self, from: usize, to: usize) -> (usize, usize) {
-        let samples = || self.starts.iter().map(|s| s.sample);
+    /// The samples of the whole windows of a step that have these samples, the last one excluded, but no more than `most`.
+    pub fn windows_about(
+        report: &StepReport,
+        (from, to): (usize, usize),
+        most: usize,
+    ) -> (usize, usize) {
+        let samples = || report.replay.window_starts.iter().copied();
         let first = samples().filter(|s| *s <= from).max().unwrap_or(0);
-        let last = samples().find(|s| *s >= to).unwrap_or(self.len());
-        (first, last)
+        let all = report
+            .replay
+            .channels
+            .first()
+            .map_or(to, |c| c.modelled.len());
+        let last = samples().find(|s| *s >= to).unwrap_or(all);
+        (first, last.min(first + most))
     }
 
-    /// What the model says with these values, in the order of the parameters of the step; where `within` is given, in
-    /// these samples alone, which begin with a window.
-    pub fn replay(&self, values: &[f64], within: Option<(usize, usize)>) -> HandReplay {
-        let modelled = self.run(values, &self.starts, within);
+    /// What the model says with these values, in the order of the parameters of the step.
+    pub fn replay(&self, values: &[f64]) -> HandReplay {
+        let modelled = self.run(values, &self.starts);
         let error = self.unit * self.rms(&modelled);
         HandReplay { modelled, error }
     }
@@ -155,7 +186,7 @@ impl ByHand {
     /// The same, with the states of the windows that suit these values best.
     pub fn settled(&self, values: &[f64]) -> HandReplay {
         let starts = self.settled_starts(values);
-        let modelled = self.run(values, &starts, None);
+        let modelled = self.run(values, &starts);
         let error = self.unit * self.rms(&modelled);
         HandReplay { modelled, error }
     }
@@ -171,28 +202,16 @@ impl ByHand {
         model
     }
 
-    fn run(
-        &self,
-        values: &[f64],
-        starts: &[Start],
-        within: Option<(usize, usize)>,
-    ) -> Vec<Vec<f64>> {
+    fn run(&self, values: &[f64], starts: &[Start]) -> Vec<Vec<f64>> {
         let n = self.len();
         let model = self.model(values);
         let (mut position, mut velocity) = (vec![f64::NAN; n], vec![f64::NAN; n]);
-        let mut go = |excitation: &Excitation, starts: &[Start]| {
-            let known = FollowedLoad::default();
-            let loads = excitation.follow(&model, starts, &known, LoadBegin::Followed);
-            excitation.replay(&model, starts, &loads, &mut position, &mut velocity);
-        };
-        match within {
-            None => go(&self.excitation, starts),
-            Some((from, to)) => {
-                let inside = starts.iter().filter(|s| (from..to).contains(&s.sample));
-                let inside: Vec<Start> = inside.copied().collect();
-                go(&self.excitation.within(vec![(from, to)]), &inside);
-            }
-        }
+        let known = FollowedLoad::default();
+        let loads = self
+            .excitation
+            .follow(&model, starts, &known, LoadBegin::Followed);
+        self.excitation
+            .replay(&model, starts, &loads, &mut position, &mut velocity);
         let of = |o: &Output| {
             if o.is_velocity {
                 velocity.clone()
@@ -228,13 +247,13 @@ impl ByHand {
         let steps = [MOVED * noise(false), MOVED * noise(true)];
         let drive = self.kind == Kind::Drive;
         for _ in 0..STEPS {
-            let here = self.run(values, &starts, None);
+            let here = self.run(values, &starts);
             let moved = |k: usize| -> Vec<Vec<f64>> {
                 let mut there = starts.clone();
                 for start in &mut there {
                     *[&mut start.position, &mut start.velocity][k] += steps[k];
                 }
-                self.run(values, &there, None)
+                self.run(values, &there)
             };
             let by_position = drive.then(|| moved(0));
             let by_velocity = moved(1);
@@ -282,10 +301,21 @@ impl ByHand {
     }
 }
 
-/// The measured input, before which nothing moved or its first value acted; none where the record is too short.
-fn excitation(measurement: &Measurement, outputs: &[Output], at_rest: bool) -> Option<Excitation> {
-    let input = &measurement.input.values;
-    let first = *input.first().filter(|_| measurement.len() > 2)?;
+/// The measured input from a sample on, before which nothing moved or its last value acted; none where it cannot be.
+fn excitation(
+    measurement: &Measurement,
+    from: usize,
+    outputs: &[Output],
+    at_rest: bool,
+) -> Option<Excitation> {
+    let to = from + outputs.first()?.values.len();
+    let input = measurement.input.values.get(from..to)?;
+    let time = measurement.time.get(from..to)?;
+    let before = match from.checked_sub(1) {
+        Some(last) => *measurement.input.values.get(last)?,
+        None if at_rest => 0.0,
+        None => *input.first()?,
+    };
     let seen = |is_velocity: bool| outputs.iter().find(|o| o.is_velocity == is_velocity);
     let velocity = seen(true);
     let sensor = if velocity.is_some() {
@@ -297,37 +327,39 @@ fn excitation(measurement: &Measurement, outputs: &[Output], at_rest: bool) -> O
         Kind::Process => (Vec::new(), None),
         Kind::Drive => {
             let [x, v] = [seen(false), velocity].map(|o| o.map(|o| (o.values.as_slice(), o.noise)));
-            let position = smoothed(&measurement.time, x, v);
             let noise = x.map(|x| FollowedNoise::Position(x.1));
             let noise = noise.or(v.map(|v| FollowedNoise::Velocity(v.1)));
-            (position, noise)
+            (smoothed(time, x, v), noise)
         }
     };
     let shown = velocity.or(outputs.first())?.values.clone();
-    let before = if at_rest { 0.0 } else { first };
-    let excitation = Excitation::new(&measurement.time, input, before, sensor, position, noise);
-    Some(excitation.with_shown(shown).at_rest_at_first(at_rest))
+    let excitation = Excitation::new(time, input, before, sensor, position, noise);
+    Some(
+        excitation
+            .with_shown(shown)
+            .at_rest_at_first(at_rest && from == 0),
+    )
 }
 
 /// The states of the fit where its windows begin, as far as its replay shows them.
-fn starts(measurement: &Measurement, report: &StepReport) -> Vec<Start> {
+fn starts(
+    measurement: &Measurement,
+    report: &StepReport,
+    (from, to): (usize, usize),
+) -> Vec<Start> {
     let time = &measurement.time;
-    let of = |wanted: fn(Quantity) -> bool| {
+    let of = |position: bool| {
         let channels = measurement.outputs.iter().zip(&report.replay.channels);
         channels
-            .filter(|(output, _)| wanted(output.quantity))
+            .filter(|(output, _)| (output.quantity == Quantity::Position) == position)
             .map(|(_, channel)| channel.modelled.as_slice())
             .next()
     };
-    let position = of(|q| q == Quantity::Position);
-    let velocity = of(|q| q != Quantity::Position);
-    let mut samples: Vec<usize> = report.replay.window_starts.clone();
-    if samples.first() != Some(&0) {
-        samples.insert(0, 0);
-    }
-    samples
-        .into_iter()
-        .filter(|i| i + 1 < time.len())
+    let [position, velocity] = [true, false].map(of);
+    let inside = report.replay.window_starts.iter().copied();
+    let inside = inside.filter(|i| (from + 1..to).contains(i) && i + 1 < time.len());
+    std::iter::once(from)
+        .chain(inside)
         .map(|i| {
             let x = position.map_or(0.0, |x| x[i]);
             let v = match (velocity, position) {
@@ -337,7 +369,7 @@ fn starts(measurement: &Measurement, report: &StepReport) -> Vec<Start> {
             };
             let known = |value: f64| if value.is_finite() { value } else { 0.0 };
             Start {
-                sample: i,
+                sample: i - from,
                 position: known(x),
                 velocity: known(v),
                 load: [0.0; 2],

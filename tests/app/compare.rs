@@ -1,7 +1,7 @@
 //! What one sees of a model's failure, and what to do next where a record cannot decide.
 
 use crate::support::ui::{
-    App, NARROW, WIDE, app, click, finish, picture, show, state, texts, type_over,
+    App, NARROW, WIDE, app, button, click, finish, picture, show, state, texts, type_over,
 };
 use egui_kittest::kittest::Queryable as _;
 
@@ -279,6 +279,52 @@ fn the_hint_says_what_is_under_way_needless_or_contradicted() {
         .open(&ctx, "wrong.toml", known.as_bytes());
     finish(&mut harness);
     says(&harness, "Correct the given value of J1 in your model");
+}
+
+#[test]
+fn a_parameter_is_set_by_hand_and_everything_answers() {
+    let mut harness = app("compare", WIDE);
+    show(
+        &mut harness,
+        "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02",
+    );
+    let fitted = state(&harness)["error"].as_f64().expect("an error");
+    let slider = harness.get_by_label("friction level").rect();
+    harness.hover_at(slider.center());
+    harness.step();
+    let press = |pressed, at| button(at, egui::PointerButton::Primary, pressed);
+    harness
+        .input_mut()
+        .events
+        .push(press(true, slider.center()));
+    harness.step();
+    // While it is held, the samples in view answer in the same frame.
+    let mut errors = Vec::new();
+    for share in [0.3, 0.2, 0.1] {
+        let at = egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+        harness
+            .input_mut()
+            .events
+            .push(egui::Event::PointerMoved(at));
+        harness.step();
+        harness.step();
+        let by_hand = &state(&harness)["by_hand"];
+        assert_eq!(by_hand["exact"], false, "{by_hand}");
+        errors.push(by_hand["error"].as_f64().expect("an error by hand"));
+    }
+    assert!(errors.windows(2).all(|e| e[1] > e[0]), "{errors:?}");
+    assert!(texts(&harness).iter().any(|t| t == "by hand"));
+    let at = egui::pos2(slider.left() + 0.1 * slider.width(), slider.center().y);
+    harness.input_mut().events.push(press(false, at));
+    finish(&mut harness);
+    let by_hand = state(&harness)["by_hand"].clone();
+    assert_eq!(by_hand["exact"], true, "the whole record, once let go");
+    let exact = by_hand["error"].as_f64().expect("an error by hand");
+    assert!(exact > 2.0 * fitted, "{exact} by hand, {fitted} fitted");
+    picture(&mut harness, "compare_by_hand");
+    click(&mut harness, "Back to the fit");
+    assert!(state(&harness)["by_hand"].is_null());
+    assert_eq!(state(&harness)["error"].as_f64(), Some(fitted));
 }
 
 #[test]

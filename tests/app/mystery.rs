@@ -71,7 +71,7 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
             .starts_with("mystery-")
     );
     click(&mut student, "Reveal ...");
-    student.get_by_label_contains("The truth about this record lies in it, sealed");
+    student.get_by_label_contains("The truth about this record is sealed inside it");
     type_over(&mut student, "Password", "green whale");
     click(&mut student, "Reveal the truth");
     assert_eq!(

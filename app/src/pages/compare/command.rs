@@ -43,6 +43,9 @@ pub(super) enum Command {
     Reveal,
     /// What the app is to do.
     Desk(Vec<command::Command>),
+    /// Sets the parameters by hand, and whether the slider is still held; or goes back to the fit.
+    Hand(Vec<f64>, bool),
+    DropHand,
     Cancel,
     Shade(usize),
     Dismiss,

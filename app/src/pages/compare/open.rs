@@ -207,6 +207,7 @@ impl Compare {
         self.lost.clear();
         self.limits = None;
         self.search = None;
+        self.hand = None;
         self.finding = 0;
     }
 

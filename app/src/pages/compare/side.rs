@@ -42,6 +42,9 @@ pub(super) fn findings_ui(
     ui.separator();
     waterfall::ui(page, ui, targets, commands);
     ui.separator();
+    if let Some(report) = page.report_in(Part::Parameters) {
+        parameters::ui(page, report, ui, targets, commands);
+    }
     if let Some(verdict) = &report.verdict {
         egui::Frame::group(ui.style()).show(ui, |ui| {
             ui.set_width(ui.available_width());
@@ -63,9 +66,6 @@ pub(super) fn findings_ui(
     missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
     own::ui(page, ui, targets, commands);
-    if let Some(report) = page.report_in(Part::Parameters) {
-        parameters::ui(report, ui);
-    }
 }
 
 pub(super) fn file_ui(

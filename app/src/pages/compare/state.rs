@@ -13,6 +13,7 @@ use hysteron_work::tasks::{ExperimentTask, Source};
 
 use super::form::Form;
 use super::formula::Typed;
+use super::hand::Hand;
 use super::look::Look;
 use super::opening::Opening;
 use super::parts::{Part, Parts};
@@ -64,6 +65,8 @@ pub struct Compare {
     pub(super) earlier: Option<(Vec<EffectId>, Job)>,
     /// Steps of the way that cannot be computed.
     pub(super) lost: HashSet<Vec<EffectId>>,
+    /// Values that are set by hand.
+    pub(super) hand: Option<Hand>,
     /// The finding that is shaded.
     pub(super) finding: usize,
     /// The truth that came with the measurement, sealed.
@@ -100,6 +103,7 @@ impl Default for Compare {
             search: None,
             earlier: None,
             lost: HashSet::new(),
+            hand: None,
             finding: 0,
             sealed: None,
             files: Files::default(),
