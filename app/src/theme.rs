@@ -207,6 +207,15 @@ pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
     tell(&answer);
 }
 
+/// The same while the next one is computed for what is set now: it is fainter, and says so.
+pub fn answer_of_before_ui(ui: &mut egui::Ui, text: &str) {
+    let color = ui.visuals().weak_text_color();
+    let text = egui::RichText::new(tr(text)).size(24.0).color(color);
+    let answer = ui.add(egui::Label::new(text).wrap());
+    tell(&answer);
+    ui.label(tr("Computing for what is set now ..."));
+}
+
 /// Has a screen reader say a text whenever it changes, as soon as it says nothing else.
 pub fn tell(text: &egui::Response) {
     text.ctx.accesskit_node_builder(text.id, |node| {

@@ -292,11 +292,11 @@ fn a_parameter_is_set_by_hand_and_everything_answers() {
     let slider = harness.get_by_label("friction level").rect();
     harness.hover_at(slider.center());
     harness.step();
-    let press = |pressed, at| button(at, egui::PointerButton::Primary, pressed);
+    let event = |pressed, at| button(at, egui::PointerButton::Primary, pressed);
     harness
         .input_mut()
         .events
-        .push(press(true, slider.center()));
+        .push(event(true, slider.center()));
     harness.step();
     // While it is held, the samples in view answer in the same frame.
     let mut errors = Vec::new();
@@ -315,14 +315,14 @@ fn a_parameter_is_set_by_hand_and_everything_answers() {
     assert!(errors.windows(2).all(|e| e[1] > e[0]), "{errors:?}");
     assert!(texts(&harness).iter().any(|t| t == "by hand"));
     let at = egui::pos2(slider.left() + 0.1 * slider.width(), slider.center().y);
-    harness.input_mut().events.push(press(false, at));
+    harness.input_mut().events.push(event(false, at));
     finish(&mut harness);
     let by_hand = state(&harness)["by_hand"].clone();
     assert_eq!(by_hand["exact"], true, "the whole record, once let go");
     let exact = by_hand["error"].as_f64().expect("an error by hand");
     assert!(exact > 2.0 * fitted, "{exact} by hand, {fitted} fitted");
     picture(&mut harness, "compare_by_hand");
-    click(&mut harness, "Back to the fit");
+    press(&mut harness, "Back to the fit");
     assert!(state(&harness)["by_hand"].is_null());
     assert_eq!(state(&harness)["error"].as_f64(), Some(fitted));
 }

@@ -1,6 +1,8 @@
 //! The tuning page, as a user works it: from the relay to the tuned loop.
 
-use crate::support::ui::{App, NARROW, WIDE, answer, app, click, finish, picture, show, state};
+use crate::support::ui::{
+    App, NARROW, WIDE, answer, app, click, finish, picture, show, state, texts,
+};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::language::Language;
 
@@ -122,4 +124,26 @@ fn only_numbers_give_a_point_and_what_would_help() {
         "{said}"
     );
     picture(&mut harness, "tune_numbers");
+}
+
+#[test]
+fn an_answer_of_before_does_not_look_like_one_of_now() {
+    let mut harness = page(WIDE);
+    let computing = |h: &App| {
+        let drawn = texts(h);
+        drawn
+            .iter()
+            .any(|t| t == "Computing for what is set now ...")
+    };
+    assert!(!computing(&harness));
+    let ctx = harness.ctx.clone();
+    let other = "v1;tune;loop.relay.hysteresis=0.3";
+    assert_eq!(harness.state_mut().open_link(&ctx, other), Ok(()));
+    harness.step();
+    // The experiment has begun in this frame, so that it cannot be over.
+    let said = answer(&harness);
+    assert!(computing(&harness), "{said}");
+    finish(&mut harness);
+    assert!(!computing(&harness));
+    assert_ne!(answer(&harness), said);
 }

@@ -18,6 +18,7 @@ use crate::uncertain::brief;
 use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
 pub use input::{Provenance, ReportInput};
+pub use model::baseline;
 pub use sha256::sha256;
 
 /// The report as an HTML page.

@@ -10,8 +10,8 @@ use crate::measurement::Kind;
 use crate::uncertain::{brief, with_error};
 use crate::user_model::Status;
 
-/// Equations of the baseline; `F` is the sum of what the effects add.
-fn baseline(kind: Kind) -> [&'static str; 2] {
+/// Equations of the baseline; `F` is the sum of what the effects add. The second may be empty.
+pub fn baseline(kind: Kind) -> [&'static str; 2] {
     match kind {
         Kind::Drive => ["J1 dv1/dt = u_acting - d1 v1 + F", "dx1/dt = v1"],
         Kind::Process => ["T dy/dt + y = K (u_acting + F)", ""],

@@ -288,7 +288,11 @@ impl Backlash {
             );
             return;
         };
-        theme::answer_ui(ui, &scene.answer());
+        if scene.input().is_some_and(|shown| *shown != self.input) && self.simulation.is_some() {
+            theme::answer_of_before_ui(ui, &scene.answer());
+        } else {
+            theme::answer_ui(ui, &scene.answer());
+        }
         if let Some(why) = scene.refusal() {
             ui.label(tr(why));
         }

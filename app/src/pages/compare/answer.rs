@@ -38,13 +38,25 @@ impl Compare {
     pub(super) fn answer_ui(&self, ui: &mut egui::Ui) {
         let text = match self.report() {
             None => "Comparing the measurement with a model ...".to_owned(),
+            // What is on the screen is not the fit.
+            Some(report) if self.hand_error().is_some() => {
+                let (error, exact) = self.hand_error().unwrap_or_default();
+                let about = if exact { "" } else { "about " };
+                let [error, fitted] = [error, report.step.error].map(times_noise);
+                format!("By hand the error is {about}{error} × the noise; the fit leaves {fitted}.")
+            }
             Some(report) => {
                 let present = self.model.as_ref().map(UserModel::present);
                 let verdict = report.verdict.as_ref();
                 report.answer(verdict, &present.unwrap_or_default(), self.is_noise(report))
             }
         };
-        theme::answer_ui(ui, &text);
+        let before = self.report().is_some() && self.job.is_some();
+        if before && self.shown.as_ref() != Some(&self.effects) {
+            theme::answer_of_before_ui(ui, &text);
+        } else {
+            theme::answer_ui(ui, &text);
+        }
         for noise in self.report().iter().flat_map(|report| &report.noise) {
             ui.weak(tr(noise.words()));
         }

@@ -112,7 +112,7 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
             .take(series.len())
             .map(|(t, (y, m))| [*t, y - m])
             .collect();
-        let label = titled(&output.name, &output.unit);
+        let label = titled(output.title(), &output.unit);
         let id = format!("fingerprint {} {index}", print.effect);
         let axes = ["time [s]".to_owned(), label];
         let linked = egui::Id::unique("fingerprint");

@@ -3,14 +3,15 @@
 use hysteron_core::by_hand::ByHand;
 use hysteron_core::diagnosis::{Parameter, Status, StepReport};
 use hysteron_core::effect::{self, name_of};
+use hysteron_core::report::baseline;
 use hysteron_core::uncertain::{interval, quantity, with_error};
 
-use super::answer::times_noise;
 use super::command::Command;
 use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
+use crate::widgets::equation::equation_ui;
 
 /// Size of the bar that shows an interval, points.
 const BAR: egui::Vec2 = egui::vec2(70.0, 12.0);
@@ -40,11 +41,12 @@ pub(super) fn ui(
                 .effects
                 .iter()
                 .all(|e| *e == effect::VISCOUS_FRICTION || effect::find(*e).is_some());
+            let marked = equations_ui(page, report, &values, ui);
             let before = values.clone();
             let mut let_go = false;
             let mut held = false;
             for (p, value) in report.step.parameters.iter().zip(&mut values) {
-                row_ui(p, *value, ui);
+                row_ui(p, *value, marked.as_deref() == Some(p.name.as_str()), ui);
                 if known && p.status != Status::Fixed {
                     let slider = slider_ui(p, value, ui);
                     targets.note(format!("hand:{}", p.name), ui, &slider);
@@ -57,7 +59,7 @@ pub(super) fn ui(
                 commands.push(Command::Hand(values, held && !let_go));
             }
             if hand.is_some() {
-                by_hand_ui(page, report, ui, targets, commands);
+                by_hand_ui(ui, targets, commands);
             } else if known {
                 ui.small(tr("Drag a slider to set a value by hand and see what it does to the residual."));
             }
@@ -65,42 +67,70 @@ pub(super) fn ui(
         });
 }
 
-/// What the values that are set by hand leave, and the way back.
-fn by_hand_ui(
-    page: &Compare,
-    report: &StepReport,
-    ui: &mut egui::Ui,
-    targets: &mut Targets,
-    commands: &mut Vec<Command>,
-) {
-    ui.horizontal_wrapped(|ui| {
-        if let Some((error, exact)) = page.hand_error() {
-            let about = if exact { "" } else { "about " };
-            ui.label(tr(format!(
-                "By hand the error is {about}{} × the noise; the fit leaves {}.",
-                times_noise(error),
-                times_noise(report.step.error)
-            )));
-        }
-        let back = ui.button(tr("Back to the fit"));
-        targets.note("hand:back", ui, &back);
-        if back.clicked() {
-            commands.push(Command::DropHand);
-        }
-    });
+/// The way back from values that are set by hand.
+fn by_hand_ui(ui: &mut egui::Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+    let back = ui.button(tr("Back to the fit"));
+    targets.note("hand:back", ui, &back);
+    if back.clicked() {
+        commands.push(Command::DropHand);
+    }
 }
 
-/// Its symbol, value, meaning and interval.
-fn row_ui(p: &Parameter, value: f64, ui: &mut egui::Ui) {
-    let owner = p.effect.map_or("baseline", name_of);
-    let hover = format!("{}, {owner}", p.label);
-    let text = if value == p.value {
+/// The equations of the model, with the values in them; the name of the symbol that is pointed at.
+fn equations_ui(
+    page: &Compare,
+    report: &StepReport,
+    values: &[f64],
+    ui: &mut egui::Ui,
+) -> Option<String> {
+    let kind = page.measurement.as_ref()?.kind;
+    let value = |name: &str| {
+        let place = report.step.parameters.iter().position(|p| p.name == name)?;
+        let p = &report.step.parameters[place];
+        Some(format!(
+            "{} = {}",
+            tr(&p.label),
+            tr(value_text(p, values[place]))
+        ))
+    };
+    let effects = report
+        .step
+        .effects
+        .iter()
+        .filter_map(|id| effect::find(*id));
+    let effects = effects.map(|e| e.equation());
+    let lines = baseline(kind).into_iter().chain(effects);
+    let mut pointed = None;
+    for line in lines.filter(|line| !line.is_empty()) {
+        pointed = pointed.or(equation_ui(ui, &tr(line), &value));
+    }
+    ui.add_space(4.0);
+    pointed
+}
+
+/// The fitted value with its error, or the one that is set by hand.
+fn value_text(p: &Parameter, value: f64) -> String {
+    if value == p.value {
         with_error(p.value, p.std_error, &p.unit)
     } else {
         quantity(value, &p.unit)
-    };
+    }
+}
+
+/// Its symbol, value, meaning and interval.
+fn row_ui(p: &Parameter, value: f64, marked: bool, ui: &mut egui::Ui) {
+    let owner = p.effect.map_or("baseline", name_of);
+    let hover = format!("{}, {owner}", p.label);
+    let text = value_text(p, value);
     ui.horizontal(|ui| {
-        ui.label(tr(&p.name)).on_hover_text(tr(&hover));
+        if marked {
+            // Its symbol is pointed at in the equation.
+            let row = ui.available_rect_before_wrap();
+            let row = row.with_max_y(row.top() + ui.spacing().interact_size.y);
+            let fill = ui.visuals().selection.bg_fill;
+            ui.painter().rect_filled(row, 3.0, fill);
+        }
+        equation_ui(ui, &p.name, &|_| Some(tr(&hover)));
         ui.label(tr(text)).on_hover_text(tr(hover));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             interval_ui(p, ui);
@@ -117,7 +147,8 @@ fn slider_ui(p: &Parameter, value: &mut f64, ui: &mut egui::Ui) -> egui::Respons
             .show_value(false)
             .clamping(egui::SliderClamping::Edits);
         let slider = ui.add(slider);
-        let label = ui.small(tr(&p.label));
+        let label = egui::RichText::new(tr(&p.label)).small();
+        let label = ui.add(egui::Label::new(label).truncate());
         slider.labelled_by(label.id)
     })
     .inner

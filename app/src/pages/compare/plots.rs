@@ -45,7 +45,7 @@ const RESTARTED: &str = "The model starts afresh from an estimated state in each
 const CAPTION: f32 = 26.0;
 
 /// Least width of the labels of y, so that the plots line up.
-const AXIS_WIDTH: f32 = 64.0;
+const AXIS_WIDTH: f32 = 76.0;
 
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 110.0;
@@ -194,7 +194,7 @@ fn signal_plot(
     finding: Option<&Finding>,
     size: Size,
 ) {
-    let label = titled(&output.name, &output.unit);
+    let label = titled(output.title(), &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let alone = measurement.outputs.len() == 1;
@@ -253,7 +253,7 @@ fn residual_plot(
     finding: Option<&Finding>,
     size: Size,
 ) {
-    let label = titled(&format!("{} - model", output.name), &output.unit);
+    let label = titled(&format!("{} - model", output.title()), &output.unit);
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
         pairs.map(|(y, m)| y - m).collect()
@@ -274,17 +274,21 @@ fn residual_plot(
     )
     .show(ui, |plot| {
         let noise = [2.0, -2.0].map(|side| side * modelled.noise);
-        fit(plot, &measurement.time, &[&residual, &earlier], &noise, 0.0);
+        let mut others = noise.to_vec();
         if let Some((_, (from, _))) = hand {
             let view = in_view(&plot.plot_bounds(), &measurement.time);
-            let view = view.start.saturating_sub(from)..view.end.saturating_sub(from);
-            let (low, high) = extremes(left.iter().copied().skip(view.start).take(view.len()));
-            let bounds = plot.plot_bounds();
-            if low <= high {
-                let (low, high) = (low.min(bounds.min()[1]), high.max(bounds.max()[1]));
-                plot.set_plot_bounds_y(low..=high);
-            }
+            let begin = view.start.saturating_sub(from);
+            let seen = left.iter().skip(begin).take(view.len());
+            let (low, high) = extremes(seen.copied());
+            others.extend([low, high].into_iter().filter(|v| v.is_finite()));
         }
+        fit(
+            plot,
+            &measurement.time,
+            &[&residual, &earlier],
+            &others,
+            0.0,
+        );
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
         if before.is_some() {

@@ -17,6 +17,7 @@ use super::{experiment, missing, own, parameters, waterfall};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
+use crate::widgets::equation::equation_ui;
 
 pub(super) fn ui(
     page: &Compare,
@@ -257,15 +258,14 @@ fn card_ui(
         egui::CollapsingHeader::new(tr("Equation"))
             .id_salt(id.as_str())
             .show(ui, |ui| {
-                ui.monospace(tr(&equation));
+                equation_ui(ui, &tr(&equation), &|_| None);
                 ui.small(tr(source));
                 for p in &candidate.parameters {
-                    ui.label(tr(format!(
-                        "{} ({}) = {}",
-                        p.name,
-                        p.label,
-                        with_error(p.value, p.std_error, &p.unit)
-                    )));
+                    ui.horizontal_wrapped(|ui| {
+                        equation_ui(ui, &p.name, &|_| None);
+                        let value = with_error(p.value, p.std_error, &p.unit);
+                        ui.label(tr(format!("({}) = {value}", p.label)));
+                    });
                 }
             });
     });

@@ -4,6 +4,7 @@ use hysteron_core::plant::{TransferFunction, parse, presets};
 
 use crate::language::tr;
 use crate::theme;
+use crate::widgets::equation::equation_ui;
 
 /// The text that is being typed.
 #[derive(Default)]
@@ -53,6 +54,9 @@ impl PlantEditor {
             ui.small(tr(
                 "Type it as you would write it: 2 e^{-0.5s}/(3s+1), (1-s)/((s+1)(s+2))",
             ));
+        }
+        if self.error.is_none() {
+            equation_ui(ui, &format!("P(s) = {}", formula(plant)), &|_| None);
         }
         describe_ui(ui, plant);
         changed

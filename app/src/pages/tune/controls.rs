@@ -8,6 +8,7 @@ use super::Tune;
 use crate::desk::Desk;
 use crate::language::tr;
 use crate::widgets::controls::slider;
+use crate::widgets::equation::equation_ui;
 
 impl Tune {
     pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -130,13 +131,20 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     ));
 }
 
+/// What they say, and the equations behind the page.
+const EQUATIONS: [(&str, &str); 4] = [
+    ("Moving point, equation (4)", "M R = S,  C(jω) = S/M"),
+    ("Relay for a phase margin, (7)", "k = π a/4,  ε = a sin φ"),
+    ("Ultimate gain, (9)", "Ku = |N(a)| = 4k/(πa)"),
+    ("Controller", "C(s) = K (1 + 1/(Ti s) + Td s/(Tf s + 1))"),
+];
+
 fn equations_ui(ui: &mut egui::Ui) {
     ui.collapsing(tr("The equations"), |ui| {
-        ui.monospace(tr("(4) M R = S: C(jω) = S/M\n\
-             (7) k = π a/4,  ε = a sin φ\n\
-             (8) K(n+1): secant through two runs\n\
-             (9) Ku = |N(a)| = 4k/(πa), Tu: period\n\
-             C(s) = K (1 + 1/(Ti s) + Td s/(Tf s + 1))"));
+        for (what, equation) in EQUATIONS {
+            ui.small(tr(what));
+            equation_ui(ui, equation, &|_| None);
+        }
         ui.small(tr(format!("Convention: {AMPLITUDE_CONVENTION}.")));
         ui.small(tr(
             "φ: phase margin, M: identified point of the Nyquist curve, S: where it shall go.",
