@@ -191,6 +191,7 @@ impl HysteronApp {
             self.set_calm(ui.ctx(), self.calm);
         }
         self.frame += 1;
+        self.look().fit(ui.ctx());
         let window = egui::accesskit_root_id();
         ui.ctx()
             .accesskit_node_builder(window, |window| window.set_label("Hysteron"));

@@ -81,7 +81,7 @@ fn a_column_with_a_unit_in_its_name_has_one_unit_on_its_axis() {
     let mut rows = csv.lines();
     rows.next();
     let renamed = format!(
-        "t [s],u [N m],angle_deg [rad],speed [rad/s]\n{}",
+        "t [s],u [N m],position_deg [rad],speed [rad/s]\n{}",
         rows.collect::<Vec<_>>().join("\n")
     );
     let ctx = harness.ctx.clone();
@@ -93,7 +93,7 @@ fn a_column_with_a_unit_in_its_name_has_one_unit_on_its_axis() {
     assert!(
         drawn
             .iter()
-            .any(|t| t.replace('\n', " ").starts_with("angle [")),
+            .any(|t| t.replace('\n', " ").starts_with("position [")),
         "{drawn:#?}"
     );
     for text in &drawn {

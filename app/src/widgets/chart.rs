@@ -28,7 +28,6 @@ pub use hysteron_core::uncertain::significant;
 
 /// How much fainter the lines of the grid are the closer they stand: fainter than any curve.
 const GRID_FADE: f32 = 1.0;
-const GRID: f32 = 0.3;
 
 /// How near a point must be to be pointed at, points on the screen.
 const REACH: f32 = 8.0;
@@ -184,7 +183,7 @@ impl<'a> Chart<'a> {
                 [x / across, p.y / up]
             })
         });
-        plot = plot.grid_color(ui.visuals().text_color().gamma_multiply(GRID));
+        plot = plot.grid_color(theme::grid(ui.visuals()));
         plot = with_axes(plot, names, factors, decades, [width, height]);
         let menu = egui::Popup::is_any_open(&ctx);
         let keys = chart_cursor::live(&ctx).is_some();

@@ -46,6 +46,9 @@ pub(super) enum Command {
     /// Sets the parameters by hand, and whether the slider is still held; or goes back to the fit.
     Hand(Vec<f64>, bool),
     DropHand,
+    /// Hides what helps most until it is found; and buys a hint.
+    GuessFirst(bool),
+    Hint,
     Cancel,
     Shade(usize),
     Dismiss,

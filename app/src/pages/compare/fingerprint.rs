@@ -38,10 +38,18 @@ pub(super) fn ui(
     };
     ui.horizontal_wrapped(|ui| {
         ui.label(tr("Effect:"));
-        for print in &report.fingerprints {
-            let id = print.effect;
-            let likeness = tr_number(two_digits(print.likeness));
-            let label = format!("{} {likeness}", tr(name_of(id)));
+        let by_name = page.prints(report);
+        let ranked = report.fingerprints.iter().map(|print| print.effect);
+        let guessing = page.is_guessing();
+        let effects = if guessing { by_name } else { ranked.collect() };
+        for id in effects {
+            let mut prints = report.fingerprints.iter();
+            let likeness = prints.find(|p| p.effect == id).map_or(0.0, |p| p.likeness);
+            let label = if guessing {
+                tr(name_of(id))
+            } else {
+                format!("{} {}", tr(name_of(id)), tr_number(two_digits(likeness)))
+            };
             let button = ui.selectable_label(id == chosen, label);
             targets.note(format!("print:{id}"), ui, &button);
             if button.clicked() {
@@ -52,7 +60,12 @@ pub(super) fn ui(
     let Some(print) = report.fingerprints.iter().find(|f| f.effect == chosen) else {
         return;
     };
-    ui.label(tr(sentence(print)));
+    if !page.is_guessing() {
+        ui.label(tr(sentence(print)));
+    }
+    ui.small(tr(
+        "A fingerprint is the residual that an effect would leave if it were missing.",
+    ));
     let name = format!("what {} would leave", name_of(chosen));
     caption_ui(
         ui,

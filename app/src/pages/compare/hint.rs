@@ -22,6 +22,9 @@ impl Compare {
         let Some(report) = report else {
             return Hint::say("Every effect in the library is being tried.");
         };
+        if self.is_guessing() {
+            return Hint::say("Which fingerprint matches the residual? Add that effect.");
+        }
         if let Some(effect) = report.suggestion {
             let candidates = &report.step.candidates;
             let card = candidates.iter().find(|c| c.effects == [effect]);

@@ -11,6 +11,7 @@ mod export;
 mod fingerprint;
 mod form;
 mod formula;
+mod guess;
 mod hand;
 mod hint;
 mod history;
@@ -280,6 +281,8 @@ impl Compare {
                 }
             }
             Command::Hand(values, held) => self.set_by_hand(ctx, values, held),
+            Command::GuessFirst(first) => self.guess_first = first,
+            Command::Hint => self.buy_hint(),
             Command::DropHand => self.hand = None,
             Command::Shade(index) => self.finding = index,
             Command::Dismiss => self.message = None,
@@ -300,6 +303,7 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
+            "guessing": self.is_guessing(),
             "by_hand": self.hand_error().map(|(error, exact)| serde_json::json!({"error": error, "exact": exact})),
             "busy": self.is_behind() || self.hand.as_ref().is_some_and(hand::Hand::is_busy) || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
             "progress": self.progress.0,

@@ -47,6 +47,9 @@ const CAPTION: f32 = 26.0;
 /// Least width of the labels of y, so that the plots line up.
 const AXIS_WIDTH: f32 = 76.0;
 
+/// Height of a signal, of that of both: what the model leaves is what the page is about, the signal where it is.
+const SIGNAL: f32 = 0.75;
+
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 110.0;
 
@@ -67,16 +70,23 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
         let hand = page.hand().and_then(|hand| by_hand(hand, index));
-        let size = Size {
-            height: each,
+        let size = |share: f32| Size {
+            height: share * each,
             labels: AXIS_WIDTH,
         };
-        signal_plot(ui, measurement, output, (modelled, hand), finding, size);
+        signal_plot(
+            ui,
+            measurement,
+            output,
+            (modelled, hand),
+            finding,
+            size(SIGNAL),
+        );
         if let Some(modelled) = modelled {
             let before = page.report_before().filter(|_| page.before);
             let before = before.and_then(|r| r.replay.channels.get(index));
             let models = (modelled, before, hand);
-            residual_plot(ui, measurement, output, models, finding, size);
+            residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
         }
     }
 }

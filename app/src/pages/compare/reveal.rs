@@ -127,7 +127,12 @@ fn revealed_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    theme::answer_ui(ui, &format!("{:.0} of 100 points.", reveal.points()));
+    let cost = f64::from(page.guess.cost());
+    let points = (reveal.points() - cost).max(0.0);
+    theme::answer_ui(ui, &format!("{points:.0} of 100 points."));
+    if cost > 0.0 {
+        ui.label(tr(format!("Hints have cost {cost:.0} points so far.")));
+    }
     if Some(effects) != page.shown.as_deref() {
         ui.horizontal_wrapped(|ui| {
             ui.label(tr(

@@ -154,6 +154,11 @@ fn candidates_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
+    page.guess_toggle_ui(ui, targets, commands);
+    if page.is_guessing() {
+        page.guess_ui(report, ui, targets, commands);
+        return;
+    }
     let (helping, others): (Vec<&Candidate>, Vec<&Candidate>) =
         report.step.candidates.iter().partition(|c| c.significant);
     let (perhaps, others): (Vec<&Candidate>, Vec<&Candidate>) =

@@ -13,6 +13,7 @@ use hysteron_work::tasks::{ExperimentTask, Source};
 
 use super::form::Form;
 use super::formula::Typed;
+use super::guess::Guess;
 use super::hand::Hand;
 use super::look::Look;
 use super::opening::Opening;
@@ -65,6 +66,9 @@ pub struct Compare {
     pub(super) earlier: Option<(Vec<EffectId>, Job)>,
     /// Steps of the way that cannot be computed.
     pub(super) lost: HashSet<Vec<EffectId>>,
+    /// Whether the student guesses before anything is told, and what has been told.
+    pub(super) guess_first: bool,
+    pub(super) guess: Guess,
     /// Values that are set by hand.
     pub(super) hand: Option<Hand>,
     /// The finding that is shaded.
@@ -103,6 +107,8 @@ impl Default for Compare {
             search: None,
             earlier: None,
             lost: HashSet::new(),
+            guess_first: false,
+            guess: Guess::default(),
             hand: None,
             finding: 0,
             sealed: None,
