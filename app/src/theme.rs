@@ -250,7 +250,13 @@ pub fn answer_of_before_ui(ui: &mut egui::Ui, text: &str) {
     let text = egui::RichText::new(tr(text)).size(24.0).color(color);
     let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
-    ui.label(tr("Computing for what is set now ..."));
+    // Beside the next line, so that nothing moves while a slider is dragged.
+    let at = egui::pos2(ui.max_rect().right(), answer.rect.bottom());
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let saying = tr("Computing for what is set now ...");
+    let color = ui.visuals().text_color();
+    ui.painter()
+        .text(at, egui::Align2::RIGHT_TOP, saying, font, color);
 }
 
 /// Has a screen reader say a text whenever it changes, as soon as it says nothing else.

@@ -74,34 +74,6 @@ fn what_is_drawn_is_what_a_reader_would_write() {
 }
 
 #[test]
-fn a_column_with_a_unit_in_its_name_has_one_unit_on_its_axis() {
-    let mut harness = app("compare", TALL);
-    let path = format!("{}/../tests/data/drive-02.csv", env!("CARGO_MANIFEST_DIR"));
-    let csv = std::fs::read_to_string(path).expect("a file of the tests");
-    let mut rows = csv.lines();
-    rows.next();
-    let renamed = format!(
-        "t [s],u [N m],position_deg [rad],speed [rad/s]\n{}",
-        rows.collect::<Vec<_>>().join("\n")
-    );
-    let ctx = harness.ctx.clone();
-    harness
-        .state_mut()
-        .open(&ctx, "renamed.csv", renamed.as_bytes());
-    finish(&mut harness);
-    let drawn = texts(&harness);
-    assert!(
-        drawn
-            .iter()
-            .any(|t| t.replace('\n', " ").starts_with("position [")),
-        "{drawn:#?}"
-    );
-    for text in &drawn {
-        assert_eq!(fault(text).filter(|_| !is_typed(text)), None, "{text}");
-    }
-}
-
-#[test]
 fn a_fault_is_seen() {
     for text in [
         "1.2e-5 s",

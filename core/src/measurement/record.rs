@@ -125,3 +125,31 @@ impl Channel {
         Role::Measured(self.quantity).name()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_title_of_a_column_has_no_unit_of_the_file() {
+        let title = |name: &str| {
+            let channel = Channel {
+                quantity: Quantity::Position,
+                name: name.to_owned(),
+                unit: "rad".to_owned(),
+                values: Vec::new(),
+            };
+            channel.title().to_owned()
+        };
+        for (name, expected) in [
+            ("angle_deg", "angle"),
+            ("speed (rpm)", "speed"),
+            ("motor_angle", "motor_angle"),
+            ("x1", "x1"),
+            ("_deg", "_deg"),
+            ("", ""),
+        ] {
+            assert_eq!(title(name), expected);
+        }
+    }
+}

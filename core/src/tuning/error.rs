@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::PlantError;
 use crate::relay::RelayError;
-use crate::uncertain::brief;
+use crate::uncertain::{brief, digits};
 
 /// Why there is no controller.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
@@ -57,7 +57,9 @@ pub enum TuningError {
     },
     /// An identification that needs different half periods.
     #[error(
-        "the half periods {on} s and {off} s under asymmetry {asymmetry} tell nothing apart: the relay must push harder one way than the other"
+        "the half periods {} s and {} s under asymmetry {asymmetry} tell nothing apart: the relay must push harder one way than the other",
+        digits(*on, 4),
+        digits(*off, 4)
     )]
     Symmetric {
         /// Time with the relay up, s.

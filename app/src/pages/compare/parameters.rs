@@ -11,6 +11,7 @@ use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
+use crate::widgets::controls::reset_asked;
 use crate::widgets::equation::equation_ui;
 
 /// Size of the bar that shows an interval, points.
@@ -55,7 +56,9 @@ pub(super) fn ui(
                 }
             }
             let moved = values != before;
-            if moved || (let_go && hand.is_some_and(|h| h.held)) {
+            if moved && values == fitted {
+                commands.push(Command::DropHand);
+            } else if moved || (let_go && hand.is_some_and(|h| h.held)) {
                 commands.push(Command::Hand(values, held && !let_go));
             }
             if hand.is_some() {
@@ -147,6 +150,13 @@ fn slider_ui(p: &Parameter, value: &mut f64, ui: &mut egui::Ui) -> egui::Respons
             .show_value(false)
             .clamping(egui::SliderClamping::Edits);
         let slider = ui.add(slider);
+        if reset_asked(ui, &slider) {
+            *value = p.value;
+        }
+        // With its unit, for a screen reader.
+        let said = tr(value_text(p, *value));
+        ui.ctx()
+            .accesskit_node_builder(slider.id, |node| node.set_value(said));
         let label = egui::RichText::new(tr(&p.label)).small();
         let label = ui.add(egui::Label::new(label).truncate());
         slider.labelled_by(label.id)
