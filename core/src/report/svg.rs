@@ -321,7 +321,7 @@ mod tests {
             assert!((tick - expected).abs() < 1e-12);
         }
         assert_eq!(tick_text(0.2, 0.2), "0.2");
-        assert_eq!(tick_text(4e-6, 2e-6), "4e-6");
+        assert_eq!(tick_text(4e-6, 2e-6), "4 × 10⁻⁶");
         assert_eq!(tick_text(1500.0, 500.0), "1500");
     }
 
