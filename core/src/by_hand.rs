@@ -267,8 +267,9 @@ impl ByHand {
                 let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
                 for (o, output) in self.outputs.iter().enumerate() {
                     let weight = 1.0 / output.noise.powi(2);
-                    for i in from..to {
-                        let left = output.values[i] - here[o][i];
+                    let modelled = here[o].iter().enumerate();
+                    for (i, now) in modelled.skip(from).take(to - from) {
+                        let left = output.values[i] - now;
                         let x = by_position
                             .as_ref()
                             .map_or(0.0, |t| slope(t, o, i, steps[0]));

@@ -120,12 +120,11 @@ fn exponent(value: f64, digits: i32) -> Option<i32> {
 
 /// A number with so many decimals; below 0 its last digits are zeros.
 fn fixed(value: f64, decimals: i32) -> String {
-    let text = match usize::try_from(decimals) {
-        Ok(decimals) => format!("{value:.*}", decimals.min(12)),
-        Err(_) => {
-            let step = libm::pow(10.0, f64::from(-decimals));
-            format!("{:.0}", libm::round(value / step) * step)
-        }
+    let text = if let Ok(decimals) = usize::try_from(decimals) {
+        format!("{value:.*}", decimals.min(12))
+    } else {
+        let step = libm::pow(10.0, f64::from(-decimals));
+        format!("{:.0}", libm::round(value / step) * step)
     };
     // 0.0 rather than -0.0.
     match text.strip_prefix('-') {

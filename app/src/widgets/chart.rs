@@ -296,13 +296,13 @@ fn scales_of(ctx: &egui::Context, id: Id, axes: &[String; 2], decades: bool) -> 
 }
 
 /// The axes with their names and labels; `size` is the least width of the labels of y and the height of the plot.
-fn with_axes<'a>(
-    plot: Plot<'a>,
+fn with_axes(
+    plot: Plot<'_>,
     [x, y]: [String; 2],
     [across, up]: [f64; 2],
     decades: bool,
     [width, height]: [f32; 2],
-) -> Plot<'a> {
+) -> Plot<'_> {
     let y = AxisHints::new_y()
         .label(beside(&y, height))
         .min_thickness(width)

@@ -38,7 +38,7 @@ pub(super) fn ui(
     };
     ui.horizontal_wrapped(|ui| {
         ui.label(tr("Effect:"));
-        let by_name = page.prints(report);
+        let by_name = Compare::prints(report);
         let ranked = report.fingerprints.iter().map(|print| print.effect);
         let guessing = page.is_guessing();
         let effects = if guessing { by_name } else { ranked.collect() };

@@ -59,7 +59,7 @@ impl Compare {
     }
 
     /// Effects with a fingerprint, by name.
-    pub(super) fn prints(&self, report: &StepReport) -> Vec<EffectId> {
+    pub(super) fn prints(report: &StepReport) -> Vec<EffectId> {
         let mut prints: Vec<EffectId> = report.fingerprints.iter().map(|f| f.effect).collect();
         prints.sort_by_key(|id| name_of(*id));
         prints

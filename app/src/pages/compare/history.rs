@@ -102,7 +102,7 @@ impl Compare {
         let known = |id: &EffectId| report.fingerprints.iter().any(|f| f.effect == *id);
         let guessing = self.is_guessing();
         let first = if guessing {
-            self.prints(report).first().copied()
+            Self::prints(report).first().copied()
         } else {
             report.fingerprints.first().map(|f| f.effect)
         };

@@ -2,7 +2,7 @@
 
 use hysteron_core::by_hand::ByHand;
 use hysteron_core::diagnosis::{Parameter, Status, StepReport};
-use hysteron_core::effect::{self, name_of};
+use hysteron_core::effect::{self, Effect, name_of};
 use hysteron_core::report::baseline;
 use hysteron_core::uncertain::{interval, quantity, with_error};
 
@@ -101,7 +101,7 @@ fn equations_ui(
         .effects
         .iter()
         .filter_map(|id| effect::find(*id));
-    let effects = effects.map(|e| e.equation());
+    let effects = effects.map(Effect::equation);
     let lines = baseline(kind).into_iter().chain(effects);
     let mut pointed = None;
     for line in lines.filter(|line| !line.is_empty()) {
