@@ -19,6 +19,7 @@ use crate::document::Document;
 #[cfg(target_arch = "wasm32")]
 use crate::edges;
 use crate::files::Door;
+use crate::fonts;
 use crate::language::{self, Language, tr};
 use crate::motion;
 use crate::notice::{self, Notice};
@@ -183,12 +184,14 @@ impl HysteronApp {
     /// One frame: takes what came in, draws the page, publishes the state.
     pub fn frame_ui(&mut self, ui: &mut egui::Ui) {
         if self.frame == 0 {
+            fonts::apply(ui.ctx());
             theme::apply(ui.ctx());
             let look = self.look.unwrap_or_else(|| Look::of_system(ui.ctx()));
             self.set_look(ui.ctx(), look);
             self.set_calm(ui.ctx(), self.calm);
         }
         self.frame += 1;
+        self.look().fit(ui.ctx());
         let window = egui::accesskit_root_id();
         ui.ctx()
             .accesskit_node_builder(window, |window| window.set_label("Hysteron"));
@@ -375,7 +378,7 @@ impl HysteronApp {
         if count > 1 {
             let name = file.path().file_name().unwrap_or_default();
             let name = name.to_string_lossy();
-            let saying = format!("Of {count} files one is opened: {name}.");
+            let saying = format!("Only one of the {count} files is opened: {name}.");
             self.notice = Some(Notice::done(ctx, saying));
         }
     }

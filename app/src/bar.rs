@@ -62,6 +62,7 @@ impl Bar<'_> {
             ui.heading(tr("Hysteron"));
             self.pages_ui(ui, targets, commands);
             ui.separator();
+            theme::quiet(ui);
             if pages + undo + tools <= room {
                 self.undo_ui(ui, targets, commands);
                 self.tools_ui(ui, targets, commands);

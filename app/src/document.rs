@@ -114,7 +114,7 @@ impl Document {
         let relay_loop: ExploreInput = parsed(&self.settings[LOOP])?;
         relay_loop
             .validate()
-            .map_err(|e| format!("This loop cannot be: {e}."))?;
+            .map_err(|e| format!("This loop is not possible: {e}."))?;
         let lesson: Option<String> = parsed(&self.settings[LESSON])?;
         if lesson.as_deref().is_some_and(|id| find(id).is_none()) {
             return Err("This link is about a lesson that does not exist.".to_owned());

@@ -40,9 +40,9 @@ pub fn leave(on: bool) -> Option<()> {
     let body = document.body()?;
     let edge = document.get_element_by_id("hysteron-edge")?;
     edge.set_text_content(Some(&tr(if on {
-        "The end of the page: Tab goes on, Shift and Tab go back."
+        "End of the page: Tab continues, Shift+Tab goes back."
     } else {
-        "The beginning of the page: Shift and Tab go on, Tab goes back."
+        "Beginning of the page: Shift+Tab continues, Tab goes back."
     })));
     // Beyond the field that eframe has added for typing.
     let next = if on { None } else { body.first_child() };

@@ -11,6 +11,7 @@ mod document;
 mod edges;
 pub mod export;
 mod files;
+mod fonts;
 mod hook;
 mod jobs;
 pub mod language;

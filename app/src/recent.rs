@@ -106,7 +106,7 @@ impl Recents {
             return None;
         }
         ui.horizontal_wrapped(|ui| {
-            ui.label(tr("Opened before:"));
+            ui.label(tr("Recent files:"));
             for recent in shown {
                 let button = ui.button(&recent.name);
                 targets.note(format!("recent:{}", recent.name), ui, &button);

@@ -25,12 +25,12 @@ const fn key(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
 const SHORTCUTS: [Shortcut; 9] = [
     Shortcut {
         keys: &[key(COMMAND, Key::Z)],
-        sentence: "Take back the last change",
+        sentence: "Undo the last change",
         command: Command::Undo,
     },
     Shortcut {
         keys: &[key(COMMAND_SHIFT, Key::Z), key(COMMAND, Key::Y)],
-        sentence: "Do again what was taken back",
+        sentence: "Redo the last change you undid",
         command: Command::Redo,
     },
     Shortcut {
@@ -50,7 +50,7 @@ const SHORTCUTS: [Shortcut; 9] = [
     },
     Shortcut {
         keys: &[key(PLAIN, Key::L)],
-        sentence: "Copy the link to this page as it is; a link is opened by pasting it",
+        sentence: "Copy a link to this page as it is; paste a link to open it",
         command: Command::CopyLink,
     },
     Shortcut {
@@ -69,7 +69,7 @@ const SHORTCUTS: [Shortcut; 9] = [
     },
     Shortcut {
         keys: &[key(PLAIN, Key::Escape)],
-        sentence: "Close what lies on top",
+        sentence: "Close whatever is on top",
         command: Command::Close,
     },
 ];
@@ -172,20 +172,20 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
                 });
             ui.separator();
             ui.label(tr(
-                "Tab goes from control to control, the arrow keys move a slider.",
+                "Tab moves from control to control; the arrow keys move a slider.",
             ));
             ui.label(tr(
-                "A double click on a slider, or Delete, resets it; a click on its number types one.",
+                "Double-click a slider, or press Delete, to reset it; click its number to type one.",
             ));
-            ui.label(tr("A plot is zoomed with Ctrl and the wheel, with two fingers, or by a frame drawn with the right button."));
+            ui.label(tr("Zoom a plot with Ctrl and the mouse wheel, with two fingers, or by dragging a box with the right button."));
             ui.label(tr(
-                "Then it can be dragged; a double click shows all of it again.",
+                "A zoomed plot can be dragged; a double click shows all of it again.",
             ));
             ui.label(tr(
-                "The arrow keys read the curves of a plot, with Shift in larger steps: Up and Down go to the next curve.",
+                "In a plot the arrow keys read off the curves, with Shift in larger steps; Up and Down go to the next curve.",
             ));
-            ui.label(tr("There + and - zoom, Ctrl with an arrow moves the plot, Home shows all of it, Enter opens its menu, Escape ends the reading."));
-            ui.label(tr("A file is opened by dropping it on the window."));
+            ui.label(tr("There, + and - zoom, Ctrl with an arrow key moves the plot, Home shows all of it, Enter opens its menu and Escape leaves it."));
+            ui.label(tr("Drop a file on the window to open it."));
         });
     open
 }

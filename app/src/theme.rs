@@ -29,6 +29,14 @@ pub const SHADE: Color32 = Color32::from_rgb(0xF0, 0xE4, 0x42);
 const WARNING: Color32 = Color32::from_rgb(0xB0, 0x3A, 0x00);
 const ERROR: Color32 = Color32::from_rgb(0xB4, 0x00, 0x00);
 
+/// By how much all is larger for a projector in a window of the usual height, points, and by how much more at most.
+const PROJECTED: f32 = 1.35;
+const USUAL_HEIGHT: f32 = 800.0;
+const MOST_ZOOM: f32 = 4.0;
+
+/// A change of the size that is seen.
+const LEAST_CHANGE: f32 = 0.01;
+
 /// How the app looks as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
@@ -76,9 +84,23 @@ impl Look {
         }
     }
 
-    /// How much larger everything is than usual.
-    fn zoom(self) -> f32 {
-        if self == Self::Projector { 1.35 } else { 1.0 }
+    /// How much larger everything is than usual in a window of this height, in points of the system: on a projector's
+    /// screen a capital has the same height, however many points the screen has.
+    fn zoom(self, height: f32) -> f32 {
+        if self == Self::Projector {
+            PROJECTED * (height / USUAL_HEIGHT).clamp(1.0, MOST_ZOOM)
+        } else {
+            1.0
+        }
+    }
+
+    /// Makes everything as large as the window wants it.
+    pub fn fit(self, ctx: &egui::Context) {
+        let height = ctx.content_rect().height() * ctx.zoom_factor();
+        let zoom = self.zoom(height);
+        if (zoom / ctx.zoom_factor() - 1.0).abs() > LEAST_CHANGE {
+            ctx.set_zoom_factor(zoom);
+        }
     }
 
     /// Makes the app look so.
@@ -99,7 +121,7 @@ impl Look {
             style.visuals.warn_fg_color = WARNING;
             style.visuals.error_fg_color = ERROR;
         });
-        ctx.set_zoom_factor(self.zoom());
+        self.fit(ctx);
     }
 }
 
@@ -200,11 +222,41 @@ pub fn focus_ring(ctx: &egui::Context) {
 /// Width of the ring around what has the keyboard, points.
 const RING: f32 = 2.0;
 
+/// Has the buttons that follow stand back behind the pages: without a ground until they are pointed at.
+pub fn quiet(ui: &mut egui::Ui) {
+    let widgets = &mut ui.visuals_mut().widgets;
+    widgets.inactive.weak_bg_fill = Color32::TRANSPARENT;
+    widgets.noninteractive.weak_bg_fill = Color32::TRANSPARENT;
+}
+
+/// Share of the colour of words that the lines of a grid have: they are fainter than any curve.
+const GRID: f32 = 0.3;
+
+/// Colour of the lines of a grid.
+pub fn grid(visuals: &egui::Visuals) -> Color32 {
+    visuals.text_color().gamma_multiply(GRID)
+}
+
 /// The large answer of a page.
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
     let text = egui::RichText::new(tr(text)).size(24.0).strong();
     let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
+}
+
+/// The same while the next one is computed for what is set now: it is fainter, and says so.
+pub fn answer_of_before_ui(ui: &mut egui::Ui, text: &str) {
+    let color = ui.visuals().weak_text_color();
+    let text = egui::RichText::new(tr(text)).size(24.0).color(color);
+    let answer = ui.add(egui::Label::new(text).wrap());
+    tell(&answer);
+    // Beside the next line, so that nothing moves while a slider is dragged.
+    let at = egui::pos2(ui.max_rect().right(), answer.rect.bottom());
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let saying = tr("Computing for what is set now ...");
+    let color = ui.visuals().text_color();
+    ui.painter()
+        .text(at, egui::Align2::RIGHT_TOP, saying, font, color);
 }
 
 /// Has a screen reader say a text whenever it changes, as soon as it says nothing else.
@@ -239,4 +291,79 @@ pub fn button_width_of(ui: &egui::Ui, text: &str) -> f32 {
 pub fn text_width(ui: &egui::Ui, text: String, font: egui::FontId) -> f32 {
     let color = Color32::PLACEHOLDER;
     ui.painter().layout_no_wrap(text, font, color).size().x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance of a colour (WCAG 2.1).
+    fn luminance(color: Color32) -> f32 {
+        let part = |value: u8| {
+            let c = f32::from(value) / 255.0;
+            if c <= 0.040_45 {
+                c / 12.92
+            } else {
+                ((c + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        0.2126 * part(color.r()) + 0.7152 * part(color.g()) + 0.0722 * part(color.b())
+    }
+
+    /// Contrast of a colour on a ground, 1 to 21.
+    fn contrast(color: Color32, ground: Color32) -> f32 {
+        let [a, b] = [ground.blend(color), ground].map(luminance);
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    fn visuals(look: Look) -> egui::Visuals {
+        let ctx = egui::Context::default();
+        apply(&ctx);
+        look.apply(&ctx);
+        let theme = match look {
+            Look::Dark => egui::Theme::Dark,
+            Look::Light | Look::Projector => egui::Theme::Light,
+        };
+        ctx.style_of(theme).visuals.clone()
+    }
+
+    #[test]
+    fn words_stand_out_from_their_ground_in_each_look() {
+        for look in Look::ALL {
+            let visuals = visuals(look);
+            let ground = visuals.panel_fill;
+            for (what, color) in [
+                ("text", visuals.text_color()),
+                ("weak text", visuals.weak_text_color()),
+                ("warning", visuals.warn_fg_color),
+                ("error", visuals.error_fg_color),
+            ] {
+                let contrast = contrast(color, ground);
+                assert!(contrast >= 4.5, "{}: {what} {contrast:.1}", look.name());
+            }
+        }
+    }
+
+    #[test]
+    fn the_grid_is_fainter_than_any_curve() {
+        for look in Look::ALL {
+            let visuals = visuals(look);
+            let ground = visuals.extreme_bg_color;
+            let lines = contrast(grid(&visuals), ground);
+            for curve in [MEASURED, MODEL, BEFORE, RESIDUAL, NOISE, INPUT] {
+                let curve = contrast(curve, ground);
+                assert!(curve > lines, "{}: {curve:.1} and {lines:.1}", look.name());
+            }
+        }
+    }
+
+    #[test]
+    fn a_capital_is_read_from_the_back_row_at_any_height() {
+        // A capital is 0.73 of the size of its letters; the screen is 1.25 m high where it is 2 m wide.
+        for height in [800.0, 1080.0, 2160.0] {
+            let capital = 0.73 * 14.5 * Look::Projector.zoom(height) / height;
+            assert!(1250.0 * capital >= 22.0, "{height}: {capital}");
+        }
+        assert_eq!(Look::Dark.zoom(2160.0), 1.0);
+    }
 }

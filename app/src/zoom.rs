@@ -138,7 +138,7 @@ impl Zooms {
 
 fn refused(entry: &str) -> String {
     let entry = link::shortened(entry);
-    format!("This link zooms in on what cannot be: {entry}.")
+    format!("This link zooms in on an impossible range: {entry}.")
 }
 
 /// The name of a plot as it stands in a link.
@@ -233,7 +233,7 @@ mod tests {
         ] {
             let read = Zooms::read(&json!(text));
             let sentence = read.expect_err(text);
-            assert!(sentence.contains("cannot be"), "{text}: {sentence}");
+            assert!(sentence.contains("impossible"), "{text}: {sentence}");
         }
         for value in [
             json!(null),

@@ -298,17 +298,18 @@ fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> String {
             },
         );
     };
-    let rate = cycle.multiplier.map_or_else(String::new, |m| {
-        format!(
-            " of a small disturbance, {} is left after a period",
-            percent(m)
-        )
-    });
     let verdict = match cycle.cycle.stable {
         Some(true) => "Stable",
         Some(false) => "Unstable",
         None => "Its stability is not known",
     };
+    let way = match cycle.multiplier {
+        Some(m) if m < 1.0 => "shrinks",
+        _ => "grows",
+    };
+    let rate = cycle.multiplier.map_or_else(String::new, |m| {
+        format!(" a small disturbance {way} to {} in one period", percent(m))
+    });
     let others = prediction.exact.len().saturating_sub(1);
     let rest = match others {
         0 => String::new(),

@@ -28,6 +28,7 @@
 //! | [`effect`] | which physics can be added? |
 //! | [`diagnosis`] | what does a finished diagnosis say? |
 //! | [`user_model`] | what does the user know of the model? |
+//! | [`by_hand`] | what does the model say with values that someone sets? |
 //! | [`criticism`] | where does the model fail, what is missing, how sure? |
 //! | [`report`] | what was found, on one page |
 //! | [`mystery`] | which effect is hidden? |
@@ -35,6 +36,7 @@
 #![warn(missing_docs, clippy::disallowed_methods)]
 
 pub mod backlash;
+pub mod by_hand;
 pub mod crew;
 pub mod criticism;
 pub mod curve;

@@ -142,10 +142,11 @@ fn a_screen_reader_says_which_window_which_plot_and_what_was_found() {
         assert!(names.len() >= drawn, "{place}: {names:?} of {drawn}");
         // What is said by itself, when it changes.
         let nodes = harness.root().children_recursive();
-        let spoken = nodes
+        let spoken: Vec<_> = nodes
             .filter(|n| n.accesskit_node().live() == Live::Polite)
-            .count();
-        assert!((1..=3).contains(&spoken), "{place}: {spoken}");
+            .map(|n| n.accesskit_node().value())
+            .collect();
+        assert!((1..=3).contains(&spoken.len()), "{place}: {spoken:?}");
     }
 }
 
@@ -185,16 +186,16 @@ fn png(bytes: &[u8]) -> ([usize; 2], usize) {
 fn every_plot_gives_its_picture_and_its_numbers() {
     let mut harness = app("explore", WIDE);
     finish(&mut harness);
-    let menu = "Menu of the plot: its rate dy/dt [1/s] over output y";
+    let menu = "Menu of the plot: its rate of change [1/s] over output y";
     let (name, bytes) = ask(&mut harness, menu, "Data of this plot (CSV)");
-    assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.csv");
+    assert_eq!(name, "explore-its-rate-of-change-over-output-y.csv");
     let text = String::from_utf8(bytes).expect("text");
     let mut lines = text.lines();
     assert_eq!(
         lines.next(),
         Some(
-            "from the start: output y,from the start: its rate dy/dt [1/s],\
-             limit cycle: output y,limit cycle: its rate dy/dt [1/s],now: output y,now: its rate dy/dt [1/s]"
+            "from the start: output y,from the start: its rate of change [1/s],\
+             limit cycle: output y,limit cycle: its rate of change [1/s],now: output y,now: its rate of change [1/s]"
         )
     );
     // The largest output on the limit cycle is its amplitude.
@@ -205,16 +206,16 @@ fn every_plot_gives_its_picture_and_its_numbers() {
     assert!((largest / amplitude.expect("a cycle") - 1.0).abs() < 1e-3);
 
     let (name, bytes) = ask(&mut harness, menu, "Picture of this plot (SVG)");
-    assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.svg");
+    assert_eq!(name, "explore-its-rate-of-change-over-output-y.svg");
     let svg = String::from_utf8(bytes).expect("text");
-    for word in ["output y", "its rate dy/dt [1/s]"] {
+    for word in ["output y", "its rate of change [1/s]"] {
         assert!(svg.contains(word), "{word}");
     }
     for elsewhere in ["real part", "Relay", "thresholds"] {
         assert!(!svg.contains(elsewhere), "{elsewhere}");
     }
     let (name, bytes) = ask(&mut harness, menu, "Picture of this plot (PNG)");
-    assert_eq!(name, "explore-its-rate-dy-dt-over-output-y.png");
+    assert_eq!(name, "explore-its-rate-of-change-over-output-y.png");
     let (size, colours) = png(&bytes);
     // A part of the page, and not a blank one.
     assert!(size[0] > 300 && size[0] < 1000, "{size:?}");
@@ -363,7 +364,7 @@ fn a_file_that_was_opened_is_opened_again_by_one_click() {
     opened(&mut harness);
     finish(&mut harness);
     click(&mut harness, "Open another");
-    harness.get_by_label("Opened before:");
+    harness.get_by_label("Recent files:");
     harness.get_by_label("drive-02.csv").click();
     opened(&mut harness);
 }

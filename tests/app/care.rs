@@ -69,13 +69,9 @@ fn escape_closes_a_menu_and_a_list_and_then_what_lies_beneath() {
         press(&mut harness, Key::F1);
         press(&mut harness, Key::Escape);
         assert!(harness.query_by_label(inside).is_none(), "{opener}");
-        harness.get_by_label("Take back the last change");
+        harness.get_by_label("Undo the last change");
         press(&mut harness, Key::Escape);
-        assert!(
-            harness
-                .query_by_label("Take back the last change")
-                .is_none()
-        );
+        assert!(harness.query_by_label("Undo the last change").is_none());
     }
     let lists = |harness: &App| harness.query_all_by_role(Role::ComboBox).count();
     assert_eq!(lists(&harness), 1);
@@ -192,22 +188,22 @@ fn a_number_that_cannot_be_changes_nothing_and_is_said() {
         (
             "delay [s]",
             "2 kg",
-            "2 kg cannot be taken: a number in s is wanted.",
+            "2 kg is not accepted: enter a number in s.",
         ),
         (
             "delay [s]",
             "1e",
-            "1e cannot be taken: a number in s is wanted.",
+            "1e is not accepted: enter a number in s.",
         ),
         (
             "delay [s]",
             "50",
-            "50 cannot be taken: the range goes from 0 to 2 s.",
+            "50 is not accepted: the range is 0 to 2 s.",
         ),
         (
             "noise σ",
             "50 ms",
-            "50 ms cannot be taken: a number without a unit is wanted.",
+            "50 ms is not accepted: enter a number without a unit.",
         ),
     ] {
         type_number(&mut harness, name, text);
@@ -476,9 +472,9 @@ fn a_lesson_is_folded_on_a_phone() {
     let mut harness = app("lessons", PHONE);
     show(&mut harness, "v1;explore;explore.paused=20;lesson=relay");
     let room = |harness: &App, fold: &str| place(harness, Role::Button, fold).top();
-    let before = room(&harness, "Fold the lesson");
-    click(&mut harness, "Fold the lesson");
-    let after = room(&harness, "Unfold the lesson");
+    let before = room(&harness, "Collapse the lesson");
+    click(&mut harness, "Collapse the lesson");
+    let after = room(&harness, "Expand the lesson");
     assert!(after > before + 200.0, "{before} {after}");
     let title = |t: &String| t.contains("The relay and its hysteresis");
     assert!(texts(&harness).iter().any(title), "its title stays");
@@ -493,12 +489,12 @@ fn a_lesson_is_folded_on_a_phone() {
     let (plot_height, bar) = (220.0, 60.0);
     let together = slider.bottom() - (plot.bottom() - plot_height);
     assert!(together < after - bar, "{together} {after}");
-    click(&mut harness, "Unfold the lesson");
-    assert!((room(&harness, "Fold the lesson") - before).abs() < 1.0);
+    click(&mut harness, "Expand the lesson");
+    assert!((room(&harness, "Collapse the lesson") - before).abs() < 1.0);
     // Where there is room, nothing is folded.
     let mut harness = app("lessons", WIDE);
     show(&mut harness, "v1;explore;explore.paused=20;lesson=relay");
-    assert!(harness.query_by_label("Fold the lesson").is_none());
+    assert!(harness.query_by_label("Collapse the lesson").is_none());
 }
 
 #[test]
@@ -544,7 +540,10 @@ fn of_several_files_it_is_said_which_one_is_opened() {
         harness.input_mut().dropped_files.push(file);
     }
     harness.step();
-    assert_eq!(notice(&harness), "Of 2 files one is opened: a.csv.");
+    assert_eq!(
+        notice(&harness),
+        "Only one of the 2 files is opened: a.csv."
+    );
 }
 
 #[test]
@@ -565,10 +564,10 @@ fn a_notice_leaves_what_to_try_next_in_view() {
 #[test]
 fn the_word_of_a_mystery_is_shown_only_when_asked_for() {
     let mut harness = app("mystery", TALL);
-    crate::support::ui::type_over(&mut harness, "Word", "blue whale");
+    crate::support::ui::type_over(&mut harness, "Password", "blue whale");
     let shown = |harness: &App| texts(harness).iter().any(|t| t == "blue whale");
     assert!(!shown(&harness));
-    click(&mut harness, "Show the word");
+    click(&mut harness, "Show the password");
     assert!(shown(&harness));
 }
 

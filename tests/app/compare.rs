@@ -1,7 +1,7 @@
 //! What one sees of a model's failure, and what to do next where a record cannot decide.
 
 use crate::support::ui::{
-    App, NARROW, WIDE, app, click, finish, picture, show, state, texts, type_over,
+    App, NARROW, WIDE, app, button, click, finish, picture, show, state, texts, type_over,
 };
 use egui_kittest::kittest::Queryable as _;
 
@@ -36,7 +36,7 @@ fn what_cannot_be_told_apart_comes_with_an_experiment_that_opens_in_explore() {
     click(&mut harness, "Light");
     picture(&mut harness, "compare_next_experiment_light");
     press(&mut harness, "Limits of the experiment");
-    press(&mut harness, "What other experiments would tell");
+    press(&mut harness, "What other experiments would show");
     harness.get_by_label_contains("Largest input");
     press(&mut harness, "Limits of the experiment");
     // Either explanation with either gain: what one would see.
@@ -59,8 +59,7 @@ fn what_cannot_be_told_apart_comes_with_an_experiment_that_opens_in_explore() {
     );
     assert_eq!(number(&relay, "bias"), 0.0);
     // It says what it is for, until something else is shown there.
-    let purpose =
-        "Experiment that tells Gain asymmetry and Constant load apart, for drive-05. Here if it is";
+    let purpose = "Experiment that tells Gain asymmetry and Constant load apart, for drive-05. Shown here for the case";
     harness.get_by_label(&format!("{purpose} Gain asymmetry."));
     picture(&mut harness, "explore_experiment");
     click(&mut harness, "Back to Compare");
@@ -98,7 +97,7 @@ fn the_way_goes_back_and_forth_and_shows_the_step_before() {
         state(&harness)["compare"]["fingerprint"],
         "coulomb_friction"
     );
-    harness.get_by_label_contains("What is left looks like Coulomb friction");
+    harness.get_by_label_contains("The residual looks like Coulomb friction");
     picture(&mut harness, "compare_fingerprint");
     press(&mut harness, "Add Coulomb friction");
     let after = error(&harness);
@@ -233,7 +232,7 @@ fn the_hint_follows_what_is_open_and_what_was_found() {
     says(&harness, "Coulomb friction helps most");
     click(&mut harness, "Try it");
     assert!(state(&harness)["error"].as_f64().is_some_and(|e| e < 1.2));
-    says(&harness, "Nothing more is missing: see beside it");
+    says(&harness, "Nothing more is missing: compare with");
     click(&mut harness, "Try it");
     let link = state(&harness)["link"].clone();
     assert!(
@@ -267,9 +266,9 @@ fn the_hint_says_what_is_under_way_needless_or_contradicted() {
     let ctx = harness.ctx.clone();
     assert_eq!(harness.state_mut().open_link(&ctx, text), Ok(()));
     harness.step();
-    says(&harness, "Every effect of the library is tried now");
+    says(&harness, "Every effect in the library is being tried");
     finish(&mut harness);
-    says(&harness, "Quadratic drag is not needed: leave it out");
+    says(&harness, "Quadratic drag is not needed: remove it");
     press(&mut harness, "Try it");
     assert!(state(&harness)["error"].as_f64().is_some_and(|e| e < 1.2));
     says(&harness, "Nothing more is missing");
@@ -279,7 +278,53 @@ fn the_hint_says_what_is_under_way_needless_or_contradicted() {
         .state_mut()
         .open(&ctx, "wrong.toml", known.as_bytes());
     finish(&mut harness);
-    says(&harness, "Correct the known J1 in your model");
+    says(&harness, "Correct the given value of J1 in your model");
+}
+
+#[test]
+fn a_parameter_is_set_by_hand_and_everything_answers() {
+    let mut harness = app("compare", WIDE);
+    show(
+        &mut harness,
+        "v1;compare;compare.effects=%5B%22coulomb_friction%22%5D;compare.file=drive-02",
+    );
+    let fitted = state(&harness)["error"].as_f64().expect("an error");
+    let slider = harness.get_by_label("friction level").rect();
+    harness.hover_at(slider.center());
+    harness.step();
+    let event = |pressed, at| button(at, egui::PointerButton::Primary, pressed);
+    harness
+        .input_mut()
+        .events
+        .push(event(true, slider.center()));
+    harness.step();
+    // While it is held, the samples in view answer in the same frame.
+    let mut errors = Vec::new();
+    for share in [0.3, 0.2, 0.1] {
+        let at = egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+        harness
+            .input_mut()
+            .events
+            .push(egui::Event::PointerMoved(at));
+        harness.step();
+        harness.step();
+        let by_hand = &state(&harness)["by_hand"];
+        assert_eq!(by_hand["exact"], false, "{by_hand}");
+        errors.push(by_hand["error"].as_f64().expect("an error by hand"));
+    }
+    assert!(errors.windows(2).all(|e| e[1] > e[0]), "{errors:?}");
+    assert!(texts(&harness).iter().any(|t| t == "by hand"));
+    let at = egui::pos2(slider.left() + 0.1 * slider.width(), slider.center().y);
+    harness.input_mut().events.push(event(false, at));
+    finish(&mut harness);
+    let by_hand = state(&harness)["by_hand"].clone();
+    assert_eq!(by_hand["exact"], true, "the whole record, once let go");
+    let exact = by_hand["error"].as_f64().expect("an error by hand");
+    assert!(exact > 2.0 * fitted, "{exact} by hand, {fitted} fitted");
+    picture(&mut harness, "compare_by_hand");
+    press(&mut harness, "Back to the fit");
+    assert!(state(&harness)["by_hand"].is_null());
+    assert_eq!(state(&harness)["error"].as_f64(), Some(fitted));
 }
 
 #[test]

@@ -275,12 +275,12 @@ fn the_sentences_of_an_experiment_stay_in_their_order() {
 fn one_effect_was_missing_or_two_were() {
     for (english, expected) in [
         (
-            "The missing effect was Input delay: (8.80 ± 0.12)e-4 s. Nothing more is missing.",
-            "Der fehlende Effekt war Eingangstotzeit: (8,80 ± 0,12)e-4 s. Mehr fehlt nicht.",
+            "The missing effect was Input delay: 0.88 ms ± 1 %. Nothing more is missing.",
+            "Der fehlende Effekt war Eingangstotzeit: 0,88 ms ± 1 %. Mehr fehlt nicht.",
         ),
         (
-            "The missing effects were Input delay: 0.00400 ± 0.00012 s and Dead zone: 0.050 ± 0.012. Nothing more is missing.",
-            "Die fehlenden Effekte waren Eingangstotzeit: 0,00400 ± 0,00012 s und Tote Zone: 0,050 ± 0,012. Mehr fehlt nicht.",
+            "The missing effects were Input delay: 4.0 ms ± 3 % and Dead zone: 0.05 ± 24 %. Nothing more is missing.",
+            "Die fehlenden Effekte waren Eingangstotzeit: 4,0 ms ± 3 % und Tote Zone: 0,05 ± 24 %. Mehr fehlt nicht.",
         ),
         (
             "The missing effects are Input delay, and Dead zone or Saturation: this record cannot tell which.",

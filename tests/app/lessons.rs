@@ -140,7 +140,10 @@ fn more_hysteresis_less_ultimate_gain() {
     let mut harness = open("ultimate");
     let said = |h: &App| {
         let text = state(h)["answer"].as_str().expect("an answer").to_owned();
-        let number = text.split("Ku = ").nth(1).and_then(|t| t.split(' ').next());
+        let number = text
+            .split("Ku = ")
+            .nth(1)
+            .and_then(|t| t.split([' ', ',']).next());
         number.and_then(|n| n.parse::<f64>().ok()).expect("Ku")
     };
     assert!((said(&harness) - 7.81).abs() < 0.01, "{}", said(&harness));
@@ -176,7 +179,10 @@ fn a_pid_controller_from_one_experiment() {
         .as_str()
         .expect("an answer")
         .to_owned();
-    let time = said.split("Ti = ").nth(1).and_then(|t| t.split(' ').next());
+    let time = said
+        .split("Ti = ")
+        .nth(1)
+        .and_then(|t| t.split([' ', ',']).next());
     answer(&mut harness, time.expect("Ti"));
     assert!(solved(&harness, "tuning"), "{said}");
 }

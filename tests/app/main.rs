@@ -23,3 +23,4 @@ mod plots;
 mod program;
 mod shell;
 mod tune;
+mod words;

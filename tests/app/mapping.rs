@@ -96,7 +96,7 @@ fn map_matrix(harness: &mut App) {
         choose(harness, channel, column);
         choose(harness, unit, of);
     }
-    press(harness, "Turn the sign of the input round");
+    press(harness, "Flip sign of the input");
 }
 
 /// A file that is let go over the window.

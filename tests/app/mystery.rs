@@ -32,14 +32,14 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     click(&mut teacher, "Input delay");
     picture(&mut teacher, "mystery_choices");
     harness_refuses_without_a_word(&mut teacher);
-    type_over(&mut teacher, "Word", WORD);
+    type_over(&mut teacher, "Password", WORD);
     click(&mut teacher, "Make the mystery");
     let page = state(&teacher)["link"].as_str().expect("a link").to_owned();
     assert!(!page.contains("delay") && !page.contains("whale"), "{page}");
     let hint = state(&teacher)["hint"].as_str().expect("a hint").to_owned();
-    assert!(hint.starts_with("Hand on the mystery"), "{hint}");
+    assert!(hint.starts_with("Share the file or link"), "{hint}");
     // What is chosen afterwards is not in it.
-    let remark = "It is still as it was made: what is chosen has changed since.";
+    let remark = "This is still the mystery that was made: your choices have changed since.";
     assert!(teacher.query_by_label(remark).is_none());
     click(&mut teacher, "large");
     teacher.get_by_label(remark);
@@ -71,20 +71,20 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
             .starts_with("mystery-")
     );
     click(&mut student, "Reveal ...");
-    student.get_by_label_contains("The truth about this record lies in it, sealed");
-    type_over(&mut student, "Word", "green whale");
+    student.get_by_label_contains("The truth about this record is sealed inside it");
+    type_over(&mut student, "Password", "green whale");
     click(&mut student, "Reveal the truth");
     assert_eq!(
         state(&student)["sealed"]["message"],
-        "This word does not open the seal."
+        "This password does not open the seal."
     );
     // Revealed too early, the model has missed it.
-    type_over(&mut student, "Word", WORD);
+    type_over(&mut student, "Password", WORD);
     student.key_press(Key::Enter);
     finish(&mut student);
     student.get_by_label("Input delay: missed");
     student.get_by_label("A mystery: its truth is revealed.");
-    assert!(student.query_by_label("Word").is_none());
+    assert!(student.query_by_label("Password").is_none());
     // The word is not asked for again.
     student.get_by_label("Add Input delay").click_accesskit();
     finish(&mut student);
@@ -143,7 +143,7 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
         "The model is complete: now see what was hidden."
     );
     click(&mut student, "Reveal ...");
-    type_over(&mut student, "Word", WORD);
+    type_over(&mut student, "Password", WORD);
     click(&mut student, "Reveal the truth");
     student.get_by_label("Coulomb friction: found");
     let points = state(&student)["sealed"]["points"]
@@ -162,7 +162,7 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
     assert!(row[2].contains('±'), "{row:#?}");
     assert_eq!(decimals(&row[1]), decimals(&row[2]), "{row:#?}");
     // On from there, and not back to the seal.
-    let next = "Nothing more is missing: see beside it what the step before left.";
+    let next = "Nothing more is missing: compare with what the step before left.";
     assert_eq!(state(&student)["hint"], next);
     click(&mut student, "Try it");
     let texts = texts(&student);
@@ -173,7 +173,7 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
 }
 
 fn harness_refuses_without_a_word(teacher: &mut App) {
-    teacher.get_by_label_contains("It needs a word of 6 letters");
+    teacher.get_by_label_contains("The password needs 6 letters");
     click(teacher, "Make the mystery");
     assert_eq!(state(teacher)["mystery"]["made"], Value::Null);
 }
@@ -203,7 +203,7 @@ fn a_mystery_file_in_which_nothing_is_hidden_is_a_mystery_too() {
     assert_eq!(said.count(), 2, "the answer and the data");
     student.get_by_label("Reveal ...").click_accesskit();
     finish(&mut student);
-    type_over(&mut student, "Word", WORD);
+    type_over(&mut student, "Password", WORD);
     student.get_by_label("Reveal the truth").click_accesskit();
     finish(&mut student);
     student.get_by_label("Nothing was hidden, and nothing was added: right.");
@@ -241,7 +241,7 @@ fn a_students_model_goes_back_to_the_teacher_in_a_link() {
         serde_json::json!(["viscous_friction", "dead_zone"])
     );
     click(&mut teacher, "Reveal");
-    type_over(&mut teacher, "Word", WORD);
+    type_over(&mut teacher, "Password", WORD);
     click(&mut teacher, "Reveal the truth");
     teacher.get_by_label("Input delay: missed");
     teacher.get_by_label("Dead zone: wrong, it is not there");

@@ -168,7 +168,7 @@ fn an_effect_of_ones_own_can_be_undone_and_done_again() {
     harness.get_by_label("Add your effect").click_accesskit();
     harness.step();
     finish(&mut harness);
-    harness.get_by_label_contains("with bump or without");
+    harness.get_by_label_contains("with or without bump");
     for (button, effects) in [
         ("Undo", vec!["input_delay"]),
         ("Redo", vec!["input_delay", "bump"]),
@@ -234,7 +234,7 @@ fn what_may_help_is_offered_though_chance_is_not_ruled_out() {
     let csv = rig.measure().to_csv();
     harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
     finish(&mut harness);
-    harness.get_by_label("Perhaps, though it may be chance");
+    harness.get_by_label("Perhaps, but it may be chance");
     let state = state(&harness);
     let hint = state["hint"].as_str().expect("a hint");
     assert!(hint.starts_with("Perhaps "), "{hint}");

@@ -62,14 +62,33 @@ fn every_plot_says_what_stands_at_the_pointer_with_its_unit() {
     assert!(count > 40, "{count} plots");
 }
 
-/// The value that a line says of an axis, if it is in its unit.
+/// The value that a line says of an axis, if it is in its unit or in this with a prefix.
 fn value_in(line: &str, axis: &str) -> Option<f64> {
     let (name, unit) = match axis.strip_suffix(']').and_then(|a| a.rsplit_once(" [")) {
         Some((name, unit)) => (name, unit),
         None => (axis, ""),
     };
     let value = line.strip_prefix(name)?.strip_prefix(": ")?;
-    value.strip_suffix(unit)?.trim().parse().ok()
+    let number = value.strip_suffix(unit)?;
+    let factors = [
+        ("m", 1e-3),
+        ("µ", 1e-6),
+        ("n", 1e-9),
+        ("k", 1e3),
+        ("10⁻⁶", 1e-6),
+    ];
+    let prefixed = factors.iter().find_map(|(prefix, factor)| {
+        Some(
+            number
+                .trim_end()
+                .strip_suffix(prefix)?
+                .trim()
+                .parse::<f64>()
+                .ok()?
+                * factor,
+        )
+    });
+    number.trim().parse().ok().or(prefixed)
 }
 
 /// Whether lines say a place by both axes. On a curve of an axis of several quantities, the curve is named instead.
@@ -263,7 +282,7 @@ fn a_moment_that_is_pointed_at_is_marked_in_the_other_plots() {
         (
             "v1;explore;explore.paused=20",
             "output y, input u over time [s]",
-            &["its rate dy/dt [1/s] over output y"][..],
+            &["its rate of change [1/s] over output y"][..],
         ),
         (
             "v1;backlash;backlash.paused=1",
@@ -424,7 +443,9 @@ fn every_plot_gives_its_picture_and_its_numbers() {
                 let text = String::from_utf8(bytes).expect("text");
                 let first = text.lines().next().unwrap_or_default();
                 if ending == "svg" {
-                    assert!(text.contains(&x) && text.contains(&y), "{place}: {menu}");
+                    // The unit may have a prefix there.
+                    let [x, y] = [&x, &y].map(|axis| axis.split(" [").next().unwrap_or(axis));
+                    assert!(text.contains(x) && text.contains(y), "{place}: {menu}");
                 } else {
                     assert!(first.contains(&x) && first.contains(&y), "{place}: {first}");
                     assert!(text.lines().count() > 1, "{place}: {menu}");

@@ -168,7 +168,7 @@ fn keys_do_what_the_sheet_says() {
     assert_eq!(state(&harness)["link"].as_str(), Some(paused.as_str()));
     press(&mut harness, Modifiers::NONE, Key::R);
     assert_eq!(state(&harness)["link"], "v1;explore");
-    let said = "This page is as it was at first. Undo brings back what was set.";
+    let said = "This page is reset. Undo brings your settings back.";
     assert_eq!(state(&harness)["notice"], said);
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(state(&harness)["link"].as_str(), Some(paused.as_str()));
@@ -176,14 +176,10 @@ fn keys_do_what_the_sheet_says() {
     press(&mut harness, Modifiers::NONE, Key::L);
     assert!(state(&harness)["notice"].is_string());
     press(&mut harness, Modifiers::NONE, Key::F1);
-    harness.get_by_label("Take back the last change");
+    harness.get_by_label("Undo the last change");
     press(&mut harness, Modifiers::NONE, Key::P);
     press(&mut harness, Modifiers::NONE, Key::Escape);
-    assert!(
-        harness
-            .query_by_label("Take back the last change")
-            .is_none()
-    );
+    assert!(harness.query_by_label("Undo the last change").is_none());
     // In a text field the same keys are letters.
     type_over(&mut harness, "P(s) =", "1/(s+1)^3");
     press(&mut harness, Modifiers::NONE, Key::Num1);
@@ -329,7 +325,7 @@ fn what_stands_in_a_panel_does_not_move_its_edge() {
             "An effect of your own",
             "Add Gain asymmetry",
             "Limits of the experiment",
-            "What other experiments would tell",
+            "What other experiments would show",
             "Set a limit",
             "Equation",
             "Over time",
@@ -403,7 +399,7 @@ fn a_page_is_saved_as_a_picture_of_lines_and_words() {
         "viewBox=\"0 0 1280 800\"",
         "It oscillates: period 4.788 s",
         "time [s]",
-        "its rate dy/dt [1/s]",
+        "its rate of change [1/s]",
         "rotate(-90",
     ] {
         assert!(svg.contains(part), "{part}");

@@ -5,6 +5,7 @@ mod support;
 
 mod at_rest;
 mod blind_bench;
+mod by_hand;
 mod describing_function;
 mod doors;
 mod drifting_records;

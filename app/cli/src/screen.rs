@@ -8,7 +8,7 @@ use hysteron_core::criticism::screen;
 use hysteron_core::diagnosis::{Parameter, Screening, Subset};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
-use hysteron_core::uncertain::{in_unit, with_error};
+use hysteron_core::uncertain::with_error;
 
 use crate::arguments::Kind;
 use crate::output::Format;
@@ -118,10 +118,6 @@ fn line(parameter: &Parameter) -> String {
         unit,
         ..
     } = parameter;
-    let value = if *std_error > 0.0 {
-        with_error(*value, *std_error, unit)
-    } else {
-        in_unit(format!("{value:.4}"), unit)
-    };
+    let value = with_error(*value, *std_error, unit);
     format!("{name:<8} {value:<32} {label}")
 }

@@ -7,7 +7,7 @@ use hysteron_core::diagnosis::{
 };
 use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
-use hysteron_core::uncertain::{NOT_TOLD, brief, in_words, shown_unit};
+use hysteron_core::uncertain::{brief, with_error};
 
 const WIDTH: usize = 80;
 
@@ -151,41 +151,14 @@ fn names(ids: &[EffectId]) -> String {
 }
 
 fn parameters(out: &mut String, list: &[&Parameter]) {
-    let rows: Vec<(&str, &str, String, String)> = list
-        .iter()
-        .map(|p| {
-            (
-                p.name.as_str(),
-                p.label.as_str(),
-                in_words(p.value, p.std_error),
-                shown_unit(&p.unit),
-            )
-        })
-        .collect();
     let width =
-        |f: fn(&(&str, &str, String, String)) -> usize| rows.iter().map(f).max().unwrap_or(0);
-    let (name, label, value) = (
-        width(|r| r.0.chars().count()),
-        width(|r| r.1.chars().count()),
-        width(|r| r.2.chars().count()),
-    );
-    for (n, l, v, unit) in &rows {
+        |f: fn(&Parameter) -> &str| list.iter().map(|p| f(p).chars().count()).max().unwrap_or(0);
+    let (name, label) = (width(|p| &p.name), width(|p| &p.label));
+    for p in list {
+        let value = with_error(p.value, p.std_error, &p.unit);
         line(
             out,
-            &format!("  {n:<name$}  {l:<label$}  {v:>value$} {unit}"),
-        );
-    }
-    let untold: Vec<&str> = list
-        .iter()
-        .filter(|p| !p.is_told())
-        .map(|p| p.name.as_str())
-        .collect();
-    if !untold.is_empty() {
-        let names = untold.join(", ");
-        paragraph(
-            out,
-            "  ",
-            &format!("The errors of these are larger than they are, {NOT_TOLD}: {names}."),
+            &format!("  {:<name$}  {:<label$}  {value}", p.name, p.label),
         );
     }
 }

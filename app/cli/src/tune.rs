@@ -9,6 +9,7 @@ use hysteron_core::tuning::measured::{
     AmplitudeConvention, FittedModel, Form, MeasuredTuning, OpenError, Readings, TunedGains,
     Wishes, open, tune_readings,
 };
+use hysteron_core::uncertain::digits;
 use serde_json::json;
 
 use crate::arguments::Kind;
@@ -344,13 +345,5 @@ fn text(result: &MeasuredTuning) -> String {
 
 /// Five significant digits.
 fn short(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e5).contains(&size) {
-        let decimals = (4 - size.log10().floor() as i32).max(0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.3e}")
-    }
+    digits(value, 5)
 }

@@ -82,7 +82,7 @@ impl HysteronApp {
         let untouched = format!("{};{}", link::VERSION, before.page);
         // A key does it, which may be hit by mistake.
         if self.open_link(ctx, &untouched).is_ok() && self.document() != before {
-            let saying = "This page is as it was at first. Undo brings back what was set.";
+            let saying = "This page is reset. Undo brings your settings back.";
             self.notice = Some(Notice::done(ctx, saying));
         }
     }

@@ -4,6 +4,7 @@ use super::{Chosen, HysteronApp};
 #[cfg(target_arch = "wasm32")]
 use crate::address;
 use crate::document::Document;
+use crate::fonts;
 use crate::language::Language;
 use crate::motion;
 use crate::theme::Look;
@@ -25,6 +26,8 @@ const CALM: &str = "reduced";
 impl HysteronApp {
     /// The app as it was left.
     pub fn restored(context: &eframe::CreationContext<'_>) -> Self {
+        // They are there from the next frame on, which is the first.
+        fonts::apply(&context.egui_ctx);
         let mut app = Self::default();
         let kept = |key: &str| context.storage.and_then(|s| s.get_string(key));
         app.prefer(kept);

@@ -3,6 +3,7 @@
 use egui::RichText;
 
 use crate::theme;
+use crate::widgets::equation::equation_ui;
 
 /// A piece of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +60,9 @@ fn line_ui(ui: &mut egui::Ui, line: &'static str) -> Option<&'static str> {
                 }
                 Piece::Emphasis(text) => {
                     ui.label(RichText::new(text).italics());
+                }
+                Piece::Formula(text) if text.contains('=') => {
+                    equation_ui(ui, text, &|_| None);
                 }
                 Piece::Formula(text) => {
                     ui.monospace(text);

@@ -62,7 +62,7 @@ impl Study {
     fn folded_ui(&mut self, ui: &mut egui::Ui, lesson: &Lesson, targets: &mut Targets) {
         ui.add_space(4.0);
         ui.strong(lesson.title);
-        let unfold = ui.button(tr("Unfold the lesson"));
+        let unfold = ui.button(tr("Expand the lesson"));
         targets.note("lesson:fold", ui, &unfold);
         if unfold.clicked() {
             self.folded = false;
@@ -102,7 +102,7 @@ impl Study {
                         commands.push(Command::Lesson(None));
                     }
                     if narrow {
-                        let fold = ui.button(tr("Fold the lesson"));
+                        let fold = ui.button(tr("Collapse the lesson"));
                         targets.note("lesson:fold", ui, &fold);
                         self.folded = fold.clicked();
                     }

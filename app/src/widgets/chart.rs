@@ -11,19 +11,23 @@ use egui_plot::{
 
 pub use super::chart_axes::round_step;
 use super::chart_axes::{
-    LABELS, beside, grid, grid_x, label, power_label, powers, shown_from, unit_of,
+    LABELS, beside, grid, grid_x, label, power_label, powers, scale, shown_from, title,
 };
 pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
 use super::chart_keys::Worked;
 use super::chart_menu;
-pub use super::chart_reading::significant;
 use super::chart_reading::{Reader, reading};
 use super::chart_zoom::Zoomed;
 use crate::export::Table;
 use crate::language::tr;
 use crate::theme;
 pub use hysteron_core::curve::{envelope, extremes, sparse};
+use hysteron_core::uncertain::Scale;
+pub use hysteron_core::uncertain::significant;
+
+/// How much fainter the lines of the grid are the closer they stand: fainter than any curve.
+const GRID_FADE: f32 = 1.0;
 
 /// How near a point must be to be pointed at, points on the screen.
 const REACH: f32 = 8.0;
@@ -44,8 +48,12 @@ pub struct Chart<'a> {
     decades: bool,
     /// It can be dragged only while it is zoomed: else a finger on it moves the page.
     drag_zoomed: bool,
-    /// What is read in it, and plots that show each other where they are read: their x is the same.
-    read: Reader<'a>,
+    /// Least width of the labels of y, and height, points.
+    width: f32,
+    height: f32,
+    /// What is read in it where not the values of its axes are, and plots that show each other where they are read:
+    /// their x is the same.
+    read: Option<Reader<'a>>,
     linked: Option<Id>,
     /// Enter is for the page, not for the menu.
     pressed: bool,
@@ -63,26 +71,10 @@ impl<'a> Chart<'a> {
         let name = name.into();
         let salt = IdSalt::new(&name);
         let axes = [x.into(), y.into()];
-        let axis = |hints: AxisHints<'static>, i: usize| {
-            let unit = unit_of(&axes[i]).to_owned();
-            hints
-                .label_spacing(shown_from(LABELS[i][1]))
-                .formatter(move |mark, range| label(mark, range, &unit))
-        };
-        let unit = unit_of(&axes[0]).to_owned();
-        let [x, y] = [0, 1].map(|i| tr(&axes[i]));
-        let read = reading([x.clone(), y.clone()], |p| [p.x, p.y]);
         let plot = Plot::new(salt)
             .height(height)
             .allow_scroll(false)
-            .custom_x_axes(vec![axis(AxisHints::new_x().label(x), 0)])
-            .custom_y_axes(vec![axis(
-                AxisHints::new_y()
-                    .label(beside(&y, height))
-                    .min_thickness(width),
-                1,
-            )])
-            .x_grid_spacer(uniform_grid_spacer(move |input| grid_x(&input, &unit)))
+            .grid_fade(GRID_FADE)
             .y_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[1])));
         Self {
             plot,
@@ -91,7 +83,9 @@ impl<'a> Chart<'a> {
             axes,
             decades: false,
             drag_zoomed: false,
-            read,
+            width,
+            height,
+            read: None,
             linked: None,
             pressed: false,
         }
@@ -101,16 +95,7 @@ impl<'a> Chart<'a> {
     #[must_use]
     pub fn decades(mut self) -> Self {
         self.decades = true;
-        let names = [0, 1].map(|i| tr(&self.axes[i]));
-        let x = AxisHints::new_x()
-            .label(names[0].clone())
-            .label_spacing(shown_from(LABELS[0][1]))
-            .formatter(|mark, _| power_label(mark.value));
-        self.read = reading(names, |p| [10_f64.powf(p.x), p.y]);
-        self.with(|plot| {
-            plot.custom_x_axes(vec![x])
-                .x_grid_spacer(|input| powers(&input))
-        })
+        self
     }
 
     /// With more of what a plot can do.
@@ -145,10 +130,10 @@ impl<'a> Chart<'a> {
     #[must_use]
     pub fn choice(mut self, read: impl Fn([f64; 2]) -> Option<String> + 'a) -> Self {
         self.pressed = true;
-        self.read = Rc::new(move |at| match at {
+        self.read = Some(Rc::new(move |at| match at {
             HoverPosition::NearDataPoint { position, .. }
             | HoverPosition::Elsewhere { position } => read([position.x, position.y]),
-        });
+        }));
         self
     }
 
@@ -178,6 +163,8 @@ impl<'a> Chart<'a> {
             axes,
             decades,
             drag_zoomed,
+            width,
+            height,
             read,
             linked,
             pressed,
@@ -185,6 +172,19 @@ impl<'a> Chart<'a> {
         let ctx = ui.ctx().clone();
         let id = ui.scope_id().with(salt);
         plot = plot.id(id);
+        // In the units that suit what it showed last.
+        let scales = scales_of(&ctx, id, &axes, decades);
+        let names = [0, 1].map(|i| tr(title(&axes[i], &scales[i])));
+        let factors = scales.each_ref().map(|s| s.factor);
+        let read = read.unwrap_or_else(|| {
+            let [across, up] = factors;
+            reading(names.clone(), move |p| {
+                let x = if decades { 10_f64.powf(p.x) } else { p.x };
+                [x / across, p.y / up]
+            })
+        });
+        plot = plot.grid_color(theme::grid(ui.visuals()));
+        plot = with_axes(plot, names, factors, decades, [width, height]);
         let menu = egui::Popup::is_any_open(&ctx);
         let keys = chart_cursor::live(&ctx).is_some();
         if menu || keys {
@@ -232,6 +232,9 @@ impl<'a> Chart<'a> {
             (inner, pen.table, asked)
         });
         zoom.note(&ctx);
+        if scales_of(&ctx, id, &axes, decades) != scales {
+            ctx.request_repaint();
+        }
         let (inner, table, asked) = shown.inner;
         let (response, transform) = (shown.response, shown.transform);
         let live = chart_cursor::live(&ctx);
@@ -276,6 +279,50 @@ impl<'a> Chart<'a> {
             hovered_plot_item: shown.hovered_plot_item,
         }
     }
+}
+
+/// The units in which the axes of a plot are read, by what it showed last.
+fn scales_of(ctx: &egui::Context, id: Id, axes: &[String; 2], decades: bool) -> [Scale; 2] {
+    let memory = PlotMemory::load(ctx, id);
+    [0, 1].map(|i| {
+        let size = memory.as_ref().map_or(0.0, |memory| {
+            let bounds = memory.bounds();
+            bounds.min()[i].abs().max(bounds.max()[i].abs())
+        });
+        // A logarithmic axis shows powers of its unit.
+        let size = if decades && i == 0 { 0.0 } else { size };
+        scale(&axes[i], size)
+    })
+}
+
+/// The axes with their names and labels; `size` is the least width of the labels of y and the height of the plot.
+fn with_axes(
+    plot: Plot<'_>,
+    [x, y]: [String; 2],
+    [across, up]: [f64; 2],
+    decades: bool,
+    [width, height]: [f32; 2],
+) -> Plot<'_> {
+    let y = AxisHints::new_y()
+        .label(beside(&y, height))
+        .min_thickness(width)
+        .label_spacing(shown_from(LABELS[1][1]))
+        .formatter(move |mark, _| label(mark, up));
+    let plot = plot.custom_y_axes(vec![y]);
+    let x = AxisHints::new_x().label(x);
+    if decades {
+        let x = x
+            .label_spacing(shown_from(LABELS[0][1]))
+            .formatter(|mark, _| power_label(mark.value));
+        return plot
+            .custom_x_axes(vec![x])
+            .x_grid_spacer(|input| powers(&input));
+    }
+    let x = x
+        .label_spacing(shown_from(LABELS[0][1]))
+        .formatter(move |mark, _| label(mark, across));
+    plot.custom_x_axes(vec![x])
+        .x_grid_spacer(uniform_grid_spacer(move |input| grid_x(&input, across)))
 }
 
 /// Draws in a plot, and notes the numbers of its curves where they are asked for.

@@ -1,8 +1,7 @@
 //! The labels of the axes of plots, and the lines of their grids.
 
-use std::ops::RangeInclusive;
-
 use egui_plot::{GridInput, GridMark};
+use hysteron_core::uncertain::{Scale, power_of_ten, titled};
 
 use crate::language::tr_number;
 
@@ -13,11 +12,6 @@ pub(super) const LABELS: [[f32; 2]; 2] = [[40.0, 40.0], [24.0, 16.0]];
 /// Labels that an axis has at least where there is room: one alone shows no scale.
 const FEWEST_LABELS: f64 = 2.0;
 
-/// The labels of an axis that ends below this have a smaller unit, or an exponent, so that they need no more room.
-/// A unit is easier to read than an exponent.
-const LEAST_PLAIN: f64 = 1e-3;
-const LEAST_OF_UNIT: f64 = 1e-2;
-
 /// Width of the smallest step that `egui_plot` wants, of a letter of a label, and between two labels of x, points.
 const FINEST: f64 = 8.0;
 const LETTER: f64 = 7.5;
@@ -27,20 +21,41 @@ const APART: f64 = 6.0;
 const LETTER_OF_NAME: f64 = 6.5;
 const ABOVE_AND_BELOW: f32 = 20.0;
 
-/// Units that take a prefix, and the prefixes by their powers of ten.
-const PREFIXED: [&str; 10] = [
-    "rad", "rad/s", "rad/s²", "m", "m/s", "m/s²", "s", "N", "N m", "V",
-];
-const PREFIXES: [(i32, &str); 4] = [(-3, "m"), (-6, "µ"), (-9, "n"), (-12, "p")];
+/// Numbers without a unit, or with one that takes no prefix, have a power of ten below this.
+const LEAST_PLAIN: f64 = 1e-3;
 
 /// Labels that far apart are drawn, and in full.
 pub(super) fn shown_from(points: f32) -> egui::Rangef {
     egui::Rangef::new(points - 0.1, points)
 }
 
-/// A label with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
-pub(super) fn label(mark: GridMark, range: &RangeInclusive<f64>, unit: &str) -> String {
-    let step = mark.step_size.abs();
+/// The unit in which an axis is read that shows values up to this size.
+pub(super) fn scale(axis: &str, size: f64) -> Scale {
+    let unit = unit_of(axis);
+    let scale = Scale::of(size, unit);
+    if scale.factor != 1.0 || !(f64::MIN_POSITIVE..LEAST_PLAIN).contains(&size) {
+        return scale;
+    }
+    let exponent = 3 * (size.log10() / 3.0).floor() as i32;
+    Scale {
+        factor: 10_f64.powi(exponent),
+        unit: format!("{} {unit}", power_of_ten(exponent))
+            .trim_end()
+            .to_owned(),
+    }
+}
+
+/// The name of an axis with the unit in which it is read.
+pub(super) fn title(axis: &str, scale: &Scale) -> String {
+    match axis.rsplit_once(" [") {
+        Some((name, _)) if axis.ends_with(']') => titled(name, &scale.unit),
+        _ => titled(axis, &scale.unit),
+    }
+}
+
+/// A label in the unit of its axis, with as many decimals as its step has: 0.05 apart are 0.05, 0.10 and not 0.1, 0.1.
+pub(super) fn label(mark: GridMark, factor: f64) -> String {
+    let step = mark.step_size.abs() / factor;
     let first = step.log10().floor();
     let lead = step / 10_f64.powf(first);
     // 2.5 has a second digit; 1, 2 and 5 have none.
@@ -50,31 +65,15 @@ pub(super) fn label(mark: GridMark, range: &RangeInclusive<f64>, unit: &str) -> 
         0.0
     };
     let decimals = (more - first).clamp(0.0, 12.0) as usize;
-    let value = mark.value;
+    let value = mark.value / factor;
     if value.abs() < 1e-9 * step {
         return "0".to_owned();
-    }
-    // Of the range: all labels of an axis have the same.
-    let largest = range.start().abs().max(range.end().abs());
-    let prefixed = PREFIXED.contains(&unit);
-    if largest < if prefixed { LEAST_OF_UNIT } else { LEAST_PLAIN } {
-        let exponent = 3 * (largest.max(step).log10() / 3.0).floor() as i32;
-        let decimals = (more - first + f64::from(exponent)).max(0.0) as usize;
-        let value = value / 10_f64.powi(exponent);
-        let prefix = PREFIXES.iter().find(|(power, _)| *power == exponent);
-        return match prefix.filter(|_| prefixed) {
-            Some((_, prefix)) => {
-                let number = tr_number(format!("{value:.decimals$}"));
-                format!("{number} {prefix}{unit}")
-            }
-            None => tr_number(format!("{value:.decimals$}e{exponent}")),
-        };
     }
     tr_number(format!("{value:.decimals$}"))
 }
 
 /// The unit in the name of an axis, if it has one.
-pub(super) fn unit_of(axis: &str) -> &str {
+fn unit_of(axis: &str) -> &str {
     let inner = axis.strip_suffix(']').and_then(|a| a.rsplit_once('['));
     inner.map_or("", |(_, unit)| unit)
 }
@@ -91,17 +90,17 @@ pub(super) fn beside(name: &str, height: f32) -> String {
 }
 
 /// Grid lines of x, whose labels stand beside each other: so far apart that none touches the next.
-pub(super) fn grid_x(input: &GridInput, unit: &str) -> [f64; 3] {
+pub(super) fn grid_x(input: &GridInput, factor: f64) -> [f64; 3] {
     let steps = grid(input, LABELS[0]);
     let least = f64::from(LABELS[0][1]) * input.base_step_size / FINEST;
     let labelled = steps.into_iter().find(|s| *s >= least);
-    let Some(first) = labelled.filter(|s| touch(input, *s, unit)) else {
+    let Some(first) = labelled.filter(|s| touch(input, *s, factor)) else {
         return steps;
     };
     let wider = std::iter::successors(Some(first), |s| Some(round_step(1.01 * s)));
     let readable = |s: &f64| labels(input, *s) >= FEWEST_LABELS;
     let wider = wider.take_while(readable).collect::<Vec<_>>();
-    let apart = wider.iter().find(|s| !touch(input, **s, unit));
+    let apart = wider.iter().find(|s| !touch(input, **s, factor));
     let step = *apart.or(wider.last()).unwrap_or(&first);
     if 0.5 * step >= least {
         return [step, 10.0 * step, 100.0 * step];
@@ -110,11 +109,11 @@ pub(super) fn grid_x(input: &GridInput, unit: &str) -> [f64; 3] {
 }
 
 /// Whether labels of x that are one step apart touch each other.
-fn touch(input: &GridInput, step_size: f64, unit: &str) -> bool {
+fn touch(input: &GridInput, step_size: f64, factor: f64) -> bool {
     let (low, high) = input.bounds;
     let letters = |value: f64| {
         let mark = GridMark { value, step_size };
-        label(mark, &(low..=high), unit).chars().count()
+        label(mark, factor).chars().count()
     };
     let ends = [(low / step_size).ceil(), (high / step_size).floor()];
     let [first, last] = ends.map(|end| letters(end * step_size));
@@ -207,23 +206,49 @@ mod tests {
         assert_eq!(lines((-1.1, 1.1), 24.0)[1], 5.0, "no room for two");
     }
 
-    fn labels(range: RangeInclusive<f64>, marks: &[(f64, f64)]) -> Vec<String> {
+    fn labels(axis: &str, size: f64, marks: &[(f64, f64)]) -> (String, Vec<String>) {
+        let scale = scale(axis, size);
         let mark = |&(value, step_size)| GridMark { value, step_size };
         let marks = marks.iter().map(mark);
-        marks.map(|mark| label(mark, &range, "")).collect()
+        let labels = marks.map(|mark| label(mark, scale.factor));
+        (title(axis, &scale), labels.collect())
     }
 
     #[test]
-    fn the_labels_of_an_axis_are_written_alike() {
+    fn the_labels_of_an_axis_are_written_alike_in_its_unit() {
         let fine = [(0.0005, 0.0005), (0.00075, 0.00025), (0.0, 0.0005)];
-        assert_eq!(labels(0.0..=0.0009, &fine), ["500e-6", "750e-6", "0"]);
-        assert_eq!(labels(0.0..=0.002, &fine), ["0.0005", "0.00075", "0"]);
-        assert_eq!(labels(-4e-6..=4e-6, &[(-2e-6, 2e-6)]), ["-2e-6"]);
-        assert_eq!(
-            labels(5.374..=5.375, &[(5.3742, 2e-4), (5.37425, 5e-5)]),
-            ["5.3742", "5.37425"]
-        );
-        assert_eq!(labels(0.0..=3000.0, &[(2500.0, 500.0)]), ["2500"]);
+        for (axis, size, marks, title, texts) in [
+            ("u", 0.0009, &fine[..], "u [10⁻⁶]", &["500", "750", "0"][..]),
+            ("u", 0.002, &fine, "u", &["0.0005", "0.00075", "0"]),
+            ("u", 4e-6, &[(-2e-6, 2e-6)], "u [10⁻⁶]", &["-2"]),
+            ("x [m]", 9e-4, &fine, "x [mm]", &["0.5", "0.75", "0"]),
+            ("time [s]", 3e-3, &[(1.5e-3, 5e-4)], "time [ms]", &["1.5"]),
+            (
+                "x1 - model [rad]",
+                9e-5,
+                &[(5e-5, 5e-5)],
+                "x1 - model [µrad]",
+                &["50"],
+            ),
+            (
+                "t [s]",
+                5.375,
+                &[(5.3742, 2e-4), (5.37425, 5e-5)],
+                "t [s]",
+                &["5.3742", "5.37425"],
+            ),
+            (
+                "rms [× noise]",
+                3000.0,
+                &[(2500.0, 500.0)],
+                "rms [× noise]",
+                &["2500"],
+            ),
+        ] {
+            let (found, labels) = labels(axis, size, marks);
+            assert_eq!(found, title);
+            assert_eq!(labels, texts, "{axis}");
+        }
     }
 
     #[test]
@@ -240,38 +265,18 @@ mod tests {
 
     #[test]
     fn the_labels_of_x_do_not_touch() {
-        let steps = |bounds: (f64, f64), points: f64, unit| {
+        let steps = |bounds: (f64, f64), points: f64, factor| {
             let base_step_size = FINEST * (bounds.1 - bounds.0) / points;
             let input = GridInput {
                 bounds,
                 base_step_size,
             };
-            grid_x(&input, unit)
+            grid_x(&input, factor)
         };
-        assert_eq!(steps((0.0, 7.0), 280.0, "s")[1], 1.0, "0, 1, 2: as before");
+        assert_eq!(steps((0.0, 7.0), 280.0, 1.0)[1], 1.0, "0, 1, 2: as before");
         // 0.0005, 0.0010 and so on would need 50 points each.
-        let [step, ..] = steps((0.0, 3e-3), 280.0, "");
+        let [step, ..] = steps((0.0, 3e-3), 280.0, 1.0);
         assert_eq!(step, 1e-3);
-        let [step, ..] = steps((-4.2e-3, 1.2e-3), 240.0, "rad");
-        assert_eq!(step, 2e-3, "-4 mrad, -2 mrad, 0");
-    }
-
-    #[test]
-    fn a_small_value_has_a_smaller_unit_where_there_is_one() {
-        let small = |unit: &str| {
-            let mark = GridMark {
-                value: 0.0005,
-                step_size: 0.0005,
-            };
-            label(mark, &(0.0..=0.0009), unit)
-        };
-        assert_eq!(small(unit_of("x1 - model [rad]")), "500 µrad");
-        assert_eq!(small(unit_of("inertia [kg m²]")), "500e-6");
-        assert_eq!(small(unit_of("output")), "500e-6");
-        let mark = GridMark {
-            value: 0.0015,
-            step_size: 0.0005,
-        };
-        assert_eq!(label(mark, &(0.0..=0.003), "s"), "1.5 ms");
+        assert_eq!(steps((0.0, 3e-3), 280.0, 1e-3)[1], 5e-4, "0.5, 1.0, 1.5");
     }
 }

@@ -4,6 +4,8 @@ use std::rc::Rc;
 
 use egui_plot::{HoverPosition, PlotPoint};
 
+use hysteron_core::uncertain::significant;
+
 use crate::language::tr_number;
 
 /// Significant digits of what is read at the pointer; a time needs more, since it grows.
@@ -51,23 +53,4 @@ fn line_of(name: &str, value: &str) -> String {
 /// A number with so many significant digits, as it is read on the screen.
 fn read_out(value: f64, digits: i32) -> String {
     tr_number(significant(value, digits))
-}
-
-/// A number with so many significant digits, and an exponent only where it needs one.
-pub fn significant(value: f64, digits: i32) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if (1e-4..1e6).contains(&size) {
-        let decimals = (digits - 1 - size.log10().floor() as i32).max(0) as usize;
-        let text = format!("{value:.decimals$}");
-        if text.contains('.') {
-            let text = text.trim_end_matches('0').trim_end_matches('.');
-            text.to_owned()
-        } else {
-            text
-        }
-    } else {
-        format!("{value:.3e}")
-    }
 }

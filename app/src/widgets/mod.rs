@@ -9,6 +9,7 @@ pub mod chart_menu;
 mod chart_reading;
 pub mod chart_zoom;
 pub mod controls;
+pub mod equation;
 pub mod playback;
 pub mod relay_loop;
 pub mod typed;

@@ -39,7 +39,7 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) 
         ],
     );
     let now = data.phase.get(index_at(data, clock)).copied();
-    let shown = still("phase", "output y", "its rate dy/dt [1/s]", height).show(ui, |plot| {
+    let shown = still("phase", "output y", "its rate of change [1/s]", height).show(ui, |plot| {
         plot.line(
             Line::new(tr("from the start"), curve(&data.phase))
                 .color(start)
@@ -132,7 +132,7 @@ pub const TABLES: [&str; 5] = [
 
 /// The numbers behind the plots.
 pub fn tables(data: &ExploreData) -> Vec<Table> {
-    let [y, rate] = ["output y", "its rate dy/dt [1/s]"];
+    let [y, rate] = ["output y", "its rate of change [1/s]"];
     vec![
         Table::new(TABLES[0])
             .with("time [s]", data.time.iter().copied())

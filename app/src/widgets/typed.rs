@@ -67,10 +67,10 @@ impl Typed {
         }
         let Some(number) = typed_in(&self.unit)(text) else {
             let wanted = match self.unit.as_str() {
-                "" | "1" => "a number without a unit is wanted".to_owned(),
-                unit => format!("a number in {unit} is wanted"),
+                "" | "1" => "enter a number without a unit".to_owned(),
+                unit => format!("enter a number in {unit}"),
             };
-            return Err(format!("{text} cannot be taken: {wanted}."));
+            return Err(format!("{text} is not accepted: {wanted}."));
         };
         // A value from elsewhere may have more decimals than are shown, and lie beyond the range.
         if number == egui::emath::round_to_decimals(self.present, self.decimals) {
@@ -81,8 +81,8 @@ impl Typed {
         }
         let [from, to] = [self.range.start(), self.range.end()]
             .map(|end| egui::emath::round_to_decimals(*end, 9));
-        let limits = format!("the range goes from {from} to {to} {}", self.unit);
-        Err(format!("{text} cannot be taken: {}.", limits.trim_end()))
+        let limits = format!("the range is {from} to {to} {}", self.unit);
+        Err(format!("{text} is not accepted: {}.", limits.trim_end()))
     }
 }
 

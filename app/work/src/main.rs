@@ -18,8 +18,8 @@ mod web {
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
     use hysteron_work::tasks::{
-        ExperimentTask, GapTask, MapTask, MeasuredTask, MysteryTask, News, READY, ReadTask,
-        RevealTask, StepTask, Task as _, TuneTask,
+        ExperimentTask, GapTask, HandTask, MapTask, MeasuredTask, MysteryTask, News, READY,
+        ReadTask, RevealTask, StepTask, Task as _, TuneTask,
     };
     use hysteron_work::wire::{pack, unpack};
     use hysteron_work::work::Work;
@@ -65,6 +65,7 @@ mod web {
             ReadTask::NAME => run::<ReadTask>(scope, &task),
             StepTask::NAME => run::<StepTask>(scope, &task),
             ExperimentTask::NAME => run::<ExperimentTask>(scope, &task),
+            HandTask::NAME => run::<HandTask>(scope, &task),
             MapTask::NAME => run::<MapTask>(scope, &task),
             GapTask::NAME => run::<GapTask>(scope, &task),
             MysteryTask::NAME => run::<MysteryTask>(scope, &task),

@@ -2,6 +2,7 @@
 //! the web it is the worker that does it.
 
 use hysteron_core::backlash::GapEstimate;
+use hysteron_core::by_hand::HandReplay;
 use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, StepReport};
 use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
@@ -101,6 +102,22 @@ pub struct StepTask {
 impl Task for StepTask {
     const NAME: &'static str = "step";
     type Report = StepReport;
+}
+
+/// Replays a fitted model with values that are set by hand.
+#[derive(Serialize, Deserialize)]
+pub struct HandTask {
+    /// The measurement.
+    pub measurement: Box<Measurement>,
+    /// The fit.
+    pub report: Box<StepReport>,
+    /// The values, in the order of its parameters.
+    pub values: Vec<f64>,
+}
+
+impl Task for HandTask {
+    const NAME: &'static str = "hand";
+    type Report = HandReplay;
 }
 
 /// Looks for the experiment that tells models apart, within limits.

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 use hysteron_core::backlash::estimate_gap;
+use hysteron_core::by_hand::{ByHand, HandReplay};
 use hysteron_core::crew::Crew;
 use hysteron_core::criticism::{ExperimentJob, StepJob};
 use hysteron_core::diagnosis::{NextExperiment, StepReport};
@@ -20,8 +21,8 @@ use hysteron_core::user_model::UserModel;
 use crate::content::Content;
 use crate::packed::unpack;
 use crate::tasks::{
-    ExperimentTask, GapReport, GapTask, Made, MapTask, MysteryTask, News, Opened, ReadReport,
-    ReadTask, RevealTask, Source, StepTask, Task, TuneTask,
+    ExperimentTask, GapReport, GapTask, HandTask, Made, MapTask, MysteryTask, News, Opened,
+    ReadReport, ReadTask, RevealTask, Source, StepTask, Task, TuneTask,
 };
 
 /// Where a task says its news; false when nobody listens any more and it should end.
@@ -152,6 +153,17 @@ impl Work for StepTask {
                 None => News::Report(Box::new(report)),
             });
         }
+    }
+}
+
+impl Work for HandTask {
+    fn run(self, say: Say<'_, HandReplay>) {
+        let all = (0, self.measurement.len());
+        let hand = ByHand::new(&self.measurement, &self.report, all);
+        say(match hand {
+            Some(hand) => News::Report(Box::new(hand.settled(&self.values))),
+            None => News::Failed("The values of this model cannot be set by hand.".to_owned()),
+        });
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Nothing is computed here: the jobs of [`criticism`](crate::criticism) fill these values, everything else reads them.
 
+mod answer;
 mod error;
 mod experiment;
 mod fingerprint;
@@ -19,6 +20,7 @@ mod screening;
 mod step;
 mod verdict;
 
+pub use answer::Reach;
 pub use error::CriticismError;
 pub use experiment::{FittedModel, NextExperiment, Trial};
 pub use fingerprint::Fingerprint;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Quantity;
-use crate::uncertain::in_unit;
+use crate::uncertain::brief_quantity;
 
 /// The noise of a measured channel, in its own unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct ChannelNoise {
 const COARSE: f64 = 0.3;
 
 impl ChannelNoise {
-    /// `velocity noise 0.0037 rad/s, steps of 0.0132 rad/s`: steps far below the noise are not said.
+    /// `velocity noise 3.7 mrad/s, steps of 13.2 mrad/s`: steps far below the noise are not said.
     pub fn words(&self) -> String {
         let quantity = match self.quantity {
             Quantity::Input => "input",
@@ -33,22 +33,11 @@ impl ChannelNoise {
             Quantity::Velocity | Quantity::LoadVelocity => "velocity",
             Quantity::Output => "output",
         };
-        let size = |value: f64| in_unit(three_digits(value), &self.unit);
+        let size = |value: f64| brief_quantity(value, &self.unit);
         let noise = format!("{quantity} noise {}", size(self.value));
         match self.step.filter(|step| *step > COARSE * self.value) {
             Some(step) => format!("{noise}, steps of {}", size(step)),
             None => noise,
         }
-    }
-}
-
-/// A size with three digits that count.
-fn three_digits(value: f64) -> String {
-    let written = format!("{value:.2e}");
-    let rounded: f64 = written.parse().unwrap_or(value);
-    if (1e-4..1e5).contains(&rounded.abs()) {
-        format!("{rounded}")
-    } else {
-        written
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-use crate::uncertain::in_unit;
+use crate::uncertain::{Scale, brief_quantity, in_unit, significant};
 
 /// One sine of a sum, `amplitude sin(2 pi frequency t + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,7 +50,7 @@ impl Program {
     /// In words with numbers: `a relay with gain 0.5 N m and hysteresis 0.6 rad/s`. `input` and `output` are the
     /// units.
     pub fn words(&self, input: &str, output: &str) -> String {
-        let with = |value: f64, unit: &str| in_unit(short(value), unit);
+        let with = brief_quantity;
         match self {
             Self::Relay {
                 gains,
@@ -61,12 +61,15 @@ impl Program {
                 let hysteresis = with(*hysteresis, output);
                 let mut text = match gains.as_slice() {
                     [gain] => format!("a relay with gain {}", with(*gain, input)),
-                    [first, second] => format!(
-                        "a relay with gains {} and {} in turn, {} s each",
-                        short(*first),
-                        with(*second, input),
-                        short(*hold)
-                    ),
+                    [first, second] => {
+                        let scale = Scale::of(first.abs().max(second.abs()), input);
+                        let [first, second] = [first, second].map(|k| short(k / scale.factor));
+                        format!(
+                            "a relay with gains {first} and {} in turn, {} s each",
+                            in_unit(second, &scale.unit),
+                            short(*hold)
+                        )
+                    }
                     _ => format!(
                         "a relay with gains {} in turn, {} s each",
                         list(gains, input),
@@ -109,44 +112,12 @@ impl Program {
 
 /// Values with their unit at the end.
 fn list(values: &[f64], unit: &str) -> String {
-    let numbers: Vec<String> = values.iter().map(|v| short(*v)).collect();
-    in_unit(numbers.join(", "), unit)
+    let scale = Scale::of(values.iter().fold(0.0, |most, v| v.abs().max(most)), unit);
+    let numbers = values.iter().map(|v| short(v / scale.factor));
+    in_unit(numbers.collect::<Vec<_>>().join(", "), &scale.unit)
 }
 
 /// A number with three digits that count.
 pub(crate) fn short(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    if !(1e-4..1e5).contains(&size) {
-        return format!("{value:.2e}");
-    }
-    let digits = (2 - libm::log10(size).floor() as i32).clamp(0, 7) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_three_digits_that_count() {
-        for (value, text) in [
-            (0.5, "0.5"),
-            (0.065, "0.065"),
-            (1234.5, "1234"),
-            (0.123_456, "0.123"),
-            (-3.0, "-3"),
-            (2e-5, "2.00e-5"),
-            (20.0, "20"),
-        ] {
-            assert_eq!(short(value), text);
-        }
-    }
+    significant(value, 3)
 }

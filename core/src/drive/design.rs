@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Body, DriftingCycle, DriveError, VelocityRelay, check, drifting_cycle};
 use crate::relay::Relay;
+use crate::uncertain::brief;
 
 /// What is known of a drive before the test, roughly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -349,9 +350,9 @@ impl Candidate {
         warn(
             samples,
             format!(
-                "A period has {:.1} samples only: the controller should sample every {:.2e} s.",
+                "A period has {:.1} samples only: the controller should sample every {} s.",
                 self.samples(),
-                self.cycle.period / FEWEST_SAMPLES
+                brief(self.cycle.period / FEWEST_SAMPLES)
             ),
         );
         warn(

@@ -12,6 +12,7 @@ use super::{
 use crate::plant::{PlantError, TransferFunction};
 use crate::relay::{Relay, RelayError};
 use crate::root::illinois;
+use crate::uncertain::brief;
 
 /// What is predicted for a loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +53,9 @@ pub enum PredictError {
     Relay(#[from] RelayError),
     /// A delay beside which the plant is at rest at once.
     #[error(
-        "dead time and delay are {lag:.2e} s, where the plant's slowest time constant allows {most:.2e} s at most: beyond that they are too far apart to compute with"
+        "dead time and delay are {} s, where the plant's slowest time constant allows {} s at most: beyond that they are too far apart to compute with",
+        brief(*lag),
+        brief(*most)
     )]
     LongDelay {
         /// Dead time and delay, s.

@@ -5,6 +5,7 @@ use super::pattern::{OneCycle, SAME_CYCLE, difference};
 use super::{Cycle, ExactCycle, Prediction};
 use crate::relay::Relay;
 use crate::simulate::Noise;
+use crate::uncertain::digits;
 
 /// Cycles of a growing swing that are listed.
 const LISTED: usize = 4;
@@ -17,15 +18,7 @@ const SLOW: f64 = 0.9;
 
 /// A value with four significant digits.
 fn significant(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-4..1e5).contains(&size) {
-        return format!("{value:.3e}");
-    }
-    let decimals = (3.0 - libm::floor(libm::log10(size))).max(0.0) as usize;
-    format!("{value:.decimals$}")
+    digits(value, 4)
 }
 
 /// A mean with its scatter: two significant digits of this, and as many decimals of the mean.
@@ -58,9 +51,9 @@ pub(super) fn limit_cycle(
     let mut text = format!("It oscillates: {}.", values(cycle));
     if let Some(multiplier) = slow {
         let left = format!("{multiplier:.4}");
-        text.push_str(" It settles slowly: of a disturbance ");
+        text.push_str(" It settles slowly: a small disturbance shrinks to ");
         text.push_str(&left);
-        text.push_str(" is left after a period.");
+        text.push_str(" of its size in one period.");
     }
     if stable.is_none() {
         text += " Small disturbances neither die out nor grow.";

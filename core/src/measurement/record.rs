@@ -18,6 +18,31 @@ pub struct Channel {
     pub values: Vec<f64>,
 }
 
+/// Units that names of columns end with.
+const UNITS: [&str; 24] = [
+    "deg", "degree", "degrees", "rad", "rev", "turns", "rpm", "counts", "s", "ms", "us", "m", "mm",
+    "um", "n", "nm", "mnm", "a", "ma", "v", "mv", "c", "degc", "k",
+];
+
+impl Channel {
+    /// Its name without the unit that the file has in it, for a reader to whom its SI unit is told: the angle of
+    /// `angle_deg` is in radians here.
+    pub fn title(&self) -> &str {
+        let end = self.name.rsplit_once(['_', ' ', '.', '(', '[']);
+        match end {
+            Some((title, unit)) if !title.trim().is_empty() => {
+                let unit = unit.trim_end_matches([')', ']']).to_lowercase();
+                if UNITS.contains(&unit.as_str()) {
+                    title.trim_end()
+                } else {
+                    &self.name
+                }
+            }
+            _ => &self.name,
+        }
+    }
+}
+
 /// One experiment: an input and the outputs recorded with it.
 ///
 /// The input is held between samples: `input.values[i]` acts from `time[i]` to `time[i + 1]`.
@@ -98,5 +123,33 @@ impl Channel {
             return &self.name;
         }
         Role::Measured(self.quantity).name()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_title_of_a_column_has_no_unit_of_the_file() {
+        let title = |name: &str| {
+            let channel = Channel {
+                quantity: Quantity::Position,
+                name: name.to_owned(),
+                unit: "rad".to_owned(),
+                values: Vec::new(),
+            };
+            channel.title().to_owned()
+        };
+        for (name, expected) in [
+            ("angle_deg", "angle"),
+            ("speed (rpm)", "speed"),
+            ("motor_angle", "motor_angle"),
+            ("x1", "x1"),
+            ("_deg", "_deg"),
+            ("", ""),
+        ] {
+            assert_eq!(title(name), expected);
+        }
     }
 }

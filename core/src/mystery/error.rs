@@ -7,13 +7,13 @@ pub const SHORTEST_WORD: usize = 6;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MysteryError {
     /// A word that anybody could guess.
-    #[error("The word has {found} letters: it needs {SHORTEST_WORD} at least.")]
+    #[error("The password has {found} letters: it needs at least {SHORTEST_WORD}.")]
     ShortWord {
         /// Its length in characters.
         found: usize,
     },
     /// The word is another one, or the seal was changed.
-    #[error("This word does not open the seal.")]
+    #[error("This password does not open the seal.")]
     WrongWord,
     /// A seal that is not one.
     #[error("The sealed truth of this file is damaged.")]

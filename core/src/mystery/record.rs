@@ -192,7 +192,7 @@ impl Mystery {
             return Err(bad("it has too few or too many samples"));
         }
         let step = u32::try_from(step).ok().filter(|s| *s > 0);
-        let step = step.ok_or(bad("its sampling time cannot be"))?;
+        let step = step.ok_or(bad("its sampling time is impossible"))?;
         let sealed = usize::try_from(sealed).unwrap_or(usize::MAX);
         let (seal, after) = rest.split_at_checked(sealed).ok_or_else(cut)?;
         rest = after;
@@ -204,7 +204,7 @@ impl Mystery {
                 // Both others are differences of 32-bit numbers.
                 let value = difference.checked_add(last + slope);
                 let value = value.and_then(|v| i32::try_from(v).ok());
-                let value = value.ok_or(bad("its numbers cannot be"))?;
+                let value = value.ok_or(bad("its numbers are impossible"))?;
                 slope = i64::from(value) - last;
                 last = i64::from(value);
                 column.push(value);

@@ -15,8 +15,10 @@ use std::fmt::Write as _;
 use crate::diagnosis::ChannelNoise;
 use crate::measurement::Kind;
 use crate::uncertain::brief;
+use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
 pub use input::{Provenance, ReportInput};
+pub use model::baseline;
 pub use sha256::sha256;
 
 /// The report as an HTML page.
@@ -61,15 +63,9 @@ pub fn html(input: &ReportInput) -> String {
 fn answer(out: &mut String, input: &ReportInput) {
     let measurement = input.measurement;
     let step = &input.last.step;
-    let text = input.verdict.map_or_else(
-        || {
-            format!(
-                "The model misses the measurement by {} times its noise.",
-                brief(step.error)
-            )
-        },
-        |v| v.text.clone(),
-    );
+    let present = input.model.map(UserModel::present).unwrap_or_default();
+    let answer = input.last.answer(input.verdict, &present, false);
+    let verdict = input.verdict.map_or("", |v| v.text.as_str());
     let kind = match measurement.kind {
         Kind::Drive => "drive",
         Kind::Process => "process",
@@ -81,10 +77,11 @@ fn answer(out: &mut String, input: &ReportInput) {
     let _ = write!(
         out,
         "<header>\n<h1>What is missing from the model of {}?</h1>\n<p class=\"answer\">{}</p>\n\
-         <p class=\"facts\">{} samples of a {kind} over {} s. Error of the model on held-back data: {} times the \
-         measurement noise; a perfect model would leave {}.</p>\n",
+         <p>{}</p>\n<p class=\"facts\">{} samples of a {kind} over {} s. Error of the model on the part of the record \
+         that it was not fitted to: {} × the measurement noise; a perfect model would leave {}.</p>\n",
         escape(&measurement.name),
-        escape(&text),
+        escape(&answer),
+        escape(verdict),
         measurement.len(),
         brief(duration),
         brief(step.error),
@@ -92,7 +89,7 @@ fn answer(out: &mut String, input: &ReportInput) {
     );
     let missed = (input.last.step.left > 0.0).then(|| {
         format!(
-            "The model misses {} % of the motion.",
+            "{} % of the motion is not explained.",
             brief(100.0 * input.last.step.left)
         )
     });
@@ -140,8 +137,8 @@ fn curves(input: &ReportInput) -> String {
         );
     }
     out.push_str(
-        "<p class=\"small\">The model is driven by the measured input and restarted in short windows from estimated \
-         states.</p>\n",
+        "<p class=\"small\">The model is driven by the measured input, and starts afresh from an estimated state \
+         in each short window.</p>\n",
     );
     out
 }
@@ -157,7 +154,7 @@ fn places(input: &ReportInput) -> String {
         };
         let _ = writeln!(out, "<h3>{title}</h3>");
         if step.findings.is_empty() {
-            out.push_str("<p>What it leaves is measurement noise, wherever one looks.</p>\n");
+            out.push_str("<p>What it leaves is measurement noise everywhere.</p>\n");
             continue;
         }
         out.push_str("<ul>\n");

@@ -10,8 +10,8 @@ use crate::measurement::Kind;
 use crate::uncertain::{brief, with_error};
 use crate::user_model::Status;
 
-/// Equations of the baseline; `F` is the sum of what the effects add.
-fn baseline(kind: Kind) -> [&'static str; 2] {
+/// Equations of the baseline; `F` is the sum of what the effects add. The second may be empty.
+pub fn baseline(kind: Kind) -> [&'static str; 2] {
     match kind {
         Kind::Drive => ["J1 dv1/dt = u_acting - d1 v1 + F", "dx1/dt = v1"],
         Kind::Process => ["T dy/dt + y = K (u_acting + F)", ""],
@@ -59,7 +59,7 @@ pub(super) fn experiments(proposal: &NextExperiment) -> String {
     let mut out = String::new();
     table(
         &mut out,
-        &["Experiment", "The models differ by (times the noise)"],
+        &["Experiment", "The models differ by (× noise)"],
         &rows,
     );
     out
@@ -140,7 +140,7 @@ pub(super) fn candidates(steps: &[Step]) -> String {
                 let ids: Vec<&str> = c.effects.iter().map(|e| name_of(*e)).collect();
                 let note = if !c.equivalent_to.is_empty() {
                     let others: Vec<&str> = c.equivalent_to.iter().map(|e| name_of(*e)).collect();
-                    format!("cannot be told from {}", others.join(", "))
+                    format!("cannot be told apart from {}", others.join(", "))
                 } else if c.significant {
                     "helps".to_owned()
                 } else {
@@ -167,7 +167,7 @@ pub(super) fn candidates(steps: &[Step]) -> String {
         );
     }
     out.push_str(
-        "<p class=\"small\">Error: on held-back data after a refit, in units of the noise. Evidence: change of the \
+        "<p class=\"small\">Error: after a refit, on the part of the record that the model was not fitted to, in units of the noise. Evidence: change of the \
          Bayesian information criterion on the fitted data, negative is better.</p>\n",
     );
     out

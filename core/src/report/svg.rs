@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::html::escape;
-use crate::uncertain::titled;
+use crate::uncertain::{significant, titled};
 
 /// Space for the labels, in units of the picture.
 const LEFT: f64 = 74.0;
@@ -120,14 +120,7 @@ fn tick_text(value: f64, step: f64) -> String {
         return "0".to_owned();
     }
     if !(1e-4..1e6).contains(&value.abs()) && step < 1e-3 || value.abs() >= 1e6 {
-        let text = format!("{value:.3e}");
-        let Some((digits, power)) = text.split_once('e') else {
-            return text;
-        };
-        return format!(
-            "{}e{power}",
-            digits.trim_end_matches('0').trim_end_matches('.')
-        );
+        return significant(value, 4);
     }
     let digits = (-libm::log10(step) + 1e-9).ceil().clamp(0.0, 7.0) as usize;
     format!("{value:.digits$}")
@@ -328,7 +321,7 @@ mod tests {
             assert!((tick - expected).abs() < 1e-12);
         }
         assert_eq!(tick_text(0.2, 0.2), "0.2");
-        assert_eq!(tick_text(4e-6, 2e-6), "4e-6");
+        assert_eq!(tick_text(4e-6, 2e-6), "4 × 10⁻⁶");
         assert_eq!(tick_text(1500.0, 500.0), "1500");
     }
 

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::PlantError;
 use crate::relay::RelayError;
+use crate::uncertain::{brief, digits};
 
 /// Why there is no controller.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
@@ -56,7 +57,9 @@ pub enum TuningError {
     },
     /// An identification that needs different half periods.
     #[error(
-        "the half periods {on} s and {off} s under asymmetry {asymmetry} tell nothing apart: the relay must push harder one way than the other"
+        "the half periods {} s and {} s under asymmetry {asymmetry} tell nothing apart: the relay must push harder one way than the other",
+        digits(*on, 4),
+        digits(*off, 4)
     )]
     Symmetric {
         /// Time with the relay up, s.
@@ -92,7 +95,8 @@ pub enum TuningError {
     },
     /// The gain adaptation did not reach the wanted amplitude.
     #[error(
-        "the gain adaptation stands at gain {gain:.4} with a relative amplitude error of {error:.2e} after {runs} relay runs: the wanted phase may be out of this plant's reach"
+        "the gain adaptation stands at gain {gain:.4} with a relative amplitude error of {} after {runs} relay runs: the wanted phase may be out of this plant's reach",
+        brief(*error)
     )]
     NotConverged {
         /// Relay runs made.

@@ -19,6 +19,7 @@
 //! An effect with a `formula` may stand under `[[effects]]` as well. What is not mentioned is free. `status` ("fixed", "prior", "free") says it outright; `unit`, if it is
 //! there, must be the one that the parameter has in the measurement.
 
+mod form;
 mod read;
 mod write;
 
@@ -29,6 +30,7 @@ use crate::effect::{EffectId, Formula, VISCOUS_FRICTION};
 use crate::measurement::Kind;
 
 pub use crate::diagnosis::Status;
+pub use form::{Form, forms};
 pub use read::ModelFileError;
 
 /// Longest file that is read, bytes.

@@ -15,6 +15,6 @@ pub const BUILT_IN: [BuiltIn; 2] = [
     },
     BuiltIn {
         file: enclosed::DRIVE_10,
-        story: "The same on a rig without dry friction and with half of the gap.",
+        story: "The same on a rig without dry friction and with half the gap.",
     },
 ];

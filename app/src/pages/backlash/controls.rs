@@ -100,7 +100,7 @@ impl Backlash {
             0.05..=8.0,
             "hysteresis ε [rad/s]",
         )
-        .on_hover_text(tr("Speed at which the relay turns the push round"));
+        .on_hover_text(tr("Speed at which the relay reverses the push"));
         slider(ui, &mut r.delay, 0.0, 1e3, 0.0..=2.0, "delay [ms]")
             .on_hover_text(tr("How late the push follows the switch"));
         let mut flip = relay.flip.unwrap_or(0.0);
@@ -111,10 +111,10 @@ impl Backlash {
             usual.flip.unwrap_or(0.0),
             1.0,
             0.0..=5.0,
-            "turn round every [s]",
+            "reverse every [s]",
         )
         .on_hover_text(tr(
-            "The asymmetry changes its sign, so that the drift turns round; 0 for never",
+            "How often the asymmetry changes sign, so that the drift reverses; 0 for never",
         ));
         if flip != before {
             relay.flip = (flip > 0.0).then_some(flip.max(0.01));
@@ -180,7 +180,7 @@ impl Backlash {
             "adhesion, upper [N m]",
         )
         .on_hover_text(tr(
-            "Pull that the upper contact withstands before it parts (adhesive side effect)",
+            "Pull that the upper contact withstands before it lets go (adhesion)",
         ));
         slider(
             ui,

@@ -89,7 +89,7 @@ impl Design {
 fn proposal_ui(ui: &mut egui::Ui, test: &DriftingTest) {
     let relay = test.relay.relay;
     ui.label(tr(format!(
-        "k = {:.3} N m, a = {:.2}, ε = {:.3} rad/s, {:.2} ms of added delay, turned round every {:.1} s, sampled every {:.2} ms or faster.",
+        "k = {:.3} N m, a = {:.2}, ε = {:.3} rad/s, {:.2} ms of added delay, reversed every {:.1} s, sampled every {:.2} ms or faster.",
         relay.gain,
         relay.asymmetry,
         relay.hysteresis,

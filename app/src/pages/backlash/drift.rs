@@ -15,7 +15,7 @@ pub fn lesson(input: &DriveInput, run: &DriveRun, summary: &Summary) -> String {
         return String::new();
     };
     let Some(cycle) = &summary.cycle else {
-        return "The relay cannot keep the motor swinging: friction eats up its push.".to_owned();
+        return "The relay cannot keep the motor swinging: friction uses up its push.".to_owned();
     };
     let speed = match summary.drifts.first() {
         Some(drift) => drift.velocity,
@@ -24,10 +24,10 @@ pub fn lesson(input: &DriveInput, run: &DriveRun, summary: &Summary) -> String {
     let speed = (MILLI * speed).abs();
     match summary.direction(&relay) {
         Some(Direction::Against) => format!(
-            "The cycle drifts at {speed:.2} mrad/s against the stronger push: friction outweighs delay. The direction tells which effect is there."
+            "The cycle drifts at {speed:.2} mrad/s against the stronger push: friction outweighs delay. The direction reveals which effect is at work."
         ),
         Some(Direction::With) => format!(
-            "The cycle drifts at {speed:.2} mrad/s with the stronger push: delay outweighs friction. The direction tells which effect is there."
+            "The cycle drifts at {speed:.2} mrad/s with the stronger push: delay outweighs friction. The direction reveals which effect is at work."
         ),
         _ if relay.relay.asymmetry == 0.0 => {
             "The cycle stays where it is: both pushes are equal.".to_owned()

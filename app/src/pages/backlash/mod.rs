@@ -288,7 +288,11 @@ impl Backlash {
             );
             return;
         };
-        theme::answer_ui(ui, &scene.answer());
+        if scene.input().is_some_and(|shown| *shown != self.input) && self.simulation.is_some() {
+            theme::answer_of_before_ui(ui, &scene.answer());
+        } else {
+            theme::answer_ui(ui, &scene.answer());
+        }
         if let Some(why) = scene.refusal() {
             ui.label(tr(why));
         }
@@ -427,7 +431,7 @@ impl Backlash {
             )
         } else {
             Hint::open(
-                "Give friction and delay back: they make an uneven relay drift through the gap.",
+                "Put friction and delay back: with them an asymmetric relay drifts through the gap.",
                 "v1;backlash",
             )
         }

@@ -92,9 +92,9 @@ impl Scene {
             .find(|c| c.quantity == Quantity::LoadPosition);
         let lesson = match load {
             Some(_) => {
-                "The load was measured too, for comparison only: the estimate does not look at it."
+                "The load was measured too, for comparison only: the estimate does not use it."
             }
-            None => "The load was not measured: the motor's columns have to tell.",
+            None => "The load was not measured: the motor's columns must suffice.",
         };
         let run = DriveRun {
             input: measurement.input.values.clone(),

@@ -100,7 +100,7 @@ impl Settings {
             return Err(format!("There is no figure {number} on this page."));
         }
         let run = &self.run;
-        let sentence = |e: &dyn std::fmt::Display| format!("This drive cannot be: {e}.");
+        let sentence = |e: &dyn std::fmt::Display| format!("This drive is not possible: {e}.");
         run.drive.validate().map_err(|e| sentence(&e))?;
         if let Command::Relay(relay) = run.command {
             relay.validate().map_err(|e| sentence(&e))?;

@@ -91,7 +91,7 @@ impl Backlash {
     pub(super) fn lesson_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
             ui.label(tr("Drift by:")).on_hover_text(tr(
-                "Which way does it drift? The direction tells which effect is there",
+                "Which way does it drift? The direction reveals which effect is at work",
             ));
             for (name, friction, delay) in [
                 ("friction alone", LESSON_FRICTION, 0.0),

@@ -8,7 +8,7 @@ impl Scene {
     pub fn answer(&self) -> String {
         let known = self.input().map(|i| 2.0 * MILLI * i.drive.half_gap);
         let found = match &self.estimate {
-            None => "Asking the motor how wide the gap is ...".to_owned(),
+            None => "Estimating the gap from the motor alone ...".to_owned(),
             Some(Err(error)) => format!("The motor cannot tell: {error}."),
             Some(Ok(e)) => match (e.gap, e.std_error) {
                 (Some(gap), Some(error)) => {
@@ -21,7 +21,7 @@ impl Scene {
                         None => format!("From the motor alone: 2β = {value} ± {error} mrad."),
                     };
                 }
-                _ => "The motor alone cannot tell the gap.".to_owned(),
+                _ => "The gap cannot be found from the motor alone.".to_owned(),
             },
         };
         match known {

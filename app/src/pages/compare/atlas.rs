@@ -49,7 +49,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
         let name = measurement
             .outputs
             .get(profile.output)
-            .map_or("", |c| &c.name);
+            .map_or("", |c| c.title());
         let title = if many {
             format!("{name} over {}", words(&profile.axis))
         } else {

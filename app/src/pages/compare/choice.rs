@@ -29,28 +29,28 @@ pub(super) const CHANNELS: [Channel; 5] = [
         title: "Input",
         unit: "Unit of the input",
         resolution: "",
-        turn: "Turn the sign of the input round",
+        turn: "Flip sign of the input",
     },
     Channel {
         role: Role::Measured(Quantity::Position),
         title: "Position",
         unit: "Unit of the position",
         resolution: "Counts per turn or length of a count",
-        turn: "Turn the sign of the position round",
+        turn: "Flip sign of the position",
     },
     Channel {
         role: Role::Measured(Quantity::Velocity),
         title: "Velocity",
         unit: "Unit of the velocity",
         resolution: "",
-        turn: "Turn the sign of the velocity round",
+        turn: "Flip sign of the velocity",
     },
     Channel {
         role: Role::Measured(Quantity::Output),
         title: "Output",
         unit: "Unit of the output",
         resolution: "",
-        turn: "Turn the sign of the output round",
+        turn: "Flip sign of the output",
     },
 ];
 

@@ -43,6 +43,12 @@ pub(super) enum Command {
     Reveal,
     /// What the app is to do.
     Desk(Vec<command::Command>),
+    /// Sets the parameters by hand, and whether the slider is still held; or goes back to the fit.
+    Hand(Vec<f64>, bool),
+    DropHand,
+    /// Hides what helps most until it is found; and buys a hint.
+    GuessFirst(bool),
+    Hint,
     Cancel,
     Shade(usize),
     Dismiss,

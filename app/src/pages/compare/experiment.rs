@@ -62,7 +62,7 @@ fn purpose(page: &Compare, proposal: &NextExperiment, model: &FittedModel) -> St
     let names: Vec<&str> = proposal.class.iter().map(|id| name_of(*id)).collect();
     let file = page.measurement.as_ref().map_or("", |m| m.name.as_str());
     format!(
-        "Experiment that tells {} apart, for {file}. Here if it is {}.",
+        "Experiment that tells {} apart, for {file}. Shown here for the case {}.",
         names.join(" and "),
         name_of(model.effect)
     )
@@ -101,7 +101,7 @@ fn opening_ui(
     }
     let Program::Relay { gains, .. } = &proposal.program else {
         let save = ui.button(tr("Save the input as CSV")).on_hover_text(tr(
-            "Time and input, sample by sample, to be played at the rig",
+            "Time and input, sample by sample, to play back on the rig",
         ));
         targets.note(format!("experiment:{index}:save"), ui, &save);
         if save.clicked() {
@@ -134,7 +134,7 @@ fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::Ui) {
         .chain(proposal.others.iter().cloned())
         .collect();
     let most = trials.iter().map(|t| t.separation).fold(1.0, f64::max);
-    egui::CollapsingHeader::new(tr("What other experiments would tell"))
+    egui::CollapsingHeader::new(tr("What other experiments would show"))
         .id_salt(("trials", index))
         .show(ui, |ui| {
             ui.small(tr(
@@ -185,7 +185,7 @@ fn limits_ui(
             }
             let again = ui.add_enabled(
                 limits != proposal.limits,
-                egui::Button::new(tr("Look within these limits")),
+                egui::Button::new(tr("Search within these limits")),
             );
             targets.note(format!("experiment:{index}:again"), ui, &again);
             if again.clicked() {

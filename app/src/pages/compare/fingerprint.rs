@@ -38,10 +38,18 @@ pub(super) fn ui(
     };
     ui.horizontal_wrapped(|ui| {
         ui.label(tr("Effect:"));
-        for print in &report.fingerprints {
-            let id = print.effect;
-            let likeness = tr_number(two_digits(print.likeness));
-            let label = format!("{} {likeness}", tr(name_of(id)));
+        let by_name = Compare::prints(report);
+        let ranked = report.fingerprints.iter().map(|print| print.effect);
+        let guessing = page.is_guessing();
+        let effects = if guessing { by_name } else { ranked.collect() };
+        for id in effects {
+            let mut prints = report.fingerprints.iter();
+            let likeness = prints.find(|p| p.effect == id).map_or(0.0, |p| p.likeness);
+            let label = if guessing {
+                tr(name_of(id))
+            } else {
+                format!("{} {}", tr(name_of(id)), tr_number(two_digits(likeness)))
+            };
             let button = ui.selectable_label(id == chosen, label);
             targets.note(format!("print:{id}"), ui, &button);
             if button.clicked() {
@@ -52,7 +60,12 @@ pub(super) fn ui(
     let Some(print) = report.fingerprints.iter().find(|f| f.effect == chosen) else {
         return;
     };
-    ui.label(tr(sentence(print)));
+    if !page.is_guessing() {
+        ui.label(tr(sentence(print)));
+    }
+    ui.small(tr(
+        "A fingerprint is the residual that an effect would leave if it were missing.",
+    ));
     let name = format!("what {} would leave", name_of(chosen));
     caption_ui(
         ui,
@@ -83,11 +96,11 @@ fn sentence(print: &Fingerprint) -> String {
     let name = name_of(print.effect);
     let alike = two_digits(print.likeness);
     if print.likeness >= SAME {
-        format!("What is left looks like {name}: likeness {alike}, where 1 is the same.")
+        format!("The residual looks like {name}: similarity {alike}, where 1 is identical.")
     } else if print.likeness >= ALIKE {
-        format!("{name} explains a part of what is left: likeness {alike}, where 1 is the same.")
+        format!("{name} explains part of the residual: similarity {alike}, where 1 is identical.")
     } else {
-        format!("What is left does not look like {name}: likeness {alike}, where 1 is the same.")
+        format!("The residual does not look like {name}: similarity {alike}, where 1 is identical.")
     }
 }
 
@@ -112,7 +125,7 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
             .take(series.len())
             .map(|(t, (y, m))| [*t, y - m])
             .collect();
-        let label = titled(&output.name, &output.unit);
+        let label = titled(output.title(), &output.unit);
         let id = format!("fingerprint {} {index}", print.effect);
         let axes = ["time [s]".to_owned(), label];
         let linked = egui::Id::unique("fingerprint");

@@ -1,6 +1,6 @@
 //! What to try next: it follows from what is open, and from what was found.
 
-use hysteron_core::diagnosis::{StepReport, Verdict};
+use hysteron_core::diagnosis::{Candidate, Reach, StepReport, Verdict};
 use hysteron_core::effect::{EffectId, name_of};
 
 use super::experiment;
@@ -20,17 +20,28 @@ impl Compare {
         }
         let report = self.report().filter(|_| self.job.is_none());
         let Some(report) = report else {
-            return Hint::say("Every effect of the library is tried now.");
+            return Hint::say("Every effect in the library is being tried.");
         };
+        if self.is_guessing() {
+            return Hint::say("Which fingerprint matches the residual? Add that effect.");
+        }
         if let Some(effect) = report.suggestion {
+            let candidates = &report.step.candidates;
+            let card = candidates.iter().find(|c| c.effects == [effect]);
+            let reach = card.map_or(Reach::Most, |c| report.reach_of(c));
+            let left = card.map_or(0.0, |c| 100.0 * report.left_by(c));
+            let sentence = helps(&either(effect, card), reach, left);
+            if reach == Reach::Little && self.look != Look::Places {
+                return set(sentence, "look", serde_json::json!(Look::Places));
+            }
             let with = [self.effects.as_slice(), &[effect]].concat();
-            return set_effects(helps_most(report, effect), &with);
+            return set_effects(sentence, &with);
         }
         if let Some(effect) = report.needless.first() {
             let mut without = self.effects.clone();
             without.retain(|e| e != effect);
             let name = name_of(*effect);
-            return set_effects(format!("{name} is not needed: leave it out."), &without);
+            return set_effects(format!("{name} is not needed: remove it."), &without);
         }
         match &report.verdict {
             Some(verdict) => self.after(verdict, report),
@@ -42,7 +53,7 @@ impl Compare {
     fn after(&self, verdict: &Verdict, report: &StepReport) -> Hint {
         if let Some(known) = verdict.contradicted.first() {
             let name = &known.name;
-            return Hint::say(format!("Correct the known {name} in your model."));
+            return Hint::say(format!("Correct the given value of {name} in your model."));
         }
         if verdict.missing.iter().any(|class| class.len() > 1) {
             let preview = verdict
@@ -74,7 +85,7 @@ impl Compare {
         }
         if self.sealed.as_ref().is_some_and(|s| !s.is_revealed()) {
             if self.look == Look::Reveal {
-                return Hint::say("The model is complete: type the word and reveal the truth.");
+                return Hint::say("The model is complete: type the password and reveal the truth.");
             }
             let sentence = "The model is complete: now see what was hidden.";
             return set(sentence, "look", serde_json::json!(Look::Reveal));
@@ -93,8 +104,7 @@ impl Compare {
         };
         let set = |field, value| Command::Set("compare", field, value);
         Hint {
-            sentence: "Nothing more is missing: see beside it what the step before left."
-                .to_owned(),
+            sentence: "Nothing more is missing: compare with what the step before left.".to_owned(),
             commands: vec![
                 set("look", serde_json::json!(look)),
                 set("before", true.into()),
@@ -104,6 +114,9 @@ impl Compare {
 
     /// Where structure is left that no effect explains.
     fn where_it_fails(&self) -> Hint {
+        if !self.forms().is_empty() {
+            return Hint::say("Nothing fits: try one of the simplest forms of the missing force.");
+        }
         if self.look == Look::Places {
             return Hint::say("No effect explains the rest: write one of your own.");
         }
@@ -123,21 +136,34 @@ impl Compare {
     }
 }
 
-/// What helps most, and what does so as well.
-fn helps_most(report: &StepReport, effect: EffectId) -> String {
+/// An effect, and what these data cannot tell apart from it.
+enum Either {
+    One(String),
+    Several(String),
+}
+
+fn either(effect: EffectId, card: Option<&Candidate>) -> Either {
     let name = name_of(effect);
-    let mut candidates = report.step.candidates.iter();
-    let card = candidates.find(|c| c.effects == [effect]);
     match card.map_or(&[][..], |c| &c.equivalent_to) {
-        [] => format!("{name} helps most: add it."),
-        [other] => format!(
-            "{name} or {} helps most; this record cannot tell which.",
-            name_of(*other)
-        ),
-        others => format!(
-            "{name} or one of {} others helps most; this record cannot tell which.",
-            others.len()
-        ),
+        [] => Either::One(name.to_owned()),
+        [other] => Either::Several(format!("{name} or {}", name_of(*other))),
+        others => Either::Several(format!("{name} or one of {} others", others.len())),
+    }
+}
+
+/// What helps most, and how much that is; it leaves so many per cent of the error.
+fn helps(what: &Either, reach: Reach, left: f64) -> String {
+    match (what, reach) {
+        (Either::One(name), Reach::Most) => format!("{name} helps most: add it."),
+        (Either::Several(names), Reach::Most) => {
+            format!("{names} helps most; this record cannot tell which.")
+        }
+        (Either::One(name) | Either::Several(name), Reach::Part) => {
+            format!("{name} helps most, but leaves {left:.0} % of the error.")
+        }
+        (Either::One(name) | Either::Several(name), Reach::Little) => {
+            format!("Nothing fits: even {name} leaves {left:.0} % of the error.")
+        }
     }
 }
 

@@ -100,10 +100,15 @@ impl Compare {
     pub(super) fn chosen(&self) -> Option<EffectId> {
         let report = self.report()?;
         let known = |id: &EffectId| report.fingerprints.iter().any(|f| f.effect == *id);
-        let first = report.fingerprints.first().map(|f| f.effect);
+        let guessing = self.is_guessing();
+        let first = if guessing {
+            Self::prints(report).first().copied()
+        } else {
+            report.fingerprints.first().map(|f| f.effect)
+        };
         self.fingerprint
             .filter(known)
-            .or(report.suggestion.filter(known))
+            .or(report.suggestion.filter(known).filter(|_| !guessing))
             .or(first)
     }
 

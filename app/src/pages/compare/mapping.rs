@@ -240,7 +240,7 @@ fn torque_constant_ui(ui: &mut Ui, constant: &mut String) {
         )
         .labelled_by(label.id);
     });
-    ui.small(tr("Without it inertia, friction and loads stand in multiples of it; times and gaps do not depend on it."));
+    ui.small(tr("Without it, inertia, friction and loads are given in multiples of it; times and gaps do not depend on it."));
 }
 
 impl Compare {

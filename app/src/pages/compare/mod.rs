@@ -11,6 +11,8 @@ mod export;
 mod fingerprint;
 mod form;
 mod formula;
+mod guess;
+mod hand;
 mod hint;
 mod history;
 mod look;
@@ -87,6 +89,7 @@ impl Compare {
             None => {}
         }
         self.take_search();
+        self.take_by_hand();
         self.take_earlier(ctx);
         if let Some(sealed) = &mut self.sealed {
             sealed.update(self.shown.as_deref().unwrap_or_default());
@@ -205,6 +208,9 @@ impl Compare {
         if self.parts.fresh {
             return;
         }
+        if self.look == Look::Time {
+            self.missing_ui(ui, targets, commands);
+        }
         match self.look {
             Look::Time => plots::ui(self, ui, height),
             Look::Places => atlas::ui(self, ui),
@@ -274,6 +280,10 @@ impl Compare {
                     None => self.measurement = None,
                 }
             }
+            Command::Hand(values, held) => self.set_by_hand(ctx, values, held),
+            Command::GuessFirst(first) => self.guess_first = first,
+            Command::Hint => self.buy_hint(),
+            Command::DropHand => self.hand = None,
             Command::Shade(index) => self.finding = index,
             Command::Dismiss => self.message = None,
             Command::ExportReport => {
@@ -293,7 +303,9 @@ impl Compare {
     pub fn hook_state(&self) -> serde_json::Value {
         let report = self.report();
         serde_json::json!({
-            "busy": self.is_behind() || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
+            "guessing": self.is_guessing(),
+            "by_hand": self.hand_error().map(|(error, exact)| serde_json::json!({"error": error, "exact": exact})),
+            "busy": self.is_behind() || self.hand.as_ref().is_some_and(hand::Hand::is_busy) || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
             "progress": self.progress.0,
             "mapping": self.form.as_ref().map(Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),

@@ -7,6 +7,7 @@ use hysteron_core::user_model::UserModel;
 
 use super::form::Form;
 use super::formula::Typed;
+use super::guess::Guess;
 use super::look::Look;
 use super::opening::Opening;
 use super::sealed::Sealed;
@@ -127,6 +128,8 @@ impl Compare {
         self.parts.fresh = true;
         self.source = source;
         self.sealed = seal.map(Sealed::new);
+        // A mystery is to be solved, not to be told.
+        self.guess_first |= self.sealed.is_some();
         if self.look == Look::Reveal {
             self.look = Look::default();
         }
@@ -207,6 +210,8 @@ impl Compare {
         self.lost.clear();
         self.limits = None;
         self.search = None;
+        self.hand = None;
+        self.guess = Guess::default();
         self.finding = 0;
     }
 

@@ -25,11 +25,11 @@ pub(super) fn ui(
     egui::CollapsingHeader::new(tr("An effect of your own")).show(ui, |ui| {
         let (variables, symbol) = match kind {
             Kind::Drive => (
-                "A force as a formula of x, v, u, t; every other name is fitted.",
+                "A force as a formula in position x, velocity v, input u and time t; every other name is fitted.",
                 "F =",
             ),
             Kind::Process => (
-                "An input as a formula of y, u, t; every other name is fitted.",
+                "An input as a formula in output y, input u and time t; every other name is fitted.",
                 "Input =",
             ),
         };

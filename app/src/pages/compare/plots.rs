@@ -9,9 +9,10 @@ use hysteron_core::diagnosis::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 use hysteron_core::uncertain::titled;
 
+use super::hand::{Hand, note_seen};
 use super::parts::Part;
 use super::state::Compare;
-use crate::language::{self, tr};
+use crate::language::tr;
 use crate::theme;
 use crate::widgets::chart::{Chart, Key, Pen, Shape, caption_ui, envelope, extremes};
 
@@ -38,17 +39,16 @@ const ROOM: f64 = 0.08;
 const GROUND: f32 = 0.75;
 
 /// What jumps of the residual are.
-const RESTARTED: &str = "The model is restarted in short windows from estimated states: where one begins, the residual \
-                         may jump.";
+const RESTARTED: &str = "The model starts afresh from an estimated state in each short window: where one begins, the residual (measured minus model) may jump.";
 
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
 
-/// Least width of the labels of y: the plots line up at the widest.
-const AXIS_WIDTH: f32 = 106.0;
+/// Least width of the labels of y, so that the plots line up.
+const AXIS_WIDTH: f32 = 76.0;
 
-/// Less is rounding, points.
-const PIXEL: f32 = 1.0;
+/// Height of a signal, of that of both: what the model leaves is what the page is about, the signal where it is.
+const SIGNAL: f32 = 0.75;
 
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 110.0;
@@ -60,10 +60,6 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let report = page.report_in(Part::Plots);
     let finding = report.and_then(|r| r.step.findings.get(page.finding));
     let count = measurement.outputs.len().max(1) as f32;
-    let widest = egui::Id::unique(("compare_axis", &measurement.name, language::spoken()));
-    let labels = ui.data(|data| data.get_temp(widest)).unwrap_or(AXIS_WIDTH);
-    let left = ui.cursor().left();
-    let mut needed = labels;
     caption_ui(ui, "", &curves(page, report.is_some()));
     let mut above = CAPTION;
     if report.is_some() {
@@ -73,24 +69,34 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let each = ((height - above) / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
-        let size = Size {
-            height: each,
-            labels,
+        let hand = page.hand().and_then(|hand| by_hand(hand, index));
+        let size = |share: f32| Size {
+            height: share * each,
+            labels: AXIS_WIDTH,
         };
-        let plot = signal_plot(ui, measurement, output, modelled, finding, size);
-        needed = needed.max(plot.left() - left);
+        signal_plot(
+            ui,
+            measurement,
+            output,
+            (modelled, hand),
+            finding,
+            size(SIGNAL),
+        );
         if let Some(modelled) = modelled {
             let before = page.report_before().filter(|_| page.before);
             let before = before.and_then(|r| r.replay.channels.get(index));
-            let models = (modelled, before);
-            let plot = residual_plot(ui, measurement, output, models, finding, size);
-            needed = needed.max(plot.left() - left);
+            let models = (modelled, before, hand);
+            residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
         }
     }
-    if needed > labels + PIXEL {
-        ui.data_mut(|data| data.insert_temp(widest, needed));
-        ui.ctx().request_repaint();
-    }
+}
+
+/// What the values that are set by hand say of an output, and the samples that have it.
+type Near<'a> = (&'a [f64], (usize, usize));
+
+fn by_hand(hand: &Hand, index: usize) -> Option<Near<'_>> {
+    let modelled = hand.replay.as_ref()?.modelled.get(index)?;
+    Some((modelled, hand.samples))
 }
 
 /// Height of a plot, and width of its labels of y, points.
@@ -109,7 +115,10 @@ fn curves(page: &Compare, modelled: bool) -> Vec<Key<'static>> {
         if page.before && page.report_before().is_some() {
             curves.push(("the step before", theme::BEFORE, Shape::Line));
         }
-        curves.push(("noise, 2 sigma", theme::NOISE, Shape::Dashes));
+        if page.hand().is_some() {
+            curves.push(("by hand", theme::BEFORE, Shape::Line));
+        }
+        curves.push(("noise, ±2σ", theme::NOISE, Shape::Dashes));
     }
     curves
 }
@@ -191,11 +200,11 @@ fn signal_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
     output: &Channel,
-    modelled: Option<&ReplayChannel>,
+    (modelled, hand): (Option<&ReplayChannel>, Option<Near<'_>>),
     finding: Option<&Finding>,
     size: Size,
-) -> egui::Rect {
-    let label = titled(&output.name, &output.unit);
+) {
+    let label = titled(output.title(), &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let alone = measurement.outputs.len() == 1;
@@ -232,28 +241,40 @@ fn signal_plot(
                     .style(LineStyle::dashed_loose()),
             );
         }
+        if let Some((modelled, samples)) = hand {
+            let points = points_of(&measurement.time, modelled, samples, &drawn);
+            plot.line(
+                Line::new(tr("by hand"), points)
+                    .color(theme::BEFORE)
+                    .width(1.5),
+            );
+        }
         mark(plot, marked, ground);
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
-    *shown.transform.frame()
 }
 
 fn residual_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
     output: &Channel,
-    (modelled, before): (&ReplayChannel, Option<&ReplayChannel>),
+    (modelled, before, hand): (&ReplayChannel, Option<&ReplayChannel>, Option<Near<'_>>),
     finding: Option<&Finding>,
     size: Size,
-) -> egui::Rect {
-    let label = titled(&format!("{} - model", output.name), &output.unit);
+) {
+    let label = titled(&format!("{} - model", output.title()), &output.unit);
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
         pairs.map(|(y, m)| y - m).collect()
     };
     let residual = less(modelled);
     let earlier = before.map_or_else(Vec::new, less);
+    // What the values that are set by hand leave.
+    let left: Vec<f64> = hand.map_or_else(Vec::new, |(modelled, (from, _))| {
+        let pairs = output.values.iter().skip(from).zip(modelled);
+        pairs.map(|(y, m)| y - m).collect()
+    });
     let shown = plot(
         measurement,
         finding,
@@ -263,7 +284,21 @@ fn residual_plot(
     )
     .show(ui, |plot| {
         let noise = [2.0, -2.0].map(|side| side * modelled.noise);
-        fit(plot, &measurement.time, &[&residual, &earlier], &noise, 0.0);
+        let mut others = noise.to_vec();
+        if let Some((_, (from, _))) = hand {
+            let view = in_view(&plot.plot_bounds(), &measurement.time);
+            let begin = view.start.saturating_sub(from);
+            let seen = left.iter().skip(begin).take(view.len());
+            let (low, high) = extremes(seen.copied());
+            others.extend([low, high].into_iter().filter(|v| v.is_finite()));
+        }
+        fit(
+            plot,
+            &measurement.time,
+            &[&residual, &earlier],
+            &others,
+            0.0,
+        );
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
         if before.is_some() {
@@ -278,14 +313,21 @@ fn residual_plot(
                 .color(theme::RESIDUAL)
                 .width(1.2),
         );
+        if let Some((_, samples)) = hand {
+            let points = points_of(&measurement.time, &left, samples, &drawn);
+            plot.line(
+                Line::new(tr("by hand"), points)
+                    .color(theme::BEFORE)
+                    .width(1.5),
+            );
+        }
         for side in [2.0, -2.0] {
-            let line = HLine::new(tr("noise, 2 sigma"), side * modelled.noise);
+            let line = HLine::new(tr("noise, ±2σ"), side * modelled.noise);
             plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
         }
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
-    *shown.transform.frame()
 }
 
 /// Where the selected finding says that the error lies.
@@ -353,6 +395,19 @@ fn points(time: &[f64], values: &[f64], drawn: &Range<usize>) -> PlotPoints<'sta
     envelope(time, values, MAX_POINTS).into()
 }
 
+/// The same of a curve that only some of the samples have.
+fn points_of(
+    time: &[f64],
+    values: &[f64],
+    (from, to): (usize, usize),
+    drawn: &Range<usize>,
+) -> PlotPoints<'static> {
+    let within = drawn.start.max(from)..drawn.end.min(to).max(drawn.start.max(from));
+    let time = time.get(within.clone()).unwrap_or_default();
+    let values = values.get(within.start - from..within.end - from);
+    envelope(time, values.unwrap_or_default(), MAX_POINTS).into()
+}
+
 /// The samples in view.
 fn in_view(bounds: &PlotBounds, time: &[f64]) -> Range<usize> {
     let at = |t: f64| time.partition_point(|s| *s < t);
@@ -375,6 +430,7 @@ fn drawn(plot: &Pen<'_, '_>, time: &[f64]) -> Range<usize> {
 /// Asks for another frame where a plot now shows more than was drawn.
 fn draw_more(ui: &egui::Ui, time: &[f64], shown: &PlotResponse<Range<usize>>) {
     let view = in_view(shown.transform.bounds(), time);
+    note_seen(ui.ctx(), (view.start, view.end));
     if view.start < shown.inner.start || view.end > shown.inner.end {
         ui.ctx().request_repaint();
     }

@@ -3,7 +3,7 @@
 use egui::RichText;
 use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
-use hysteron_core::uncertain::{with_error, written_like};
+use hysteron_core::uncertain::{quantity, with_error, written_like};
 
 use super::command::Command;
 use super::sealed::Sealed;
@@ -86,16 +86,16 @@ fn word_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    ui.label(tr("The truth about this record lies in it, sealed. Add what is missing until only noise is left; then say the word."));
+    ui.label(tr("The truth about this record is sealed inside it. Add what is missing until only noise is left; then enter the password."));
     let (mut word, mut legible) = (sealed.word.clone(), sealed.legible);
     let asked = ui.horizontal_wrapped(|ui| {
-        let label = ui.label(tr("Word"));
+        let label = ui.label(tr("Password"));
         let field = theme::line(&mut word)
             .password(!legible)
             .desired_width(220.0);
         let field = ui.add(field).labelled_by(label.id);
         targets.note("reveal:word", ui, &field);
-        ui.checkbox(&mut legible, tr("Show the word"));
+        ui.checkbox(&mut legible, tr("Show the password"));
         let ready = !word.trim().is_empty() && sealed.job.is_none() && page.report().is_some();
         let reveal = ui.add_enabled(ready, egui::Button::new(tr("Reveal the truth")));
         targets.note("reveal", ui, &reveal);
@@ -127,11 +127,16 @@ fn revealed_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    theme::answer_ui(ui, &format!("{:.0} of 100 points.", reveal.points()));
+    let cost = f64::from(page.guess.cost());
+    let points = (reveal.points() - cost).max(0.0);
+    theme::answer_ui(ui, &format!("{points:.0} of 100 points."));
+    if cost > 0.0 {
+        ui.label(tr(format!("Hints have cost {cost:.0} points so far.")));
+    }
     if Some(effects) != page.shown.as_deref() {
         ui.horizontal_wrapped(|ui| {
             ui.label(tr(
-                "They are for the model that was on screen then; the model is another one now.",
+                "They are for the model that was on screen then; the model has changed since.",
             ));
             let ready = sealed.job.is_none() && page.report().is_some();
             let again = ui.add_enabled(ready, egui::Button::new(tr("Judge this one")));
@@ -221,7 +226,7 @@ fn cells(number: &Compared) -> [String; 5] {
             with_error(value, error, &number.unit),
         ),
         None => (
-            written_like(number.truth, four_digits(number.truth), &number.unit),
+            quantity(number.truth, &number.unit),
             "not in your model".to_owned(),
         ),
     };
@@ -234,11 +239,6 @@ fn cells(number: &Compared) -> [String; 5] {
         percent.map_or_else(String::new, |p| format!("{p:+.1} %")),
         format!("{:.0} %", 100.0 * number.mark),
     ]
-}
-
-/// A value with an error for which four digits of it are written.
-fn four_digits(value: f64) -> (f64, f64) {
-    (value, 1e-2 * 10_f64.powf(value.abs().log10().floor()))
 }
 
 fn rule_ui(reveal: &Reveal, ui: &mut egui::Ui) {

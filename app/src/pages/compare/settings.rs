@@ -38,6 +38,7 @@ impl Settable for Compare {
             finding: self.finding,
             look: self.look,
             before: self.before,
+            guess: self.guess_first,
             fingerprint: self.fingerprint.map(|e| e.to_string()),
         }
     }
@@ -191,5 +192,6 @@ impl Compare {
             look => look,
         };
         self.before = settings.before;
+        self.guess_first = settings.guess;
     }
 }

@@ -17,6 +17,7 @@ use super::{experiment, missing, own, parameters, waterfall};
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
+use crate::widgets::equation::equation_ui;
 
 pub(super) fn ui(
     page: &Compare,
@@ -42,6 +43,9 @@ pub(super) fn findings_ui(
     ui.separator();
     waterfall::ui(page, ui, targets, commands);
     ui.separator();
+    if let Some(report) = page.report_in(Part::Parameters) {
+        parameters::ui(page, report, ui, targets, commands);
+    }
     if let Some(verdict) = &report.verdict {
         egui::Frame::group(ui.style()).show(ui, |ui| {
             ui.set_width(ui.available_width());
@@ -63,9 +67,6 @@ pub(super) fn findings_ui(
     missing::ui(report, ui);
     candidates_ui(page, report, ui, targets, commands);
     own::ui(page, ui, targets, commands);
-    if let Some(report) = page.report_in(Part::Parameters) {
-        parameters::ui(report, ui);
-    }
 }
 
 pub(super) fn file_ui(
@@ -153,6 +154,11 @@ fn candidates_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
+    page.guess_toggle_ui(ui, targets, commands);
+    if page.is_guessing() {
+        page.guess_ui(report, ui, targets, commands);
+        return;
+    }
     let (helping, others): (Vec<&Candidate>, Vec<&Candidate>) =
         report.step.candidates.iter().partition(|c| c.significant);
     let (perhaps, others): (Vec<&Candidate>, Vec<&Candidate>) =
@@ -168,7 +174,7 @@ fn candidates_ui(
         card_ui(page, report, candidate, ui, targets, commands);
     }
     if !perhaps.is_empty() {
-        ui.strong(tr("Perhaps, though it may be chance"));
+        ui.strong(tr("Perhaps, but it may be chance"));
     }
     for candidate in perhaps {
         card_ui(page, report, candidate, ui, targets, commands);
@@ -218,13 +224,13 @@ fn card_ui(
                 commands.push(Command::Add(id));
             }
             ui.label(
-                RichText::new(tr(format!("leaves {}", times_noise(candidate.error)))).strong(),
+                RichText::new(tr(format!("leaves {} × noise", times_noise(candidate.error)))).strong(),
             );
             if report.fingerprints.iter().any(|f| f.effect == id) {
                 let chosen = page.look == Look::Fingerprint && page.chosen() == Some(id);
                 let show = ui
                     .selectable_label(chosen, tr("Fingerprint"))
-                    .on_hover_text(tr("What it would leave, beside what is left"));
+                    .on_hover_text(tr("The residual that it would leave if it were missing, beside the present one"));
                 targets.note(format!("fingerprint:{id}"), ui, &show);
                 if show.clicked() {
                     commands.push(Command::Fingerprint(id));
@@ -249,7 +255,7 @@ fn card_ui(
             ui.colored_label(
                 ui.visuals().warn_fg_color,
                 tr(format!(
-                    "These data cannot tell it from {}.",
+                    "These data cannot tell it apart from {}.",
                     names.join(" or ")
                 )),
             );
@@ -257,15 +263,14 @@ fn card_ui(
         egui::CollapsingHeader::new(tr("Equation"))
             .id_salt(id.as_str())
             .show(ui, |ui| {
-                ui.monospace(tr(&equation));
+                equation_ui(ui, &tr(&equation), &|_| None);
                 ui.small(tr(source));
                 for p in &candidate.parameters {
-                    ui.label(tr(format!(
-                        "{} ({}) = {}",
-                        p.name,
-                        p.label,
-                        with_error(p.value, p.std_error, &p.unit)
-                    )));
+                    ui.horizontal_wrapped(|ui| {
+                        equation_ui(ui, &p.name, &|_| None);
+                        let value = with_error(p.value, p.std_error, &p.unit);
+                        ui.label(tr(format!("({}) = {value}", p.label)));
+                    });
                 }
             });
     });

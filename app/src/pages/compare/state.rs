@@ -13,6 +13,8 @@ use hysteron_work::tasks::{ExperimentTask, Source};
 
 use super::form::Form;
 use super::formula::Typed;
+use super::guess::Guess;
+use super::hand::Hand;
 use super::look::Look;
 use super::opening::Opening;
 use super::parts::{Part, Parts};
@@ -64,6 +66,11 @@ pub struct Compare {
     pub(super) earlier: Option<(Vec<EffectId>, Job)>,
     /// Steps of the way that cannot be computed.
     pub(super) lost: HashSet<Vec<EffectId>>,
+    /// Whether the student guesses before anything is told, and what has been told.
+    pub(super) guess_first: bool,
+    pub(super) guess: Guess,
+    /// Values that are set by hand.
+    pub(super) hand: Option<Hand>,
     /// The finding that is shaded.
     pub(super) finding: usize,
     /// The truth that came with the measurement, sealed.
@@ -100,6 +107,9 @@ impl Default for Compare {
             search: None,
             earlier: None,
             lost: HashSet::new(),
+            guess_first: false,
+            guess: Guess::default(),
+            hand: None,
             finding: 0,
             sealed: None,
             files: Files::default(),

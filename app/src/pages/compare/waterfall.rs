@@ -83,6 +83,13 @@ pub(super) fn ui(
             }
             ui.end_row();
         }
+        if let Some((error, exact)) = page.hand_error() {
+            let about = if exact { "" } else { "≈ " };
+            ui.label(format!("   {}", tr("By hand")));
+            ui.label(tr(format!("{about}{}", times_noise(error))));
+            bar_ui(ui, error, floor, largest, theme::BEFORE, width);
+            ui.end_row();
+        }
         ui.label(tr("   Noise floor"));
         ui.label(tr(times_noise(floor)));
         bar_ui(ui, floor, floor, largest, theme::NOISE, width);

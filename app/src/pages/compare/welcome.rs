@@ -140,7 +140,7 @@ impl Compare {
             if let Some(recent) = recent.ui(ui, measurement, targets) {
                 commands.push(Command::Reopen(recent));
             }
-            ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process. Of any other file you say which column is what."));
+            ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process. For any other file you say which column is what."));
         });
     }
 }

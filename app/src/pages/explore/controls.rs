@@ -53,7 +53,7 @@ impl Explore {
         let normal = Relay::default();
         slider(ui, &mut relay.gain, normal.gain, 1.0, 0.1..=5.0, "gain k")
             .on_hover_text(tr("How strongly the relay pushes"));
-        slider(ui, &mut relay.hysteresis, normal.hysteresis, 1.0, 0.0..=1.0, "hysteresis ε").on_hover_text(tr("How far the output must pass zero before the relay switches; also by dragging the dashed line in the Nyquist plot"));
+        slider(ui, &mut relay.hysteresis, normal.hysteresis, 1.0, 0.0..=1.0, "hysteresis ε").on_hover_text(tr("How far past zero the output must go before the relay switches; also by dragging the dashed line in the Nyquist plot"));
         slider(
             ui,
             &mut relay.asymmetry,
@@ -71,7 +71,7 @@ impl Explore {
             0.0..=2.0,
             "delay [s]",
         )
-        .on_hover_text(tr("How late the switch takes effect"));
+        .on_hover_text(tr("How long after the switch the relay's output changes"));
         let noise = &mut self.input.noise;
         let mut size = noise.map_or(0.0, |n| n.std_dev);
         let before = size;

@@ -24,14 +24,14 @@ pub(super) fn hint(input: &ExploreInput, data: &ExploreData) -> Hint {
             waiting(
                 input,
                 narrow,
-                format!("Let the relay wait less, ε = {narrow}: does it oscillate then?"),
+                format!("Narrow the hysteresis to ε = {narrow}: does it oscillate then?"),
             )
         } else {
             let wait = rounded(FIRST * input.relay.gain);
             waiting(
                 input,
                 wait,
-                format!("Let the relay wait, ε = {wait}: then it switches in its time."),
+                format!("Give the relay a hysteresis of ε = {wait}: then it no longer chatters."),
             )
         };
     };
@@ -47,7 +47,7 @@ pub(super) fn hint(input: &ExploreInput, data: &ExploreData) -> Hint {
             waiting(
                 input,
                 wide,
-                format!("Let the relay wait longer, ε = {wide}: does the describing function still hold?"),
+                format!("Widen the hysteresis to ε = {wide}: does the describing function still hold?"),
             )
         }
         _ => Hint {

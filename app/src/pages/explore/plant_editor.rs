@@ -4,6 +4,7 @@ use hysteron_core::plant::{TransferFunction, parse, presets};
 
 use crate::language::tr;
 use crate::theme;
+use crate::widgets::equation::equation_ui;
 
 /// The text that is being typed.
 #[derive(Default)]
@@ -44,15 +45,18 @@ impl PlantEditor {
         }
         if let Some(error) = &self.error {
             ui.colored_label(ui.visuals().warn_fg_color, tr(error));
-            ui.small(tr(format!("Still shown: P(s) = {}", formula(plant))));
+            ui.small(tr(format!("Still showing P(s) = {}", formula(plant))));
             if ui.button(tr("Back to this plant")).clicked() {
                 self.error = None;
                 self.read = None;
             }
         } else {
             ui.small(tr(
-                "Type as you write it: 2 e^{-0.5s}/(3s+1), (1-s)/((s+1)(s+2))",
+                "Type it as you would write it: 2 e^{-0.5s}/(3s+1), (1-s)/((s+1)(s+2))",
             ));
+        }
+        if self.error.is_none() {
+            equation_ui(ui, &format!("P(s) = {}", formula(plant)), &|_| None);
         }
         describe_ui(ui, plant);
         changed

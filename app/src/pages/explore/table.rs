@@ -7,6 +7,7 @@ use hysteron_core::tuning::relay_gain;
 use crate::language::{tr, tr_number};
 use crate::theme;
 use crate::widgets::chart::significant;
+use crate::widgets::equation::equation_ui;
 
 /// Describing function, exact and simulated values with their differences in per cent.
 pub fn predictions_ui(ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData) {
@@ -95,7 +96,8 @@ fn difference(value: f64, exact: f64) -> String {
     if percent.abs() < ROUNDING {
         "same".to_owned()
     } else if percent.abs() < 0.005 {
-        format!("{percent:+.0e} %")
+        let sign = if percent > 0.0 { "+" } else { "" };
+        format!("{sign}{} %", significant(percent, 1))
     } else {
         format!("{percent:+.2} %")
     }
@@ -128,14 +130,31 @@ pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
             ui.label(tr_number(format!("{:.3} %", 100.0 * share)));
         });
     }
-    ui.small(tr("The describing function sees the first only."));
+    ui.small(tr("The describing function sees only the first."));
 }
+
+/// What they say, and the equations behind the page.
+const EQUATIONS: [(&str, &str); 5] = [
+    ("Relay", "u = -k h(y)"),
+    ("Harmonic balance", "P(jω) = -1/N(a)"),
+    ("Describing function", "-1/N(a) = -π/(4k) [√(a² - ε²) + jε]"),
+    ("Phase margin at S", "sin φ = πε/(4k)"),
+    (
+        "Exact limit cycle",
+        "(I + e^(Ah)) x0 = k [G(h - L) - e^(A(h - L)) G(L)],  C x0 = ε",
+    ),
+];
 
 /// The equations behind the page.
 pub fn equations_ui(ui: &mut egui::Ui) {
     ui.collapsing(tr("The equations"), |ui| {
-        ui.monospace(tr("relay      u = -k h(y)\nbalance    P(jω) = -1/N(a)\n-1/N(a) = -π/(4k) [√(a² - ε²) + jε]\nmargin S   sin φ = πε/(4k)\nexact      (I + e^(Ah)) x0 = k [G(h-L)\n             - e^(A(h-L)) G(L)],  C x0 = ε"));
-        ui.small(tr("h: half period, L: all delays, G(t): step response of the state."));
+        for (what, equation) in EQUATIONS {
+            ui.small(tr(what));
+            equation_ui(ui, equation, &|_| None);
+        }
+        ui.small(tr(
+            "h: half period, L: all delays, G(t): step response of the state.",
+        ));
     });
 }
 
@@ -147,7 +166,7 @@ mod tests {
     fn a_short_period_has_its_digits() {
         assert_eq!(four_digits(4.7881), "4.7881");
         assert_eq!(four_digits(0.001_234_5), "0.001234");
-        assert_eq!(four_digits(3.2e-5), "3.200e-5");
+        assert_eq!(four_digits(3.2e-5), "3.2 × 10⁻⁵");
         assert_eq!(four_digits(0.0), "0");
     }
 }

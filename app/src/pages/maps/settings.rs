@@ -45,11 +45,11 @@ impl Settable for Maps {
         input.base = settings.around;
         input
             .validate()
-            .map_err(|e| format!("This map cannot be: {e}."))?;
+            .map_err(|e| format!("This map is not possible: {e}."))?;
         input
             .base
             .validate()
-            .map_err(|e| format!("This loop cannot be: {e}."))?;
+            .map_err(|e| format!("This loop is not possible: {e}."))?;
         self.input = input;
         self.quantity = settings.quantity;
         self.point = settings.point;

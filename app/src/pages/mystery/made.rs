@@ -88,10 +88,10 @@ pub(super) fn ui(product: &Product, changed: bool, ui: &mut egui::Ui, desk: &mut
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.strong(tr(format!("{name} is made.")));
-        ui.label(tr(format!("{samples} samples in {duration:.1} s. What is hidden stands in it, sealed.")));
+        ui.label(tr(format!("{samples} samples in {duration:.1} s. What is hidden is sealed inside.")));
         if changed {
             let color = ui.visuals().warn_fg_color;
-            theme::tell(&ui.colored_label(color, tr("It is still as it was made: what is chosen has changed since.")));
+            theme::tell(&ui.colored_label(color, tr("This is still the mystery that was made: your choices have changed since.")));
         }
         ui.horizontal_wrapped(|ui| {
             let save = ui.button(tr("Save the file"));

@@ -60,7 +60,7 @@ impl Bench {
     fn obstacle(&self) -> Option<String> {
         let letters = self.word.trim().chars().count();
         (letters < SHORTEST_WORD)
-            .then(|| format!("It needs a word of {SHORTEST_WORD} letters or more."))
+            .then(|| format!("The password needs {SHORTEST_WORD} letters or more."))
     }
 
     fn make(&mut self, ctx: &egui::Context) {
@@ -108,7 +108,7 @@ impl Bench {
 
     fn page_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         theme::answer_ui(ui, "Which effect is hidden?");
-        ui.label(tr("The bench hides physics in a drive or a process and measures it. The truth travels with the record, sealed with your word: find it, then reveal it."));
+        ui.label(tr("The bench hides physics in a drive or a process and records it. The truth travels with the record, sealed with your password: solve the mystery, then reveal it."));
         ui.add_space(6.0);
         if self.made.is_none() {
             picture::ui(ui, self.experiment);
@@ -144,18 +144,18 @@ impl Bench {
     }
 
     fn make_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        ui.heading(tr("3. Your word seals it"));
+        ui.heading(tr("3. Your password seals it"));
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label(tr("Word"));
+            let label = ui.label(tr("Password"));
             let field = theme::line(&mut self.word)
                 .password(!self.legible)
                 .desired_width(240.0)
                 .hint_text(tr("a few words are better than one"));
             let word = ui.add(field).labelled_by(label.id).on_hover_text(tr(
-                "Whoever has it can open the truth; without it nobody can, you neither",
+                "Anyone who has it can reveal the truth; without it nobody can, not even you",
             ));
             desk.targets.note("mystery:word", ui, &word);
-            ui.checkbox(&mut self.legible, tr("Show the word"));
+            ui.checkbox(&mut self.legible, tr("Show the password"));
             ui.end_row();
             let obstacle = self.obstacle();
             let ready = obstacle.is_none() && self.job.is_none();
@@ -185,8 +185,8 @@ impl Bench {
 fn student_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.heading(tr("You were given a mystery?"));
-        ui.label(tr("Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is left. Then say the word under Reveal: the truth stands beside your model, with points for the effects and for the numbers."));
+        ui.heading(tr("Were you given a mystery?"));
+        ui.label(tr("Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is left. Then enter the password under Reveal: it shows the truth beside your model, with points for the effects and for the numbers."));
         let go = ui.button(tr("Go to Compare"));
         desk.targets.note("mystery:student", ui, &go);
         if go.clicked() {
@@ -266,9 +266,7 @@ impl Bench {
     /// What to try next.
     fn hint(&self) -> Hint {
         if self.made.is_some() {
-            return Hint::say(
-                "Hand on the mystery: its file, or its link. Whoever solves it needs your word at the end.",
-            );
+            return Hint::say("Share the file or link. Solvers need your password.");
         }
         Hint::open(
             "Never looked for a hidden effect? Begin with a drive that loses its swing.",

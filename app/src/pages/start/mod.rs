@@ -36,14 +36,14 @@ const DOORS: [Door; 3] = [
     Door {
         page: "explore",
         button: "Open Explore",
-        question: "How does a relay loop swing?",
-        story: "Turn its knobs; see the exact limit cycle beside what the describing function predicts.",
+        question: "How does a relay loop oscillate?",
+        story: "Turn the knobs and see the exact limit cycle beside what the describing function predicts.",
     },
     Door {
         page: "backlash",
         button: "Open Backlash",
         question: "How wide is a gap that nobody can see?",
-        story: "A motor under a relay drifts through the play of its gear and feels both walls.",
+        story: "A motor switched by a relay drifts through the backlash of its gear and feels both walls.",
     },
     Door {
         page: "compare",
@@ -178,7 +178,7 @@ impl Start {
     fn loop_ui(&mut self, ui: &mut egui::Ui, relay: &mut Relay) {
         ui.add_space(6.0);
         theme::answer_ui(ui, "Why does a thermostat never come to rest?");
-        ui.label(tr("A relay switches a process up and down. It acts late, so that the output overshoots both thresholds, for ever: a limit cycle."));
+        ui.label(tr("A relay switches a process up and down. It always switches too late, so the output overshoots both thresholds again and again: a limit cycle."));
         match self.finished.as_ref().map(|(_, data)| data) {
             Some(Ok(data)) => {
                 ui.strong(tr(&data.text));
@@ -208,11 +208,11 @@ impl Start {
         // A slider does not break: in a narrow window its name needs the whole width.
         let narrow = ui.available_width() < layout::NARROW;
         if narrow {
-            ui.label(tr("Turn it:"));
+            ui.label(tr("Try it:"));
         }
         ui.horizontal_wrapped(|ui| {
             if !narrow {
-                ui.label(tr("Turn it:"));
+                ui.label(tr("Try it:"));
             }
             let normal = Relay::default().hysteresis;
             slider(
@@ -224,7 +224,7 @@ impl Start {
                 "hysteresis ε",
             )
             .on_hover_text(tr(
-                "How far the output must pass zero before the relay switches",
+                "How far past zero the output must go before the relay switches",
             ));
             let label = self.playback.label(ui.ctx());
             if ui.button(tr(label)).clicked() {

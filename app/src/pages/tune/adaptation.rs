@@ -2,6 +2,7 @@
 
 use egui_plot::{Line, MarkerShape, Points};
 use hysteron_core::tuning::PhaseMarginReport;
+use hysteron_core::uncertain::significant;
 
 use super::draw::{beside, curve, number, plot, table};
 use super::stage::{Seen, Stage};
@@ -13,7 +14,7 @@ pub const STAGE: Stage = Stage {
     title: "Phase margin",
     question: "Which proportional gain gives the wanted phase margin?",
     answer,
-    next: "One test with an uneven relay tells a whole model: step 4.",
+    next: "One test with an asymmetric relay gives a whole model: step 4.",
     ui,
 };
 
@@ -27,11 +28,11 @@ fn answer(seen: Seen<'_>) -> String {
             found
                 .true_phase_margin
                 .map_or_else(String::new, |m| format!(
-                    "; in truth {:.1}°",
+                    "; the true margin is {:.1}°",
                     m.to_degrees()
                 ))
         ),
-        Err(error) => format!("None was found for {wanted:.0}°: {error}."),
+        Err(error) => format!("No gain was found for {wanted:.0}°: {error}."),
     }
 }
 
@@ -92,7 +93,7 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
         for (n, step) in adaptation.steps.iter().enumerate() {
             ui.label(tr(n.to_string()));
             ui.label(tr_number(format!("{:.6}", step.gain)));
-            ui.label(tr_number(format!("{:+.1e}", step.error)));
+            ui.label(tr_number(significant(step.error, 2)));
             ui.label(tr(number(step.test.period)));
             // The first order needs three errors.
             let order = n.checked_sub(2).and_then(|i| adaptation.orders.get(i));
@@ -103,7 +104,7 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     ui.small(tr("Order 2: quadratic convergence (Steffensen's secant through a run and its proportional correction)."));
     if let Some(truth) = found.true_phase_margin {
         ui.label(tr(format!(
-            "The true phase margin with this K is {:.2}°: what is missing to the wanted {:.0}° is the describing function's error.",
+            "With this K the true phase margin is {:.2}°; the difference from the wanted {:.0}° is the error of the describing function.",
             truth.to_degrees(),
             adaptation.design.phase_margin.to_degrees()
         )));

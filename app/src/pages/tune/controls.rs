@@ -8,6 +8,7 @@ use super::Tune;
 use crate::desk::Desk;
 use crate::language::tr;
 use crate::widgets::controls::slider;
+use crate::widgets::equation::equation_ui;
 
 impl Tune {
     pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -46,7 +47,7 @@ impl Tune {
             "asymmetry a",
         )
         .on_hover_text(tr(
-            "Of the relay in step 4 only: without it a test tells no static gain",
+            "For the relay in step 4 only: without it a test says nothing about the static gain",
         ));
         slider(
             ui,
@@ -57,7 +58,7 @@ impl Tune {
             "delay [s]",
         )
         .on_hover_text(tr(
-            "How late the actuator acts; part of the plant for the controller",
+            "How late the actuator responds; to the controller it is part of the plant",
         ));
     }
 
@@ -112,7 +113,7 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     let plant = &mut desk.relay_loop.plant;
     let chosen = all.iter().find(|p| p.plant == *plant);
     egui::ComboBox::from_label(tr("plant"))
-        .selected_text(tr(chosen.map_or("that of Explore", |p| p.name)))
+        .selected_text(tr(chosen.map_or("the one in Explore", |p| p.name)))
         .width(220.0)
         .show_ui(ui, |ui| {
             for preset in &all {
@@ -126,17 +127,24 @@ fn plant_ui(ui: &mut egui::Ui, desk: &mut Desk) {
         ui.small(tr(preset.sentence));
     }
     ui.small(tr(
-        "Plant and relay are those of Explore; the asymmetry is that of step 4.",
+        "Plant and relay are those in Explore; the asymmetry is that of step 4.",
     ));
 }
 
+/// What they say, and the equations behind the page.
+const EQUATIONS: [(&str, &str); 4] = [
+    ("Moving point, equation (4)", "M R = S,  C(jω) = S/M"),
+    ("Relay for a phase margin, (7)", "k = π a/4,  ε = a sin φ"),
+    ("Ultimate gain, (9)", "Ku = |N(a)| = 4k/(πa)"),
+    ("Controller", "C(s) = K (1 + 1/(Ti s) + Td s/(Tf s + 1))"),
+];
+
 fn equations_ui(ui: &mut egui::Ui) {
     ui.collapsing(tr("The equations"), |ui| {
-        ui.monospace(tr("(4) M R = S: C(jω) = S/M\n\
-             (7) k = π a/4,  ε = a sin φ\n\
-             (8) K(n+1): secant through two runs\n\
-             (9) Ku = |N(a)| = 4k/(πa), Tu: period\n\
-             C(s) = K (1 + 1/(Ti s) + Td s/(Tf s + 1))"));
+        for (what, equation) in EQUATIONS {
+            ui.small(tr(what));
+            equation_ui(ui, equation, &|_| None);
+        }
         ui.small(tr(format!("Convention: {AMPLITUDE_CONVENTION}.")));
         ui.small(tr(
             "φ: phase margin, M: identified point of the Nyquist curve, S: where it shall go.",

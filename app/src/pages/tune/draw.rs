@@ -2,6 +2,7 @@
 
 use egui_plot::{Line, LineStyle, PlotPoints};
 use hysteron_core::tuning::{Pid, RelayTest};
+use hysteron_core::uncertain::digits;
 
 use crate::language::tr;
 use crate::theme;
@@ -14,15 +15,7 @@ pub const AFTER: egui::Color32 = theme::EXACT;
 
 /// A value with four significant digits.
 pub fn number(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if !(1e-3..1e5).contains(&size) {
-        format!("{value:.2e}")
-    } else {
-        let digits = (3.0 - size.log10().floor()).clamp(0.0, 6.0);
-        format!("{value:.0$}", digits as usize)
-    }
+    digits(value, 4)
 }
 
 /// A value that may be missing.

@@ -17,7 +17,7 @@ pub const STAGE: Stage = Stage {
     title: "Before and after",
     question: "Is the loop better now?",
     answer,
-    next: "Might the machine have play? Find its gap from the motor alone.",
+    next: "Could the machine have backlash? Find the gap from the motor alone.",
     ui,
 };
 
@@ -34,7 +34,7 @@ fn answer(seen: Seen<'_>) -> String {
             m.max_sensitivity
         ),
         (Some(old), Some(new)) => format!(
-            "A load leaves {} s of error instead of {} s; Ms {:.2} instead of {:.2}.",
+            "A load step now leaves an error of {} s instead of {} s; Ms is {:.2} instead of {:.2}.",
             number(after.load.iae),
             number(before.load.iae),
             new.max_sensitivity,
@@ -220,7 +220,7 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
         };
         row("stable", &|l| match l.unstable_poles {
             0 => "yes".to_owned(),
-            n => format!("no: {n} poles to the right"),
+            n => format!("no: {n} poles in the right half-plane"),
         });
         row("gain margin", &|l| {
             l.margins

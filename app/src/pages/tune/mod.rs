@@ -290,7 +290,12 @@ impl Tune {
             return;
         };
         let seen = Seen { input, report };
-        theme::answer_ui(ui, &(stage.answer)(seen));
+        let answer = (stage.answer)(seen);
+        if self.job.is_some() && *input != self.input {
+            theme::answer_of_before_ui(ui, &answer);
+        } else {
+            theme::answer_ui(ui, &answer);
+        }
         (stage.ui)(ui, seen, height, &mut self.input.rule);
     }
 }

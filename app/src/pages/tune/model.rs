@@ -9,9 +9,9 @@ use crate::language::tr;
 pub const STAGE: Stage = Stage {
     id: "model",
     title: "Asymmetric test",
-    question: "What does one test tell if the relay pushes harder one way?",
+    question: "What does one test reveal if the relay pushes harder one way?",
     answer,
-    next: "A rule makes a controller of it: step 5.",
+    next: "A rule turns it into a controller: step 5.",
     ui,
 };
 
@@ -49,11 +49,11 @@ fn words(model: &Model) -> String {
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let Ok(found) = &seen.report.asymmetric else {
-        ui.label(tr("Give the relay some asymmetry: then its input has a mean, which tells the static gain."));
+        ui.label(tr("Give the relay some asymmetry: then the plant's input has a mean, which reveals the static gain."));
         return;
     };
     ui.label(tr(format!(
-        "The input now has a mean, which tells the static gain; the half periods {} s and {} s have the ratio {}, which tells how much of the lag is dead time: {:.0} %.",
+        "The input now has a mean, which reveals the static gain; the half periods of {} s and {} s have the ratio {}, which reveals how much of the lag is dead time: {:.0} %.",
         number(found.test.on_time),
         number(found.test.off_time),
         number(found.half_period_ratio),

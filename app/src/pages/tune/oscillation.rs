@@ -9,7 +9,7 @@ pub const STAGE: Stage = Stage {
     title: "Relay",
     question: "What does the loop do with a relay instead of the controller?",
     answer,
-    next: "The swing tells at which gain the loop would oscillate by itself: step 2.",
+    next: "The swing reveals at which gain the loop would oscillate on its own: step 2.",
     ui,
 };
 

@@ -23,7 +23,7 @@ fn answer(seen: Seen<'_>) -> String {
     let name = rule(&seen.input.rule).map_or("This rule", |r| r.name);
     match &seen.report.after {
         Ok(after) => format!("{name}: {}.", controller(&after.pid)),
-        Err(error) => format!("{name} gives none: {error}."),
+        Err(error) => format!("{name} gives no controller: {error}."),
     }
 }
 

@@ -3,6 +3,8 @@
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
 use hysteron_core::tuning::Ultimate;
 
+use hysteron_core::uncertain::significant;
+
 use super::draw::{CAPTION, beside, curve, error, maybe, number, plot, table};
 use super::stage::{Seen, Stage};
 use crate::language::tr;
@@ -12,7 +14,7 @@ use crate::widgets::chart::{Shape, caption_ui};
 pub const STAGE: Stage = Stage {
     id: "ultimate",
     title: "Ultimate gain",
-    question: "At which gain would the loop oscillate by itself?",
+    question: "At which gain would the loop oscillate on its own?",
     answer,
     next: "Ask the relay for a gain with a phase margin instead: step 3.",
     ui,
@@ -21,26 +23,18 @@ pub const STAGE: Stage = Stage {
 fn answer(seen: Seen<'_>) -> String {
     let found = &seen.report.ultimate;
     let said = format!(
-        "At Ku = {} with Tu = {} s, says the relay.",
+        "Relay estimate Ku = {}, Tu = {} s",
         number(found.by_relay.gain),
         number(found.by_relay.period)
     );
-    match (found.truth, found.by_relay_error, found.period_error) {
-        (Some(truth), Some(gain), Some(period)) => format!(
-            "{said} In truth {} ({}) and {} s ({}).",
+    match found.truth {
+        Some(truth) => format!(
+            "{said}; true values {} and {} s.",
             number(truth.gain),
-            off(gain),
-            number(truth.period),
-            off(period)
+            number(truth.period)
         ),
-        _ => format!("{said} In truth at no gain."),
+        None => format!("{said}. In truth no gain makes this loop oscillate."),
     }
-}
-
-/// How far the relay's value is from the true one.
-fn off(share: f64) -> String {
-    let way = if share < 0.0 { "low" } else { "high" };
-    format!("{:.1} % too {way}", 100.0 * share.abs())
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
@@ -153,15 +147,15 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
         row("true", found.truth, None, None);
     });
     ui.small(tr(format!(
-        "Here the {}. Half or twice of Ku is what a program reports that counts otherwise.",
+        "Convention here: {}. A program that counts differently reports half or twice this Ku.",
         found.amplitude_convention
     )));
     ui.add_space(6.0);
     let point = &seen.report.point;
     ui.label(tr(format!(
-        "The point itself, at ω = {} rad/s, is off by {:.1} % of its size, since the describing function takes the output for a sine; by the first harmonic of the record it is exact (off by {:.0e}).",
+        "The point itself, at ω = {} rad/s, is off by {:.1} % of its size, since the describing function takes the output for a sine; by the first harmonic of the record it is exact (off by {}).",
         number(point.point.omega),
         100.0 * point.error,
-        point.fourier_error
+        significant(point.fourier_error, 1)
     )));
 }

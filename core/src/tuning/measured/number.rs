@@ -1,24 +1,13 @@
 //! Numbers as they stand in sentences, and the scale of an input.
 
+use crate::uncertain::significant;
+
 /// Full scales of inputs in use: a switch, per cent, eight bits.
 const FULL_SCALES: [f64; 3] = [1.0, 100.0, 255.0];
 
 /// Four significant digits, without needless zeros.
 pub(super) fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let power = libm::log10(value.abs()).floor() as i32;
-    if (-4..7).contains(&power) {
-        let decimals = usize::try_from(3 - power).unwrap_or(0);
-        let text = format!("{value:.decimals$}");
-        return if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        };
-    }
-    format!("{value:.3e}")
+    significant(value, 4)
 }
 
 /// The least usual full scale that holds the upper level; the level itself where none does.

@@ -14,7 +14,7 @@ use super::structure::{FittedModel, Value};
 use super::trouble::{self, Evidence, Trouble};
 use super::ultimate::{self, MeasuredUltimate};
 use crate::order::range;
-use crate::uncertain::with_error;
+use crate::uncertain::{with_error, with_uncertainty};
 
 /// Part of the record that is taken for the plant's time where there is no cycle.
 const PART: f64 = 0.1;
@@ -227,7 +227,8 @@ impl MeasuredTuning {
                 point.std_error_magnitude,
                 &self.gain_unit()
             ),
-            with_error(point.phase_deg, point.std_error_phase_deg, "1"),
+            with_uncertainty(point.phase_deg, point.std_error_phase_deg)
+                .unwrap_or_else(|| number(point.phase_deg)),
         ))
     }
 

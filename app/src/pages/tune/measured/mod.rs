@@ -11,13 +11,13 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::tuning::measured::{
     AmplitudeConvention, MeasuredTuning, Readings, TunedGains, Wishes,
 };
-use hysteron_core::uncertain::with_error;
+use hysteron_core::uncertain::{with_error, with_uncertainty};
 use hysteron_work::content::Content;
 use hysteron_work::enclosed::{Enclosed, PROCESS_02};
 use hysteron_work::reading::Reading;
 use hysteron_work::tasks::{MeasuredReport, MeasuredTask, MeasuredTest, ReadTask};
 
-use super::draw::beside;
+use super::draw::{beside, number};
 use crate::export::Table;
 use crate::files::{Files, Held};
 use crate::jobs::{Job, ended};
@@ -184,7 +184,7 @@ impl Measured {
             let text = match (self.job.is_some(), self.from) {
                 (true, _) => "Reading the test ...",
                 (_, From::Record) => "Drop a record, or the log of an auto-tuner, on this window.",
-                _ => "These numbers tell nothing yet.",
+                _ => "These numbers say nothing yet.",
             };
             theme::answer_ui(ui, text);
             return;
@@ -280,7 +280,8 @@ fn answer(tuning: &MeasuredTuning) -> String {
         ),
         (None, None, Some(point)) => format!(
             "No ultimate gain follows: the cycle shows the plant at {} degrees.",
-            with_error(point.phase_deg, point.std_error_phase_deg, "1")
+            with_uncertainty(point.phase_deg, point.std_error_phase_deg)
+                .unwrap_or_else(|| number(point.phase_deg))
         ),
         (None, None, None) => "There is no cycle, but there may be a model.".to_owned(),
     }

@@ -19,7 +19,7 @@ impl Measured {
         settings
             .readings
             .validate()
-            .map_err(|e| format!("These numbers cannot be: {e}."))?;
+            .map_err(|e| format!("These numbers are not possible: {e}."))?;
         let positive = |v: Option<f64>| v.is_none_or(|v| v.is_finite() && v > 0.0);
         if !positive(settings.wishes.full_scale) {
             return Err("The full scale of the input must be above 0.".to_owned());

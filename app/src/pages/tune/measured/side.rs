@@ -99,7 +99,7 @@ impl Measured {
         {
             self.open_pasted();
         }
-        ui.small(tr("A table whose columns are not clear is asked for in Compare; then it can be opened here too."));
+        ui.small(tr("If the columns of a table are unclear, open it in Compare first: it asks what they are."));
     }
 
     fn numbers_ui(&mut self, ui: &mut egui::Ui) {

@@ -28,12 +28,12 @@ pub fn models_ui(ui: &mut egui::Ui, tuning: &MeasuredTuning) {
             row_ui(ui, model);
         }
     });
-    ui.small(tr("Missed: what the model leaves of the motion of the output. A gain that is not known to half its value is left out."));
+    ui.small(tr("Missed: the share of the output's motion that the model does not explain. A gain known no better than to half its value is left out."));
 }
 
 /// Relative standard errors from which a gain, and any other value, is not told.
 const VAGUE_GAIN: f64 = 0.5;
-const VAGUE: f64 = 10.0;
+const VAGUE: f64 = 1.0;
 
 fn told(value: &Value, vague: f64) -> String {
     if value.std_error < vague * value.value.abs() {

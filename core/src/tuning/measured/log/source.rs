@@ -57,7 +57,7 @@ pub enum LogError {
     /// The tuner gave up.
     #[error("the tuner gave up: '{0}'; {1}")]
     Failed(String, &'static str),
-    /// It was read, but its numbers cannot be.
+    /// It was read, but its numbers are impossible.
     #[error("{0}")]
     Numbers(#[from] RecordError),
 }

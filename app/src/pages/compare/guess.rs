@@ -1,0 +1,136 @@
+//! Guess first: the ranking and what to try next are hidden; the student picks by fingerprints, and hints cost points.
+
+use hysteron_core::diagnosis::{Candidate, StepReport};
+use hysteron_core::effect::{EffectId, name_of};
+
+use super::command::Command;
+use super::look::Look;
+use super::state::Compare;
+use crate::hook::Targets;
+use crate::language::tr;
+
+/// What a hint costs, of 100 points.
+pub(super) const PRICE: u32 = 10;
+
+/// Effects that are left to choose from after each hint of a step.
+const LEFT: [usize; 3] = [4, 2, 1];
+
+/// What is known of a round of guessing.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Guess {
+    /// Hints that were bought: for the models with so many effects.
+    bought: Vec<usize>,
+}
+
+impl Guess {
+    /// What hints have cost.
+    pub fn cost(&self) -> u32 {
+        PRICE * self.bought.len() as u32
+    }
+
+    fn hints(&self, effects: usize) -> usize {
+        self.bought.iter().filter(|n| **n == effects).count()
+    }
+}
+
+impl Compare {
+    /// Whether what helps is still to be guessed.
+    pub(super) fn is_guessing(&self) -> bool {
+        let open = self.report().is_some_and(|r| r.suggestion.is_some());
+        let sealed = self.sealed.as_ref().is_none_or(|s| !s.is_revealed());
+        self.guess_first && open && sealed
+    }
+
+    /// Buys a hint for the model on screen.
+    pub(super) fn buy_hint(&mut self) {
+        let effects = self.shown.as_ref().map_or(0, Vec::len);
+        if self.guess.hints(effects) < LEFT.len() {
+            self.guess.bought.push(effects);
+        }
+    }
+
+    /// What may be missing, by name: all that was tried, or what hints have left.
+    fn choices<'a>(&self, report: &'a StepReport) -> Vec<&'a Candidate> {
+        let hints = self.guess.hints(report_effects(self));
+        let left = hints.checked_sub(1).map_or(usize::MAX, |i| LEFT[i]);
+        let mut choices: Vec<&Candidate> = report.step.candidates.iter().take(left).collect();
+        choices.sort_by_key(|c| c.effects.first().map_or("", |id| name_of(*id)));
+        choices
+    }
+
+    /// Effects with a fingerprint, by name.
+    pub(super) fn prints(report: &StepReport) -> Vec<EffectId> {
+        let mut prints: Vec<EffectId> = report.fingerprints.iter().map(|f| f.effect).collect();
+        prints.sort_by_key(|id| name_of(*id));
+        prints
+    }
+
+    /// The effects to choose from, without what they would leave.
+    pub(super) fn guess_ui(
+        &self,
+        report: &StepReport,
+        ui: &mut egui::Ui,
+        targets: &mut Targets,
+        commands: &mut Vec<Command>,
+    ) {
+        ui.strong(tr("Which effect is missing?"));
+        ui.label(tr("A fingerprint is the residual that an effect would leave if it were missing. Find the one that matches, and add that effect."));
+        for candidate in self.choices(report) {
+            let Some(id) = candidate.effects.first().copied() else {
+                continue;
+            };
+            ui.horizontal_wrapped(|ui| {
+                let add = egui::Button::new(tr(format!("Add {}", name_of(id))));
+                let add = ui.add_enabled(self.job.is_none(), add);
+                targets.note(format!("add:{id}"), ui, &add);
+                if add.clicked() {
+                    commands.push(Command::Add(id));
+                }
+                if report.fingerprints.iter().any(|f| f.effect == id) {
+                    let chosen = self.look == Look::Fingerprint && self.chosen() == Some(id);
+                    let show = ui.selectable_label(chosen, tr("Fingerprint"));
+                    targets.note(format!("fingerprint:{id}"), ui, &show);
+                    if show.clicked() {
+                        commands.push(Command::Fingerprint(id));
+                    }
+                }
+            });
+        }
+        let hints = self.guess.hints(report_effects(self));
+        let more = hints < LEFT.len();
+        let buy = ui.add_enabled(
+            more,
+            egui::Button::new(tr(format!("Give me a hint ({PRICE} points)"))),
+        );
+        targets.note("guess:hint", ui, &buy);
+        if buy.clicked() {
+            commands.push(Command::Hint);
+        }
+        let cost = self.guess.cost();
+        if cost > 0 {
+            ui.label(tr(format!("Hints have cost {cost} points so far.")));
+        }
+    }
+
+    /// Turns guessing on and off.
+    pub(super) fn guess_toggle_ui(
+        &self,
+        ui: &mut egui::Ui,
+        targets: &mut Targets,
+        commands: &mut Vec<Command>,
+    ) {
+        let mut first = self.guess_first;
+        let toggle = ui
+            .checkbox(&mut first, tr("Guess first"))
+            .on_hover_text(tr("Hides which effect helps most until you have found it"));
+        targets.note("guess", ui, &toggle);
+        if toggle.changed() {
+            commands.push(Command::GuessFirst(first));
+        }
+    }
+}
+
+/// Number of effects of the model on screen.
+fn report_effects(page: &Compare) -> usize {
+    page.shown.as_ref().map_or(0, Vec::len)
+}
