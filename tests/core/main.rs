@@ -43,7 +43,7 @@ mod report;
 mod rests;
 mod scenario_text;
 mod screen;
-mod second_engine;
+mod explained;
 mod sensors;
 mod simulation;
 mod slow_and_short;

@@ -1,4 +1,4 @@
-//! The second engine, on trial: it finds what is hidden on rigs that are not its model.
+//! What is hidden on rigs that are not the model is found, and nothing else.
 
 use crate::support::case::{Case, Hidden};
 use crate::support::diagnosis::classes;
