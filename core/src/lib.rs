@@ -15,12 +15,14 @@
 //! | [`plant`] | what does it act on? |
 //! | [`simulate`] | what happens? |
 //! | [`limit_cycle`] | does it oscillate, how, and is it stable? |
+//! | [`on_off`] | the same for controllers as they are built: dead zone, minimum times, sampling |
 //! | [`tuning`] | how do I tune a controller from it, or from a measured test? |
 //! | [`explore`] | everything about one loop at once |
 //! | [`figures`] | do the paper's Figs. 3 to 5 hold? |
 //! | [`maps`] | how does the oscillation change with two parameters? |
 //! | [`model`] | what does a model say to a measured input? |
 //! | [`drive`] | what does a drive with a hidden gap do? |
+//! | [`hunting`] | does a position controller hunt around dry friction, cogging or play? |
 //! | [`backlash`] | how wide is the hidden gap? |
 //! | [`rig`] | what would a bench measure, by other physics? |
 //! | [`effect`] | which physics can be added? |
@@ -44,11 +46,13 @@ pub mod effect;
 pub mod explore;
 mod exponential;
 pub mod figures;
+pub mod hunting;
 pub mod limit_cycle;
 pub mod maps;
 pub mod measurement;
 pub mod model;
 pub mod mystery;
+pub mod on_off;
 mod order;
 mod packed;
 pub mod plant;

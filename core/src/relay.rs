@@ -40,9 +40,9 @@ impl Default for Relay {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("relay {name} is {value}: it must be {range}")]
 pub struct RelayError {
-    name: &'static str,
-    value: f64,
-    range: &'static str,
+    pub(crate) name: &'static str,
+    pub(crate) value: f64,
+    pub(crate) range: &'static str,
 }
 
 impl Relay {

@@ -23,7 +23,7 @@ use imports::{Imports, circles, imports as imports_of};
 use tree::{Tree, crates_in};
 
 /// Rooms of core, lowest first, then those of the app: a file imports from its own room and from rooms before it.
-const ROOMS: [&str; 37] = [
+const ROOMS: [&str; 39] = [
     // small numerics, no physics
     "order",
     "sums",
@@ -42,6 +42,7 @@ const ROOMS: [&str; 37] = [
     "relay",
     "simulate",
     "limit_cycle",
+    "on_off",
     "tuning",
     "explore",
     "maps",
@@ -49,6 +50,7 @@ const ROOMS: [&str; 37] = [
     "model",
     // two masses; the independent bench
     "drive",
+    "hunting",
     "backlash",
     "rig",
     "effect",

@@ -10,6 +10,8 @@ mod engine;
 mod gap;
 mod limit_cycle;
 mod limit_cycle_drive;
+mod limit_cycle_on_off;
+mod limit_cycle_servo;
 mod one;
 mod output;
 mod progress_line;

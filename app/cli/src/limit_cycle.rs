@@ -9,6 +9,8 @@ use hysteron_core::tuning::{RelayGain, StabilityLimits, relay_gain, stability_li
 use serde_json::json;
 
 use crate::limit_cycle_drive::DriveReport;
+use crate::limit_cycle_on_off::OnOffReport;
+use crate::limit_cycle_servo::ServoReport;
 use crate::output::Format;
 use crate::simulate;
 
@@ -20,7 +22,7 @@ const LISTED: usize = 3;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Loop or drive to predict: tables [plant] or [drive], and [relay]
+    /// Loop, drive or servo to predict: tables [plant] or [drive], and [relay]; or [servo]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
     /// For a person or for a program
@@ -46,6 +48,20 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
             match arguments.format {
                 Format::Text => text(&report),
                 Format::Json => format!("{:#}\n", json(&report)),
+            }
+        }
+        AnyScenario::OnOff(scenario) => {
+            let report = OnOffReport::new(&scenario.on_off).map_err(located)?;
+            match arguments.format {
+                Format::Text => report.text(),
+                Format::Json => format!("{:#}\n", report.json()),
+            }
+        }
+        AnyScenario::Servo(scenario) => {
+            let report = ServoReport::new(&scenario.servo).map_err(located)?;
+            match arguments.format {
+                Format::Text => report.text(),
+                Format::Json => format!("{:#}\n", report.json()),
             }
         }
         AnyScenario::Drive(input) => {

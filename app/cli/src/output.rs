@@ -56,3 +56,20 @@ pub fn complain(message: &str) {
     // Where stderr is closed there is nobody left to tell.
     let _ = writeln!(io::stderr(), "hysteron: {}", words.join(" "));
 }
+
+/// How far a prediction of period and amplitude is off, in a sentence.
+pub fn off_by(predicted: [f64; 2], exact: [f64; 2]) -> String {
+    let [period, amplitude] = [0, 1].map(|i| 100.0 * (predicted[i] / exact[i] - 1.0));
+    let trusted = period.abs() <= TRUSTED && amplitude.abs() <= TRUSTED;
+    let warning = if trusted {
+        ""
+    } else {
+        ": do not trust it here"
+    };
+    format!(
+        " The describing function is off by {period:+.1} % in period and {amplitude:+.1} % in amplitude{warning}."
+    )
+}
+
+/// Per cent by which a prediction may be off and still be called good.
+const TRUSTED: f64 = 5.0;

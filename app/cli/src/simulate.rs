@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
+use hysteron_core::hunting::{self, HuntingRun};
+use hysteron_core::on_off;
 use hysteron_core::scenario::AnyScenario;
 use hysteron_core::simulate::{Cut, Noise, Trajectory};
 
@@ -12,7 +14,7 @@ const SETTLED: f64 = 1e-3;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Loop or drive to run: tables [plant] or [drive], [relay] and [run]
+    /// Loop, drive or servo to run: tables [plant] or [drive], [relay] and [run]; or [servo] and [run]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
     /// Where to write time, input and output; the output is what the relay sees, with the noise if there is some
@@ -27,7 +29,29 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         AnyScenario::Loop(scenario) => {
             let run = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
             let noise = scenario.options.noise;
-            (summary(&run), table(&run, noise), run.time.len())
+            let samples = (run.time.as_slice(), run.output.as_slice());
+            (
+                summary(&run),
+                table(samples, &run.input, noise),
+                run.time.len(),
+            )
+        }
+        AnyScenario::OnOff(scenario) => {
+            let run = on_off::run(&scenario.on_off, scenario.duration, scenario.step)
+                .map_err(|e| format!("{shown}: {e}"))?;
+            let end = run.time.last().copied().unwrap_or(0.0);
+            let mut said = counted(run.switches.len(), end, run.cut);
+            let cycle = on_off::settled(&scenario.on_off).map_err(|e| format!("{shown}: {e}"))?;
+            let _ = writeln!(said, "{}", cycle.text);
+            let samples = (run.time.as_slice(), run.output.as_slice());
+            (said, table(samples, &run.input, None), run.time.len())
+        }
+        AnyScenario::Servo(scenario) => {
+            let run = hunting::run(&scenario.servo, scenario.duration, scenario.step)
+                .map_err(|e| format!("{shown}: {e}"))?;
+            let found = hunting::settled(&scenario.servo).map_err(|e| format!("{shown}: {e}"))?;
+            let said = servo_summary(&run, &found);
+            (said, servo_table(&run), run.time.len())
         }
         AnyScenario::Drive(input) => {
             let run = drive::run(&input).map_err(|e| format!("{shown}: {e}"))?;
@@ -57,12 +81,10 @@ pub fn read(path: &Path) -> Result<AnyScenario, String> {
     AnyScenario::from_toml(text).map_err(|e| format!("{shown}: {e}"))
 }
 
-fn summary(run: &Trajectory) -> String {
-    let mut text = String::new();
-    let end = run.end();
-    let switches = run.rises.len() + run.falls.len();
-    let _ = writeln!(text, "{switches} switches up to {end:.6} s.");
-    let why = run.cut.map(|cut| match cut {
+/// How many switches there were, and why no more.
+fn counted(switches: usize, end: f64, cut: Option<Cut>) -> String {
+    let mut text = format!("{switches} switches up to {end:.6} s.\n");
+    let why = cut.map(|cut| match cut {
         Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
         Cut::TooManySwitches => {
             "The run was cut there after as many switches as it may have: a shorter duration is run to its end."
@@ -74,6 +96,11 @@ fn summary(run: &Trajectory) -> String {
     if let Some(why) = why {
         let _ = writeln!(text, "{why}");
     }
+    text
+}
+
+fn summary(run: &Trajectory) -> String {
+    let mut text = counted(run.rises.len() + run.falls.len(), run.end(), run.cut);
     if !run.sliding.is_empty() {
         let total: f64 = run.sliding.iter().map(|s| s[1] - s[0]).sum();
         let _ = writeln!(
@@ -99,12 +126,12 @@ fn summary(run: &Trajectory) -> String {
 
 /// Input and output at the sampling instants, in the columns that `hysteron diagnose` reads: the output as a recorder
 /// would have it, with what the relay sees of the noise.
-fn table(run: &Trajectory, noise: Option<Noise>) -> String {
-    let noise = noise.map_or_else(|| vec![0.0; run.time.len()], |noise| noise.at(&run.time));
+fn table((time, output): (&[f64], &[f64]), input: &[[f64; 2]], noise: Option<Noise>) -> String {
+    let noise = noise.map_or_else(|| vec![0.0; time.len()], |noise| noise.at(time));
     let mut text = String::from("t [s],u [1],y [1]\n");
-    let mut inputs = run.input.iter().peekable();
+    let mut inputs = input.iter().peekable();
     let mut u = 0.0;
-    for ((t, y), noise) in run.time.iter().zip(&run.output).zip(noise) {
+    for ((t, y), noise) in time.iter().zip(output).zip(noise) {
         while let Some(change) = inputs.next_if(|i| i[0] <= *t) {
             u = change[1];
         }
@@ -154,6 +181,36 @@ fn drive_table(run: &DriveRun) -> String {
     let mut text = String::from("t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]\n");
     for (i, t) in run.time.iter().enumerate() {
         let (u, x1, v1, x2) = (run.input[i], run.x1[i], run.v1[i], run.x2[i]);
+        let _ = writeln!(text, "{t},{u},{x1},{v1},{x2}");
+    }
+    text
+}
+
+/// What a servo did, and what becomes of it.
+fn servo_summary(run: &HuntingRun, found: &hunting::Settled) -> String {
+    let end = run.time.last().copied().unwrap_or(0.0);
+    let stuck: f64 = run.stuck.iter().map(|s| s[1] - s[0]).sum();
+    let mut text = format!(
+        "The motor sticks {} times up to {end:.6} s, {stuck:.6} s in all.\n",
+        run.stuck.len()
+    );
+    if run.cut {
+        let _ = writeln!(text, "It runs away, and the run was cut there.");
+    }
+    let _ = writeln!(text, "{}", found.text);
+    text
+}
+
+/// The controller's output, the motor, and what is behind the play, at the sampling instants.
+fn servo_table(run: &HuntingRun) -> String {
+    let mut text = String::from("t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]\n");
+    for (i, t) in run.time.iter().enumerate() {
+        let (u, x1, v1, x2) = (
+            run.input[i],
+            run.position[i],
+            run.velocity[i],
+            run.measured[i],
+        );
         let _ = writeln!(text, "{t},{u},{x1},{v1},{x2}");
     }
     text

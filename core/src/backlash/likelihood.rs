@@ -52,6 +52,30 @@ struct Prior {
     deviation: Point,
 }
 
+impl Prior {
+    /// A half gap that is known has its standard error.
+    fn of(scales: &Scales, half_gap: Option<(f64, f64)>) -> Self {
+        Self {
+            mean: [
+                half_gap.map_or(0.0, |(value, _)| libm::log(value)),
+                0.0,
+                libm::log(2.0_f64),
+                libm::log(0.01 * scales.acceleration),
+                libm::log(0.25 * scales.step * scales.speed),
+                libm::log(0.01_f64),
+            ],
+            deviation: [
+                half_gap.map_or(f64::INFINITY, |(value, error)| error / value),
+                1.2,
+                1.5,
+                2.0,
+                0.7,
+                1.0,
+            ],
+        }
+    }
+}
+
 /// Sizes that the prior needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scales {
@@ -98,24 +122,7 @@ pub(super) fn fit(
     scales: &Scales,
     half_gap: Option<(f64, f64)>,
 ) -> Option<Fit> {
-    let prior = Prior {
-        mean: [
-            half_gap.map_or(0.0, |(value, _)| libm::log(value)),
-            0.0,
-            libm::log(2.0_f64),
-            libm::log(0.01 * scales.acceleration),
-            libm::log(0.25 * scales.step * scales.speed),
-            libm::log(0.01_f64),
-        ],
-        deviation: [
-            half_gap.map_or(f64::INFINITY, |(value, error)| error / value),
-            1.2,
-            1.5,
-            2.0,
-            0.7,
-            1.0,
-        ],
-    };
+    let prior = Prior::of(scales, half_gap);
     let errors = Errors {
         slow: SLOW * scales.speed,
         late: LATE * scales.step,
@@ -140,26 +147,10 @@ pub(super) fn fit(
             .map(|k| least * libm::pow(most / least, k as f64 / (GAPS - 1) as f64))
             .collect(),
     };
-    let mut starts = Vec::new();
-    for half_gap in gaps {
-        let mut best: Option<(Point, f64)> = None;
-        for ratio in INERTIA_RATIOS {
-            for viscous in VISCOUS {
-                for dry in DRY_SHARES {
-                    let mut point = prior.mean;
-                    point[0] = libm::log(half_gap);
-                    point[1] = libm::log(ratio) - point[0];
-                    point[2] = libm::log(viscous);
-                    point[3] = libm::log(dry * scales.acceleration) - point[0];
-                    let value = cost(&point);
-                    if best.is_none_or(|b| value < b.1) {
-                        best = Some((point, value));
-                    }
-                }
-            }
-        }
-        starts.extend(best);
-    }
+    let mut starts: Vec<(Point, f64)> = gaps
+        .into_iter()
+        .filter_map(|half_gap| best_load(&cost, prior.mean, half_gap, scales.acceleration))
+        .collect();
     starts.sort_by(|a, b| a.1.total_cmp(&b.1));
     let best = starts
         .iter()
@@ -194,6 +185,32 @@ pub(super) fn fit(
         sharpness,
         innovations,
     })
+}
+
+/// Of the loads that are tried with a half gap the one that costs least.
+fn best_load(
+    cost: &impl Fn(&Point) -> f64,
+    mean: Point,
+    half_gap: f64,
+    acceleration: f64,
+) -> Option<(Point, f64)> {
+    let mut best: Option<(Point, f64)> = None;
+    for ratio in INERTIA_RATIOS {
+        for viscous in VISCOUS {
+            for dry in DRY_SHARES {
+                let mut point = mean;
+                point[0] = libm::log(half_gap);
+                point[1] = libm::log(ratio) - point[0];
+                point[2] = libm::log(viscous);
+                point[3] = libm::log(dry * acceleration) - point[0];
+                let value = cost(&point);
+                if best.is_none_or(|b| value < b.1) {
+                    best = Some((point, value));
+                }
+            }
+        }
+    }
+    best
 }
 
 /// What the logarithms stand for; `late` is the error of the begin of a contact, s.

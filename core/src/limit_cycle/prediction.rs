@@ -177,10 +177,6 @@ fn trust(
     relay: &Relay,
     outcome: Option<Outcome>,
 ) -> Trust {
-    let untrusted = |text: String| Trust {
-        text,
-        ..Trust::default()
-    };
     if let Some(cycle) = prediction.continuum.iter().flatten().next() {
         return trust_of_continuum(plant, relay, cycle);
     }
@@ -193,26 +189,7 @@ fn trust(
         None => prediction.existence.is_some_and(|e| e.holds),
     };
     let Some(main) = dominant(&prediction.describing_function) else {
-        return match exact.first() {
-            Some(c) => {
-                let kind = match c.cycle.stable {
-                    Some(false) => "an unstable one",
-                    _ => "one",
-                };
-                untrusted(format!(
-                    "The describing function sees no oscillation; exactly there is {kind} of period {:.4} s: do not trust it here.",
-                    c.cycle.period
-                ))
-            }
-            None if keeps_switching => untrusted(
-                "The describing function sees no oscillation, though the relay keeps switching: do not trust it here."
-                    .to_owned(),
-            ),
-            None => Trust {
-                reliable: true,
-                ..untrusted("The describing function sees no oscillation, and there is none.".to_owned())
-            },
-        };
+        return trust_of_none(exact.first(), keeps_switching);
     };
     let (period, amplitude) = (main.cycle.period, main.cycle.amplitude);
     let distance = |c: &&ExactCycle| libm::log(c.cycle.period / period).abs();
@@ -260,6 +237,37 @@ fn trust(
         period_error: Some(errors[0]),
         amplitude_error: Some(errors[1]),
         text,
+    }
+}
+
+/// Where the describing function sees no oscillation.
+fn trust_of_none(exact: Option<&ExactCycle>, keeps_switching: bool) -> Trust {
+    match exact {
+            Some(c) => {
+                let kind = match c.cycle.stable {
+                    Some(false) => "an unstable one",
+                    _ => "one",
+                };
+                untrusted(format!(
+                    "The describing function sees no oscillation; exactly there is {kind} of period {:.4} s: do not trust it here.",
+                    c.cycle.period
+                ))
+            }
+            None if keeps_switching => untrusted(
+                "The describing function sees no oscillation, though the relay keeps switching: do not trust it here."
+                    .to_owned(),
+            ),
+            None => Trust {
+                reliable: true,
+                ..untrusted("The describing function sees no oscillation, and there is none.".to_owned())
+            },
+        }
+}
+
+fn untrusted(text: String) -> Trust {
+    Trust {
+        text,
+        ..Trust::default()
     }
 }
 

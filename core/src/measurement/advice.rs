@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use super::column::Role;
 use super::error::{ImportError, Problem};
 use super::found::FoundColumn;
-use super::guess::{guess, resembles};
+use super::guess::guess;
 use super::mapping::{ImportOptions, Mapping};
 use super::period::Period;
+use super::resembling::resembles;
 use super::unit::{COUNTS, parse};
 use super::{Kind, Quantity};
 

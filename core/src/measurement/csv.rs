@@ -2,12 +2,13 @@
 
 use super::clock::{Clock, unit_from_1970};
 use super::error::{ImportError, Problem};
+use super::fill::fill;
 use super::found::addressed;
-use super::guess::{fill, is_period};
 use super::header::{Field, Header, Role, map, shorten, understand};
 use super::mapping::ImportOptions;
 use super::period::Period;
 use super::rates;
+use super::resembling::is_period;
 use super::size::wrong_size;
 use super::text::{Dialect, Text, open, split_row, survey};
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};

@@ -7,11 +7,12 @@ use super::cell::Mark;
 use super::clock::{Clock, unit_from_1970};
 use super::csv::assemble;
 use super::error::{ImportError, Problem};
+use super::fill::fill;
 use super::found::{FoundColumn, Numbers, addressed};
-use super::guess::{fill, is_period};
 use super::header::{Field, Header, Role, listed, map, shorten, understand};
 use super::mapping::ImportOptions;
 use super::period::Period;
+use super::resembling::is_period;
 use super::size::wrong_size;
 
 /// One series of numbers with the name by which it is addressed.

@@ -4,8 +4,8 @@ use super::cell::Mark;
 use super::clock::Clock;
 use super::error::Problem;
 use super::found::Numbers;
-use super::guess::is_of_process;
 use super::header::{Field, has_number, name_and_unit};
+use super::resembling::is_of_process;
 use super::split::{BLANKS, split_header};
 use super::unit::parse_input;
 

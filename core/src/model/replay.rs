@@ -1,13 +1,13 @@
 //! Replay: a model driven by a measured input, restarted at the windows' estimated states.
 
-use super::bristle::{Bristle, Steady};
+use super::bristle::Bristle;
+use super::delayed_input::DelayedInput;
+use super::excitation::{Excitation, Sensor};
 use super::felt_load::Felt;
 use super::followed::{Followed, FollowedNoise, Follower};
-use super::seen_load::{SeenLoad, Sight, Tracker};
+use super::seen_load::{Sight, Tracker};
+use super::slow_sensor::SlowSensor;
 use super::{Engine, Load, Model, State};
-
-/// A time step within this share of the mean one counts as equal: files round their time column.
-const UNIFORM_TOLERANCE: f64 = 0.02;
 
 /// Where a window starts and from which state of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,106 +65,7 @@ impl FollowedLoad {
     }
 }
 
-/// A measured input, held between samples.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Excitation {
-    time: Vec<f64>,
-    input: Vec<f64>,
-    /// Input before the record starts.
-    before: f64,
-    /// Nothing moves at first, wherever it is.
-    at_rest: bool,
-    /// Sampling time in s, if equal throughout.
-    step: Option<f64>,
-    slow_sensor: Sensor,
-    /// What a slow sensor showed: the measured values of its output, or empty.
-    shown: Vec<f64>,
-    /// Position that a load follows, free of noise as far as known; empty for a process.
-    position: Vec<f64>,
-    /// The noise of what it stands for.
-    noise: Option<FollowedNoise>,
-    /// The same without its trembling.
-    steady: Option<Steady>,
-    /// The load, where the motor felt its contacts.
-    seen: Option<SeenLoad>,
-    /// Sample ranges that are simulated, ascending; between them only hidden states go on.
-    runs: Vec<(usize, usize)>,
-}
-
-/// Which output a slow sensor shows: a counting encoder is not slow, but the velocity made from it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sensor {
-    /// The velocity, or the output of a process.
-    Velocity,
-    /// The position, where nothing else is measured.
-    Position,
-}
-
 impl Excitation {
-    /// `time` in s strictly increasing, `input` as long; `before` acted until the record starts;
-    /// `position` that a load follows, as long or empty, with the noise of what was measured.
-    pub fn new(
-        time: &[f64],
-        input: &[f64],
-        before: f64,
-        slow_sensor: Sensor,
-        position: Vec<f64>,
-        noise: Option<FollowedNoise>,
-    ) -> Self {
-        let n = time.len();
-        let mean = (time[n - 1] - time[0]) / (n - 1) as f64;
-        let uniform = time
-            .iter()
-            .enumerate()
-            .all(|(i, t)| (t - time[0] - mean * i as f64).abs() < UNIFORM_TOLERANCE * mean);
-        Self {
-            time: time.to_vec(),
-            input: input.to_vec(),
-            before,
-            at_rest: false,
-            step: uniform.then_some(mean),
-            slow_sensor,
-            shown: Vec::new(),
-            steady: noise.map(|noise| match noise {
-                FollowedNoise::Position(level) => Steady::new(&position, level),
-                FollowedNoise::Velocity(level) => Steady::new(&position, level * mean),
-            }),
-            position,
-            noise,
-            seen: None,
-            runs: vec![(0, time.len())],
-        }
-    }
-
-    /// The same with what a slow sensor showed, which tells its state where a run begins within the record.
-    #[must_use]
-    pub(crate) fn with_shown(self, shown: Vec<f64>) -> Self {
-        Self { shown, ..self }
-    }
-
-    /// The same where nothing moves at first, or something does.
-    #[must_use]
-    pub(crate) fn at_rest_at_first(self, at_rest: bool) -> Self {
-        Self { at_rest, ..self }
-    }
-
-    /// The same with a load that the motor felt.
-    #[must_use]
-    pub(crate) fn with_seen_load(self, seen: SeenLoad) -> Self {
-        let seen = Some(seen);
-        Self { seen, ..self }
-    }
-
-    /// Position that a load follows; empty for a process.
-    pub(crate) fn followed(&self) -> &[f64] {
-        &self.position
-    }
-
-    /// Whether a load is told by contacts that the motor felt.
-    pub(crate) fn sees_load(&self) -> bool {
-        self.seen.is_some()
-    }
-
     /// Whether the load of `model` is told by contacts that the motor felt.
     pub(crate) fn sees_load_of(&self, model: &Model) -> bool {
         self.tracker(model).is_some()
@@ -199,50 +100,6 @@ impl Excitation {
 
     fn tracker(&self, model: &Model) -> Option<Tracker<'_>> {
         Tracker::new(self.seen.as_ref()?, model)
-    }
-
-    /// The same, to be simulated in these sample ranges (ascending, apart) only; each begins at a start.
-    #[must_use]
-    pub fn within(&self, runs: Vec<(usize, usize)>) -> Self {
-        Self {
-            runs,
-            ..self.clone()
-        }
-    }
-
-    /// The first `n` samples.
-    #[must_use]
-    pub fn head(&self, n: usize) -> Self {
-        Self {
-            time: self.time[..n].to_vec(),
-            input: self.input[..n].to_vec(),
-            position: self.position.iter().take(n).copied().collect(),
-            shown: self.shown.iter().take(n).copied().collect(),
-            steady: self.steady.as_ref().map(|s| s.head(n)),
-            seen: self.seen.clone(),
-            runs: vec![(0, n)],
-            ..*self
-        }
-    }
-
-    /// Measured or estimated position at a sample; 0 of a process.
-    pub(crate) fn position_at(&self, sample: usize) -> f64 {
-        self.position.get(sample).copied().unwrap_or(0.0)
-    }
-
-    /// Number of samples.
-    pub fn len(&self) -> usize {
-        self.time.len()
-    }
-
-    /// Whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.time.is_empty()
-    }
-
-    /// Mean sampling time, s.
-    pub fn mean_step(&self) -> f64 {
-        (self.time[self.len() - 1] - self.time[0]) / (self.len() - 1) as f64
     }
 
     /// Where the load of `model` is at each of `starts`; taken over from what is `known`, if that is the same.
@@ -320,66 +177,22 @@ impl Excitation {
         position: &mut [f64],
         velocity: &mut [f64],
     ) -> u64 {
+        let path = DelayedInput::new(self, model);
         let mut engine = Engine::new(model);
-        let mut path = DelayedInput::new(self, model);
         path.prepare(&mut engine);
-        let mut state = State::at_rest(self.stored(model, starts, path.before));
+        let mut course = Course::new(&engine, path, starts);
         let mut next = starts.iter().enumerate().peekable();
-        let tracker = self.tracker(model);
-        let doubt = self.doubt(model).unwrap_or_default();
-        let mut bristle = engine
-            .contact()
-            .zip(self.steady.as_ref())
-            .map(|(contact, steady)| Bristle::new(contact, steady, &model.friction));
-        let measured = matches!(self.noise, Some(FollowedNoise::Position(_)));
-        // A load would have to be where it was, too.
-        let alone = !measured && model.load.is_none();
         let mut now = 0;
         for (from, end) in &self.runs {
-            if now < *from {
-                // Noise of the velocity would loosen a contact that follows a body at rest: the model goes on alone.
-                let told = bristle.as_ref().filter(|_| alone);
-                let begin = told.map_or(*from, |b| b.told_from(*from).clamp(now, *from - 1));
-                now = now.max(self.remembered(*from, model).min(begin));
-                state = state.at_time(self.time[now] - self.time[0]);
-                for i in now..*from {
-                    let load = self.early_load(model, i);
-                    if i < begin {
-                        path.pieces(i, |w, h| state.wait(model, w + load, h));
-                        continue;
-                    }
-                    if let Some(bristle) = bristle.as_mut().filter(|_| i == begin) {
-                        state = state.restarted(self.position[i], self.speed_after(i));
-                        state = state.with_deflection(bristle.at(i, &self.time));
-                    }
-                    path.pieces(i, |w, h| engine.advance(&mut state, w + load, h));
-                }
-            }
+            course.wait(now, *from);
             for i in *from..*end {
                 if let Some((window, start)) = next.next_if(|(_, s)| s.sample == i) {
-                    state = state.restarted(start.position, start.velocity);
-                    if let Some(Some(load)) = loads.at.get(window) {
-                        let shift = match &tracker {
-                            Some(tracker) => tracker.shift(self.time[i], start.load),
-                            None => match loads.roots.get(window) {
-                                Some([x, slope, v]) => {
-                                    let [a, b] = start.load;
-                                    [x * a, slope * a + v * b]
-                                }
-                                None => [doubt[0] * start.load[0], doubt[1] * start.load[1]],
-                            },
-                        };
-                        state = state.with_load(load, self.position[i], shift);
-                    }
-                    if let Some(bristle) = bristle.as_mut().filter(|_| measured) {
-                        state = state.with_deflection(bristle.at(i, &self.time));
-                    }
+                    course.restart(start, loads, window);
                 }
-                position[i] = state.position();
-                velocity[i] = state.velocity();
+                position[i] = course.state.position();
+                velocity[i] = course.state.velocity();
                 if i + 1 < self.len() {
-                    let load = self.early_load(model, i);
-                    path.pieces(i, |w, h| engine.advance(&mut state, w + load, h));
+                    course.advance(i);
                 }
             }
             now = *end;
@@ -392,18 +205,20 @@ impl Excitation {
             }
         }
         if let Some(lag) = model.sensor_lag {
-            let slowed = match self.slow_sensor {
+            let signal = match self.slow_sensor {
                 Sensor::Velocity => velocity,
                 Sensor::Position => position,
             };
-            self.slow_down(slowed, lag);
+            let slow = SlowSensor {
+                lag,
+                time: &self.time,
+                shown: &self.shown,
+            };
+            for run in &self.runs {
+                slow.pass(signal, *run);
+            }
         }
         engine.moves()
-    }
-
-    /// Time from a sample to the next, s.
-    fn step_after(&self, i: usize) -> f64 {
-        self.step.unwrap_or_else(|| self.time[i + 1] - self.time[i])
     }
 
     /// Puts `follower` where the load was seen at sample `i`, or before the contact in which it is.
@@ -416,11 +231,6 @@ impl Excitation {
                 follower.place(x + v * (self.time[before] - begin), v, before);
             }
         }
-    }
-
-    /// Mean velocity from a sample to the next.
-    fn speed_after(&self, i: usize) -> f64 {
-        (self.position[i + 1] - self.position[i]) / self.step_after(i)
     }
 
     /// What is stored before the body at first, under an input that was `before`: where the body rests, what keeps it there.
@@ -444,40 +254,6 @@ impl Excitation {
         self.time[..i]
             .partition_point(|t| *t < since)
             .min(i.saturating_sub(1))
-    }
-
-    /// Passes a signal through a first-order lag, straight between its samples. A run that begins within
-    /// the record begins as if the signal had come the same way before, or so that what was shown comes out best.
-    fn slow_down(&self, signal: &mut [f64], lag: f64) {
-        for (from, end) in &self.runs {
-            let (Some(signal), Some(time)) =
-                (signal.get_mut(*from..*end), self.time.get(*from..*end))
-            else {
-                continue;
-            };
-            if signal.len() < 2 {
-                continue;
-            }
-            let mut before = signal[0];
-            let mut slow = before;
-            if *from > 0 {
-                slow -= lag * (signal[1] - signal[0]) / (time[1] - time[0]);
-                signal[0] = slow;
-            }
-            for (value, time) in signal[1..].iter_mut().zip(time.windows(2)) {
-                let (h, now) = (time[1] - time[0], *value);
-                let (decay, slope) = (libm::exp(-h / lag), (now - before) / h);
-                // The lag follows a ramp at the distance slope * lag.
-                slow = now - slope * lag + (slow - before + slope * lag) * decay;
-                before = now;
-                *value = slow;
-            }
-            if *from > 0
-                && let Some(shown) = self.shown.get(*from..*end)
-            {
-                begin_as_shown(signal, shown, time, lag);
-            }
-        }
     }
 
     /// The input that reaches the body: mapped, delayed and lagged, as its mean over each interval.
@@ -504,124 +280,95 @@ impl Excitation {
     }
 }
 
-/// Share of what a lag began with that is no longer looked at.
-const FADED: f64 = 1e-3;
+/// A model on its way through a record.
+struct Course<'a> {
+    excitation: &'a Excitation,
+    model: &'a Model,
+    engine: &'a Engine<'a>,
+    path: DelayedInput<'a>,
+    state: State,
+    tracker: Option<Tracker<'a>>,
+    doubt: [f64; 2],
+    bristle: Option<Bristle<'a>>,
+    /// Whether the position was measured.
+    measured: bool,
+}
 
-/// Adds to a lagged signal what it may have begun with, which fades away: so much that it comes nearest to what was
-/// `shown` (least squares).
-fn begin_as_shown(signal: &mut [f64], shown: &[f64], time: &[f64], lag: f64) {
-    let fading = |k: usize| libm::exp((time[0] - time[k]) / lag);
-    let seen = (0..signal.len()).take_while(|k| fading(*k) > FADED);
-    let (product, square) = seen.fold((0.0, 0.0), |(product, square), k| {
-        let share = fading(k);
-        (
-            product + share * (shown[k] - signal[k]),
-            square + share * share,
-        )
-    });
-    // The first sample is shown as it is, so that there is a square.
-    let begun = product / square;
-    for (k, value) in signal.iter_mut().enumerate() {
-        let share = fading(k);
-        if share <= FADED {
-            break;
+impl<'a> Course<'a> {
+    fn new(engine: &'a Engine<'a>, path: DelayedInput<'a>, starts: &[Start]) -> Self {
+        let (excitation, model) = (path.excitation, path.model);
+        let contact = engine.contact().zip(excitation.steady.as_ref());
+        Self {
+            state: State::at_rest(excitation.stored(model, starts, path.before)),
+            tracker: excitation.tracker(model),
+            doubt: excitation.doubt(model).unwrap_or_default(),
+            bristle: contact
+                .map(|(contact, steady)| Bristle::new(contact, steady, &model.friction)),
+            measured: matches!(excitation.noise, Some(FollowedNoise::Position(_))),
+            excitation,
+            model,
+            engine,
+            path,
         }
-        *value += begun * share;
+    }
+
+    /// From a sample to the next.
+    fn advance(&mut self, i: usize) {
+        let load = self.excitation.early_load(self.model, i);
+        self.path
+            .pieces(i, |w, h| self.engine.advance(&mut self.state, w + load, h));
+    }
+
+    /// From the end of a run to the begin of the next, where only hidden states go on.
+    fn wait(&mut self, now: usize, from: usize) {
+        let (excitation, model) = (self.excitation, self.model);
+        if now >= from {
+            return;
+        }
+        // A load would have to be where it was, too.
+        let alone = !self.measured && model.load.is_none();
+        // Noise of the velocity would loosen a contact that follows a body at rest: the model goes on alone.
+        let told = self.bristle.as_ref().filter(|_| alone);
+        let begin = told.map_or(from, |b| b.told_from(from).clamp(now, from - 1));
+        let now = now.max(excitation.remembered(from, model).min(begin));
+        self.state = self
+            .state
+            .at_time(excitation.time[now] - excitation.time[0]);
+        for i in now..from {
+            if i < begin {
+                let load = excitation.early_load(model, i);
+                self.path
+                    .pieces(i, |w, h| self.state.wait(model, w + load, h));
+                continue;
+            }
+            if let Some(bristle) = self.bristle.as_mut().filter(|_| i == begin) {
+                let deflection = bristle.at(i, &excitation.time);
+                let (position, velocity) = (excitation.position[i], excitation.speed_after(i));
+                self.state = self.state.restarted(position, velocity);
+                self.state = self.state.with_deflection(deflection);
+            }
+            self.advance(i);
+        }
+    }
+
+    /// At the begin of a window.
+    fn restart(&mut self, start: &Start, loads: &FollowedLoad, window: usize) {
+        let (excitation, i) = (self.excitation, start.sample);
+        self.state = self.state.restarted(start.position, start.velocity);
+        if let Some(Some(load)) = loads.at.get(window) {
+            let [a, b] = start.load;
+            let shift = match (&self.tracker, loads.roots.get(window)) {
+                (Some(tracker), _) => tracker.shift(excitation.time[i], start.load),
+                (None, Some([x, slope, v])) => [x * a, slope * a + v * b],
+                (None, None) => [self.doubt[0] * a, self.doubt[1] * b],
+            };
+            self.state = self.state.with_load(load, excitation.position_at(i), shift);
+        }
+        if let Some(bristle) = self.bristle.as_mut().filter(|_| self.measured) {
+            self.state = self.state.with_deflection(bristle.at(i, &excitation.time));
+        }
     }
 }
 
 /// Time constants after which the state before is forgotten to the last digit.
 const FORGOTTEN: f64 = 37.0;
-
-/// The held input shifted by a dead time, as pieces of constant value in each sampling interval.
-struct DelayedInput<'a> {
-    excitation: &'a Excitation,
-    model: &'a Model,
-    before: f64,
-    delay: f64,
-    /// For equal steps: whole samples and the rest of the dead time.
-    whole: usize,
-    rest: f64,
-    /// For unequal steps: first sample whose delayed value may still act.
-    pointer: usize,
-}
-
-impl<'a> DelayedInput<'a> {
-    fn new(excitation: &'a Excitation, model: &'a Model) -> Self {
-        let delay = model.delay.max(0.0);
-        let (mut whole, mut rest) = (0, 0.0);
-        if let Some(step) = excitation.step {
-            let samples = (delay / step).min(excitation.len() as f64);
-            whole = samples.floor() as usize;
-            rest = (samples - samples.floor()) * step;
-            // A rest of round-off size is no piece of its own.
-            if rest < 1e-9 * step {
-                rest = 0.0;
-            } else if step - rest < 1e-9 * step {
-                whole += 1;
-                rest = 0.0;
-            }
-        }
-        Self {
-            excitation,
-            model,
-            before: model.map_input(excitation.before),
-            delay,
-            whole,
-            rest,
-            pointer: 0,
-        }
-    }
-
-    fn prepare(&self, engine: &mut Engine) {
-        if let Some(step) = self.excitation.step {
-            engine.prepare(step);
-            if self.rest > 0.0 {
-                engine.prepare(self.rest);
-                engine.prepare(step - self.rest);
-            }
-        }
-    }
-
-    fn value(&self, sample: Option<usize>) -> f64 {
-        sample.map_or(self.before, |i| {
-            let input = &self.excitation.input;
-            let next = input.get(i + 1).unwrap_or(&input[i]);
-            let acting = input[i] + self.model.next_input * (next - input[i]);
-            self.model.map_input(acting)
-        })
-    }
-
-    /// Calls `go(value, duration)` for each piece between samples `i` and `i + 1`.
-    fn pieces(&mut self, i: usize, mut go: impl FnMut(f64, f64)) {
-        let Some(step) = self.excitation.step else {
-            return self.uneven_pieces(i, go);
-        };
-        let late = self.value(i.checked_sub(self.whole));
-        if self.rest == 0.0 {
-            return go(late, step);
-        }
-        let early = self.value(i.checked_sub(self.whole + 1));
-        if early == late {
-            go(late, step);
-        } else {
-            go(early, self.rest);
-            go(late, step - self.rest);
-        }
-    }
-
-    fn uneven_pieces(&mut self, i: usize, mut go: impl FnMut(f64, f64)) {
-        let time = &self.excitation.time;
-        let (mut now, end) = (time[i], time[i + 1]);
-        while now < end {
-            while self.pointer < time.len() && time[self.pointer] + self.delay <= now {
-                self.pointer += 1;
-            }
-            let until = time
-                .get(self.pointer)
-                .map_or(end, |t| (t + self.delay).min(end));
-            go(self.value(self.pointer.checked_sub(1)), until - now);
-            now = until;
-        }
-    }
-}

@@ -49,6 +49,9 @@ pub enum PlantError {
     /// Negative dead time.
     #[error("dead time {0} s: must be 0 or more")]
     DeadTime(f64),
+    /// Sampling time of a plant in discrete time.
+    #[error("sampling time {0} s: must be above 0")]
+    SamplingTime(f64),
     /// Matrices that do not fit together.
     #[error("{matrix} is {rows} x {columns}: it must be {wanted}")]
     Shape {

@@ -7,6 +7,8 @@
 //! the second and the fourth region). A list of properties is
 //! their number and three words for each: its name, how its value is told (1: by a cell), and which it is.
 
+use super::element::{Element, Reader, TAG};
+
 /// First word of a reference to objects.
 const REFERENCE: u32 = 0xdd00_0000;
 
@@ -25,9 +27,53 @@ const SAVED: usize = 1;
 const OBJECTS: usize = 2;
 const OWN: usize = 3;
 
+/// Where the objects of a file are described, and the values of their properties.
+#[derive(Default)]
+pub struct Subsystem<'a> {
+    objects: Option<Objects>,
+    cells: Vec<Element<'a>>,
+}
+
+impl<'a> Subsystem<'a> {
+    /// Reads the content of the variable in which it stands: bytes that are a small file of their own, with a structure
+    /// that has one field, the wrapper of the cells.
+    pub fn of(bytes: &'a [u8], big: bool) -> Option<Self> {
+        let reader = |bytes| Reader::of(bytes, big);
+        let mut outer = reader(bytes);
+        // Flags, sizes and name.
+        outer.skip(3).ok()?;
+        let mut file = reader(outer.element().ok()?.data);
+        file.at = TAG;
+        let mut structure = file.element().ok()?.inside();
+        // Flags, sizes, name, length and names of fields.
+        structure.skip(5).ok()?;
+        let mut wrapper = structure.element().ok()?.inside();
+        // Flags, name, type and class.
+        wrapper.skip(4).ok()?;
+        let mut array = wrapper.element().ok()?.inside();
+        array.skip(3).ok()?;
+        let mut cells = Vec::new();
+        while array.at < array.bytes.len() {
+            cells.push(array.element().ok()?);
+        }
+        let mut first = cells.first()?.inside();
+        first.skip(3).ok()?;
+        let objects = Objects::read(first.element().ok()?.data, big);
+        Some(Self { objects, cells })
+    }
+
+    /// The properties of an object: their names and values.
+    pub fn properties(&self, object: u32) -> Vec<(String, Element<'a>)> {
+        let objects = self.objects.as_ref().into_iter();
+        let all = objects.flat_map(|o| o.properties(object));
+        all.filter_map(|(name, cell)| Some((name.to_owned(), *self.cells.get(cell)?)))
+            .collect()
+    }
+}
+
 /// What is known of all objects.
 #[derive(Debug)]
-pub(super) struct Objects {
+struct Objects {
     names: Vec<String>,
     /// The names of the properties of each object, by their places from 1, and the cells of their values.
     objects: Vec<Vec<(usize, usize)>>,
@@ -35,7 +81,7 @@ pub(super) struct Objects {
 
 impl Objects {
     /// Reads the description of all objects; `None` where it is none.
-    pub fn read(bytes: &[u8], big: bool) -> Option<Self> {
+    fn read(bytes: &[u8], big: bool) -> Option<Self> {
         let words: Vec<u32> = words(bytes, big);
         let count = *words.get(1)? as usize;
         // From version 4 on there are two regions more, of which nothing is needed.
@@ -69,21 +115,8 @@ impl Objects {
         Some(Self { names, objects })
     }
 
-    /// The objects that these words refer to; `None` where they refer to none.
-    pub fn referred(words: &[u32]) -> Option<&[u32]> {
-        let (first, rest) = words.split_first()?;
-        let (dimensions, rest) = rest.split_first()?;
-        let counts = rest.get(..*dimensions as usize)?;
-        let count = counts
-            .iter()
-            .try_fold(1_usize, |n, c| n.checked_mul(*c as usize))?;
-        (*first == REFERENCE)
-            .then(|| rest.get(counts.len()..)?.get(..count))
-            .flatten()
-    }
-
     /// The properties of an object: their names, and the cells in which their values stand.
-    pub fn properties(&self, object: u32) -> impl Iterator<Item = (&str, usize)> {
+    fn properties(&self, object: u32) -> impl Iterator<Item = (&str, usize)> {
         let properties = self
             .objects
             .get(object as usize)
@@ -95,6 +128,19 @@ impl Objects {
             Some((name, cell.checked_add(CELLS_BEFORE)?))
         })
     }
+}
+
+/// The objects that these words refer to; `None` where they refer to none.
+pub fn referred(words: &[u32]) -> Option<&[u32]> {
+    let (first, rest) = words.split_first()?;
+    let (dimensions, rest) = rest.split_first()?;
+    let counts = rest.get(..*dimensions as usize)?;
+    let count = counts
+        .iter()
+        .try_fold(1_usize, |n, c| n.checked_mul(*c as usize))?;
+    (*first == REFERENCE)
+        .then(|| rest.get(counts.len()..)?.get(..count))
+        .flatten()
 }
 
 /// The lists of properties of a region, as names and cells; each is filled up to 8 bytes.

@@ -1,0 +1,145 @@
+//! `hysteron limit-cycle` on an on-off controller as it is built.
+
+use std::fmt::Write as _;
+
+use hysteron_core::on_off::{
+    Balance, OnOffCycle, OnOffLoop, Settled, describing_function, settled,
+};
+use serde_json::{Value, json};
+
+use crate::output::off_by;
+
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
+
+/// What is predicted and simulated.
+pub struct OnOffReport {
+    /// `None` where the first harmonic does not tell.
+    describing_function: Option<Vec<Balance>>,
+    settled: Settled,
+    /// Whether there are shortest times to keep.
+    holds: bool,
+}
+
+impl OnOffReport {
+    pub fn new(on_off: &OnOffLoop) -> Result<Self, String> {
+        Ok(Self {
+            settled: settled(on_off).map_err(|e| e.to_string())?,
+            describing_function: describing_function(on_off),
+            holds: on_off.relay.min_on.max(on_off.relay.min_off) > 0.0,
+        })
+    }
+
+    /// What is said, with a word where the describing function says nothing.
+    fn sentences(&self) -> String {
+        let exact = self.settled.exact.as_ref();
+        let stable = |b: &&Balance| b.stable == Some(true);
+        let beside = match &self.describing_function {
+            None => {
+                " The describing function is not given: with three positions it is known for outputs alike in both \
+                 directions and a reference of 0."
+                    .to_owned()
+            }
+            Some(all) if all.is_empty() && self.holds => {
+                " The describing function sees no oscillation that keeps the shortest times.".to_owned()
+            }
+            Some(all) if all.is_empty() => {
+                " The describing function sees no oscillation.".to_owned()
+            }
+            Some(all) => all
+                .iter()
+                .find(stable)
+                .zip(exact)
+                .map_or_else(String::new, |(b, c)| {
+                    off_by([b.period, b.amplitude], [c.period, c.amplitude])
+                }),
+        };
+        format!("{}{beside}", self.settled.text)
+    }
+
+    pub fn json(&self) -> Value {
+        let describing: Vec<Value> = self
+            .describing_function
+            .iter()
+            .flatten()
+            .map(|b| {
+                json!({"omega": b.omega, "period": b.period, "amplitude": b.amplitude, "stable": b.stable})
+            })
+            .collect();
+        let exact: Vec<Value> = self.settled.exact.iter().map(cycle).collect();
+        let outcome = if self.settled.rests {
+            "rest"
+        } else if self.settled.simulated.is_some() {
+            "limit_cycle"
+        } else {
+            "long_pattern"
+        };
+        json!({
+            "schema": SCHEMA,
+            "outcome": outcome,
+            "describing_function": describing,
+            "exact": exact,
+            "simulated": self.settled.simulated.as_ref().map(cycle),
+            "ultimate": null,
+            "exists": !self.settled.rests,
+            "text": self.sentences(),
+        })
+    }
+
+    pub fn text(&self) -> String {
+        let mut out = format!("{}\n", self.sentences());
+        let mut table = String::new();
+        for b in self.describing_function.iter().flatten() {
+            row(
+                &mut table,
+                "describing function",
+                (b.period, b.amplitude),
+                b.stable,
+            );
+        }
+        let found = [
+            ("exact", &self.settled.exact),
+            ("simulated", &self.settled.simulated),
+        ];
+        for (name, cycle) in found {
+            if let Some(c) = cycle {
+                row(&mut table, name, (c.period, c.amplitude), c.stable);
+            }
+        }
+        if !table.is_empty() {
+            let _ = writeln!(
+                out,
+                "\n{:<22} {:>16} {:>16}   stable\n{table}Amplitude: half of peak to peak.",
+                "", "period [s]", "amplitude"
+            );
+        }
+        let shown = self
+            .settled
+            .exact
+            .as_ref()
+            .or(self.settled.simulated.as_ref());
+        if let Some(cycle) = shown {
+            let parts = cycle.positions.iter();
+            let parts: Vec<String> = parts
+                .map(|(position, time)| format!("{} {time:.6} s", position.name()))
+                .collect();
+            let _ = writeln!(out, "In each period: {}.", parts.join(", "));
+        }
+        out
+    }
+}
+
+fn row(out: &mut String, name: &str, (period, amplitude): (f64, f64), stable: Option<bool>) {
+    let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
+    let _ = writeln!(
+        out,
+        "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
+    );
+}
+
+fn cycle(cycle: &OnOffCycle) -> Value {
+    let durations: Vec<f64> = cycle.positions.iter().map(|p| p.1).collect();
+    let positions: Vec<&str> = cycle.positions.iter().map(|p| p.0.name()).collect();
+    json!({"period": cycle.period, "amplitude": cycle.amplitude, "half_periods": durations, "positions": positions,
+           "range": cycle.range, "stable": cycle.stable, "multiplier": cycle.multiplier})
+}

@@ -1,0 +1,110 @@
+//! `hysteron limit-cycle` on a servo: does it hunt?
+
+use std::fmt::Write as _;
+
+use hysteron_core::hunting::{
+    HuntingBalance, HuntingCycle, Servo, Settled, describing_function, settled,
+};
+use serde_json::{Value, json};
+
+use crate::output::off_by;
+
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
+
+/// What is predicted and simulated, of the measured position.
+pub struct ServoReport {
+    describing_function: Vec<HuntingBalance>,
+    settled: Settled,
+}
+
+impl ServoReport {
+    pub fn new(servo: &Servo) -> Result<Self, String> {
+        Ok(Self {
+            settled: settled(servo).map_err(|e| format!("[servo]: {e}"))?,
+            describing_function: describing_function(servo),
+        })
+    }
+
+    fn sentences(&self) -> String {
+        let stable = |b: &&HuntingBalance| b.stable == Some(true);
+        let beside = if self.describing_function.is_empty() {
+            " The describing function sees no oscillation.".to_owned()
+        } else {
+            let found = self.describing_function.iter().find(stable);
+            found
+                .zip(self.settled.exact.as_ref())
+                .map_or_else(String::new, |(b, c)| {
+                    off_by([b.period, b.amplitude], [c.period, c.amplitude])
+                })
+        };
+        format!("{}{beside}", self.settled.text)
+    }
+
+    pub fn json(&self) -> Value {
+        let describing: Vec<Value> = self
+            .describing_function
+            .iter()
+            .map(|b| {
+                json!({"omega": b.omega, "period": b.period, "amplitude": b.amplitude,
+                       "motor_amplitude": b.motor_amplitude, "stable": b.stable})
+            })
+            .collect();
+        let exact: Vec<Value> = self.settled.exact.iter().map(cycle).collect();
+        let s = &self.settled;
+        let outcome = match (s.error_at_rest, s.unbounded, &s.simulated) {
+            (Some(_), ..) => "rest",
+            (None, true, _) => "unbounded",
+            (None, false, Some(_)) => "limit_cycle",
+            (None, false, None) => "long_pattern",
+        };
+        json!({
+            "schema": SCHEMA,
+            "outcome": outcome,
+            "describing_function": describing,
+            "exact": exact,
+            "simulated": s.simulated.as_ref().map(cycle),
+            "ultimate": null,
+            "exists": s.error_at_rest.is_none() && !s.unbounded,
+            "error_at_rest": s.error_at_rest,
+            "text": self.sentences(),
+        })
+    }
+
+    pub fn text(&self) -> String {
+        let mut out = format!("{}\n", self.sentences());
+        let mut rows: Vec<(&str, f64, f64, Option<bool>)> = Vec::new();
+        for b in &self.describing_function {
+            rows.push(("describing function", b.period, b.amplitude, b.stable));
+        }
+        let found = [
+            ("exact", &self.settled.exact),
+            ("simulated", &self.settled.simulated),
+        ];
+        for (name, cycle) in found {
+            rows.extend(cycle.map(|c| (name, c.period, c.amplitude, c.stable)));
+        }
+        if rows.is_empty() {
+            return out;
+        }
+        let _ = writeln!(
+            out,
+            "\n{:<22} {:>16} {:>16}   stable",
+            "", "period [s]", "amplitude"
+        );
+        for (name, period, amplitude, stable) in rows {
+            let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
+            let _ = writeln!(
+                out,
+                "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
+            );
+        }
+        let _ = writeln!(out, "Amplitude: half of peak to peak.");
+        out
+    }
+}
+
+fn cycle(cycle: &HuntingCycle) -> Value {
+    json!({"period": cycle.period, "amplitude": cycle.amplitude, "motor_amplitude": cycle.motor_amplitude,
+           "range": cycle.range, "stuck": cycle.stuck, "stable": cycle.stable, "multiplier": cycle.multiplier})
+}

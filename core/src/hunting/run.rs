@@ -1,0 +1,91 @@
+//! A simulated run.
+
+use super::course::{Course, End, Place};
+use super::servo::{Servo, ServoError};
+
+/// A run from rest at 0, sampled.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HuntingRun {
+    /// Times, s.
+    pub time: Vec<f64>,
+    /// The controller's output, N m (or N).
+    pub input: Vec<f64>,
+    /// Position of the motor, rad (or m).
+    pub position: Vec<f64>,
+    /// Its velocity, rad/s (or m/s).
+    pub velocity: Vec<f64>,
+    /// Position behind the play, which the controller sees.
+    pub measured: Vec<f64>,
+    /// Intervals in which the motor stuck, s.
+    pub stuck: Vec<[f64; 2]>,
+    /// Whether it was cut before its end: it ran away, or took too many steps.
+    pub cut: bool,
+}
+
+/// Samples that a run may have.
+const MAX_SAMPLES: f64 = 10_000_000.0;
+
+/// At rest at 0, in the middle of the play.
+pub(super) fn at_rest(servo: &Servo) -> (Place, f64) {
+    let place = Place {
+        x: 0.0,
+        v: 0.0,
+        integral: 0.0,
+        w: 0.0,
+    };
+    let size = servo.reference.abs() + servo.half_gap;
+    (place, if size > 0.0 { size } else { 1.0 })
+}
+
+/// Runs a servo for `duration` s with samples every `step` s.
+///
+/// # Errors
+/// What of the servo or of these times cannot be.
+pub fn run(servo: &Servo, duration: f64, step: f64) -> Result<HuntingRun, ServoError> {
+    servo.validate()?;
+    for (name, value) in [("duration", duration), ("step", step)] {
+        if !(value.is_finite() && value > 0.0) {
+            let range = "above 0 s";
+            return Err(ServoError { name, value, range });
+        }
+    }
+    if duration / step > MAX_SAMPLES {
+        return Err(ServoError {
+            name: "number of samples",
+            value: duration / step,
+            range: "at most 10,000,000: a shorter duration or a longer step",
+        });
+    }
+    let (place, size) = at_rest(servo);
+    let mut course = Course::new(servo, place, size);
+    let mut run = HuntingRun::default();
+    let mut stuck_since = (course.way == 0.0).then_some(0.0);
+    for k in 0..=(duration / step) as u64 {
+        let until = k as f64 * step;
+        while course.now < until {
+            let end = course.advance(until);
+            match (end, stuck_since) {
+                (End::Standstill, None) if course.way == 0.0 => stuck_since = Some(course.now),
+                (End::Breakaway, Some(since)) => {
+                    run.stuck.push([since, course.now]);
+                    stuck_since = None;
+                }
+                (End::Cut, _) => {
+                    run.cut = true;
+                    return Ok(run);
+                }
+                _ => {}
+            }
+        }
+        let place = course.place;
+        let asked = servo.asked(place.w, place.v, place.integral);
+        run.time.push(until);
+        run.input.push(servo.limited(asked));
+        run.position.push(place.x);
+        run.velocity.push(place.v);
+        run.measured.push(place.w);
+    }
+    run.stuck
+        .extend(stuck_since.map(|since| [since, course.now]));
+    Ok(run)
+}

@@ -1,0 +1,98 @@
+//! The held input as it acts on a body: mapped, and shifted by a dead time.
+
+use super::excitation::Excitation;
+use super::{Engine, Model};
+
+/// The held input shifted by a dead time, as pieces of constant value in each sampling interval.
+pub(super) struct DelayedInput<'a> {
+    pub excitation: &'a Excitation,
+    pub model: &'a Model,
+    /// What acts before the record starts.
+    pub before: f64,
+    delay: f64,
+    /// For equal steps: whole samples and the rest of the dead time.
+    whole: usize,
+    rest: f64,
+    /// For unequal steps: first sample whose delayed value may still act.
+    pointer: usize,
+}
+
+impl<'a> DelayedInput<'a> {
+    pub fn new(excitation: &'a Excitation, model: &'a Model) -> Self {
+        let delay = model.delay.max(0.0);
+        let (mut whole, mut rest) = (0, 0.0);
+        if let Some(step) = excitation.step {
+            let samples = (delay / step).min(excitation.len() as f64);
+            whole = samples.floor() as usize;
+            rest = (samples - samples.floor()) * step;
+            // A rest of round-off size is no piece of its own.
+            if rest < 1e-9 * step {
+                rest = 0.0;
+            } else if step - rest < 1e-9 * step {
+                whole += 1;
+                rest = 0.0;
+            }
+        }
+        Self {
+            excitation,
+            model,
+            before: model.map_input(excitation.before),
+            delay,
+            whole,
+            rest,
+            pointer: 0,
+        }
+    }
+
+    pub fn prepare(&self, engine: &mut Engine) {
+        if let Some(step) = self.excitation.step {
+            engine.prepare(step);
+            if self.rest > 0.0 {
+                engine.prepare(self.rest);
+                engine.prepare(step - self.rest);
+            }
+        }
+    }
+
+    fn value(&self, sample: Option<usize>) -> f64 {
+        sample.map_or(self.before, |i| {
+            let input = &self.excitation.input;
+            let next = input.get(i + 1).unwrap_or(&input[i]);
+            let acting = input[i] + self.model.next_input * (next - input[i]);
+            self.model.map_input(acting)
+        })
+    }
+
+    /// Calls `go(value, duration)` for each piece between samples `i` and `i + 1`.
+    pub fn pieces(&mut self, i: usize, mut go: impl FnMut(f64, f64)) {
+        let Some(step) = self.excitation.step else {
+            return self.uneven_pieces(i, go);
+        };
+        let late = self.value(i.checked_sub(self.whole));
+        if self.rest == 0.0 {
+            return go(late, step);
+        }
+        let early = self.value(i.checked_sub(self.whole + 1));
+        if early == late {
+            go(late, step);
+        } else {
+            go(early, self.rest);
+            go(late, step - self.rest);
+        }
+    }
+
+    fn uneven_pieces(&mut self, i: usize, mut go: impl FnMut(f64, f64)) {
+        let time = &self.excitation.time;
+        let (mut now, end) = (time[i], time[i + 1]);
+        while now < end {
+            while self.pointer < time.len() && time[self.pointer] + self.delay <= now {
+                self.pointer += 1;
+            }
+            let until = time
+                .get(self.pointer)
+                .map_or(end, |t| (t + self.delay).min(end));
+            go(self.value(self.pointer.checked_sub(1)), until - now);
+            now = until;
+        }
+    }
+}
