@@ -225,11 +225,14 @@ impl Data {
         self.blocks = cut::one_each(&self.windows, self.len());
     }
 
-    /// The same with what is fitted held back, and fitted what is held back.
+    /// The same with what is fitted held back, and fitted what is held back. Where a window is many blocks, the first of them is
+    /// always fitted: without it the state in which the window begins is not told.
     pub fn turned(&self) -> Self {
         let mut turned = self.clone();
         for block in &mut turned.blocks {
-            block.held_back = !block.held_back;
+            let is_window = block.to - block.from == self.window_length(block.window);
+            let begins = block.from == self.windows[block.window];
+            block.held_back = !block.held_back && (is_window || !begins);
         }
         turned
     }
@@ -261,6 +264,12 @@ impl Data {
     /// Samples that are used.
     pub fn used(&self) -> usize {
         self.blocks.iter().map(|b| b.to - b.from).sum()
+    }
+
+    /// Samples that are used of a window.
+    fn window_length(&self, window: usize) -> usize {
+        let own = self.blocks.iter().filter(|b| b.window == window);
+        own.map(|b| b.to - b.from).sum()
     }
 
     /// First sample and end of each window.

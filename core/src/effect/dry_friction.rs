@@ -29,5 +29,5 @@ pub(super) const DAMPING: ParameterSpec = ParameterSpec {
     symbol: "z",
     label: "damping ratio of the contact",
     dimension: Dimension::Ratio,
-    range: Range::UnitInterval,
+    range: Range::OfContact,
 };

@@ -101,6 +101,8 @@ pub enum Range {
     Fraction,
     /// 0 to 1.
     UnitInterval,
+    /// The same of a dry contact that sticks, where it swings for less than the record shows.
+    OfContact,
     /// Up to `STIFFEST` times its [`Scales::of`], and so stiff that the body swings within the record.
     Stiff,
     /// The same up to `HARDEST` times it: a contact may well be over between two samples.
@@ -124,7 +126,9 @@ impl Range {
             Self::Signed => (value.is_finite(), "finite"),
             Self::NonNegative => (value >= 0.0, "at least 0"),
             Self::Fraction => ((-0.9..=0.9).contains(&value), "between -0.9 and 0.9"),
-            Self::UnitInterval => ((0.0..=1.0).contains(&value), "between 0 and 1"),
+            Self::UnitInterval | Self::OfContact => {
+                ((0.0..=1.0).contains(&value), "between 0 and 1")
+            }
             _ => (value > 0.0, "above 0"),
         };
         (!right).then_some(wanted)
@@ -181,6 +185,11 @@ const MOST_OF_THE_WAY: f64 = 0.3;
 pub const LEAST_SHARE: f64 = 1e-4;
 
 impl ParameterSpec {
+    /// Whether it only says how a hard contact builds up its force, between two samples or nearly so.
+    pub fn is_of_contact(&self) -> bool {
+        matches!(self.range, Range::Short | Range::OfContact)
+    }
+
     /// Whether the parameter is a size, which changes by factors rather than by differences.
     pub fn is_size(&self) -> bool {
         matches!(
@@ -213,7 +222,7 @@ impl ParameterSpec {
             Range::NonNegative => value.max(0.0),
             Range::Positive => value.max(LEAST_SHARE * scale),
             Range::Fraction => value.clamp(-0.9, 0.9),
-            Range::UnitInterval => value.clamp(0.0, 1.0),
+            Range::UnitInterval | Range::OfContact => value.clamp(0.0, 1.0),
             Range::Stiff | Range::Hard => {
                 let most = if self.range == Range::Stiff {
                     STIFFEST

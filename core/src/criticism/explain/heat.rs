@@ -41,8 +41,8 @@ impl Heat {
         self.waiting.is_empty() && self.over.is_empty()
     }
 
-    /// Does some iterations; true while there are more.
-    pub fn advance(&mut self, session: &Session) -> bool {
+    /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another one costs.
+    pub fn advance(&mut self, session: &Session, alike: f64) -> bool {
         let crew = &session.data.crew;
         let width = crew.width().min(self.waiting.len());
         let mut batch: Vec<(f64, Fit)> = self.waiting.drain(..width).collect();
@@ -58,7 +58,7 @@ impl Heat {
         );
         self.over.extend(batch);
         if self.waiting.is_empty() {
-            self.cull();
+            self.cull(alike);
             self.round += 1;
             if self.round < HEATS.len() {
                 self.waiting = self.over.drain(..).collect();
@@ -68,7 +68,7 @@ impl Heat {
     }
 
     /// Leaves the best of each set of effects, and none that is far behind.
-    fn cull(&mut self) {
+    fn cull(&mut self, alike: f64) {
         let (_, starts) = HEATS[self.round];
         // What still falls fast is judged by where it may come to.
         let hoped = |(before, fit): &(f64, Fit)| {
@@ -93,9 +93,9 @@ impl Heat {
             let (fit, hoped) = (&entry.1, key(entry));
             let mut ids = fit.structure.ids();
             ids.sort_unstable();
-            let alike = || kept.iter().filter(|(k, _)| *k == ids);
-            let twin = alike().any(|(_, values)| same_place(values, &fit.values));
-            let stays = hoped <= far * least && alike().count() < starts && !twin;
+            let same = || kept.iter().filter(|(k, _)| *k == ids);
+            let twin = same().any(|(_, values)| same_place(values, &fit.values));
+            let stays = hoped <= alike.max(far * least) && same().count() < starts && !twin;
             if stays {
                 kept.push((ids, fit.values.clone()));
             }
@@ -103,13 +103,22 @@ impl Heat {
         });
     }
 
-    /// The best so many, of those that cost no more than a limit; and none is left.
+    /// The best of each of so many sets of effects, of those that cost no more than a limit, and a second of the first; and
+    /// none is left.
     pub fn best(&mut self, count: usize, limit: f64) -> Vec<Sketch> {
         let over = std::mem::take(self).over.into_iter();
-        let near = over
-            .map(|(_, fit)| fit)
-            .filter(|fit| fit.cost <= limit)
-            .take(count);
-        near.map(Sketch::reached).collect()
+        let mut sets: Vec<Vec<EffectId>> = Vec::new();
+        let near = over.map(|(_, fit)| fit).filter(|fit| fit.cost <= limit);
+        let chosen = near.filter(|fit| {
+            let mut ids = fit.structure.ids();
+            ids.sort_unstable();
+            let known = sets.iter().filter(|set| **set == ids).count();
+            let is_first = known == 0 || known == 1 && sets[0] == ids;
+            if is_first {
+                sets.push(ids);
+            }
+            is_first
+        });
+        chosen.take(count).map(Sketch::reached).collect()
     }
 }

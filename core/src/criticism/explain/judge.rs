@@ -5,7 +5,9 @@
 //! standard error of its mean (Student's t).
 
 use super::Trial;
-use super::tuning::{DISCREPANCY, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, UNCHANGED};
+use super::tuning::{
+    ALIKE_IN_BLOCKS, DISCREPANCY, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, UNCHANGED,
+};
 
 /// How a model differs from another one.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +24,9 @@ pub(in crate::criticism) struct Difference {
 
 /// The difference from one trial to another, on a record with this mean square of the motion in units of its noise.
 pub(in crate::criticism) fn difference(from: &Trial, to: &Trial, motion_square: f64) -> Difference {
-    let floor = 1.0 + DISCREPANCY * DISCREPANCY * motion_square;
+    let mean = |held: &[f64]| held.iter().sum::<f64>() / held.len().max(1) as f64;
+    let usual = mean(&from.held).min(mean(&to.held));
+    let floor = usual.max(1.0) + DISCREPANCY * DISCREPANCY * motion_square;
     let pairs = from.held.iter().zip(&to.held);
     let changes: Vec<f64> = pairs
         .filter(|(a, b)| (*a - *b).abs() > UNCHANGED * a.max(**b))
@@ -76,6 +80,7 @@ impl Difference {
 
     /// Whether neither is better.
     pub fn is_same(&self) -> bool {
-        self.fall.abs() < SAME || (self.fall.abs() < LEAST_FALL && !self.is_certain(self.t.abs()))
+        self.fall.abs() < SAME
+            || (self.fall.abs() < ALIKE_IN_BLOCKS && !self.is_certain(self.t.abs()))
     }
 }

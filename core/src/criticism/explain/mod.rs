@@ -12,7 +12,7 @@ mod tuning;
 
 use std::collections::VecDeque;
 
-use super::screen::Screened;
+use super::screen::{Screened, Start};
 use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, outweighs};
 use super::session::{Session, small_share};
 use crate::diagnosis::InputVerdict;
@@ -22,25 +22,33 @@ pub(super) use judge::{Difference, difference};
 use swap::Rival;
 use task::{Sketch, Task};
 pub(super) use trial::Trial;
-use tuning::{FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
+use tuning::{ALIKE, FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
 
 /// What is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     /// Fitting the model that effects are added to.
     Base,
-    /// Fitting subsets with so many more effects.
-    Level(usize),
-    /// The same with a hidden body.
-    Hidden(usize),
+    /// Fitting subsets of a level.
+    Fit(Level),
     /// Doing without each effect of the subset that leads.
-    Check(usize),
+    Check(Level),
     /// Trying others in the place of each effect.
     Swap,
     /// Fitting the models on the way to the best.
     Path,
     /// Everything is known.
     Done,
+}
+
+/// Subsets that are compared with each other first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Level {
+    /// Number of effects that are added.
+    size: usize,
+    /// One of them brings a hidden body. Their fits are the longest by far, and the freest: they come last, where everything
+    /// that acts on the body that is measured leaves more than noise.
+    hidden: bool,
 }
 
 /// Whether an effect brings a second body, whose motion is not measured.
@@ -56,13 +64,13 @@ pub(super) struct Explain {
     tasks: VecDeque<Task>,
     /// Models in a race on the scout.
     heat: Heat,
-    /// Trials of which it is known what each effect adds; and what each effect that the screen does not tell.
+    /// Trials of which it is known what each effect adds; and what each hidden body.
     extended: [Vec<usize>; 2],
     /// Cost on the scout up to which they are fitted.
     limit: f64,
     stage: Stage,
-    /// Of the subset of each number of added effects that leads.
-    leads: Vec<usize>,
+    /// The subset of each size that leads; and of those with a hidden body.
+    leads: [Vec<Option<usize>>; 2],
     /// Leads of the present size that were looked at.
     looked_at: Vec<usize>,
     pub best: usize,
@@ -84,7 +92,7 @@ impl Explain {
             extended: [Vec::new(), Vec::new()],
             limit: f64::INFINITY,
             stage: Stage::Base,
-            leads: Vec::new(),
+            leads: [Vec::new(), Vec::new()],
             looked_at: Vec::new(),
             best: 0,
             misses: 0,
@@ -106,8 +114,12 @@ impl Explain {
             let (own, trials) = (&*session, &self.trials);
             let found = crew.gather(batch.len(), |i| batch[i].run(own, screened, trials));
             self.trials.extend(found.into_iter().flatten());
-        } else if !self.heat.advance(session) {
-            let best = self.heat.best(FITTED, self.limit);
+        } else if !self.heat.advance(session, self.alike()) {
+            let places = match self.stage {
+                Stage::Swap => self.size(self.best).max(1),
+                _ => 1,
+            };
+            let best = self.heat.best(FITTED * places, self.limit);
             self.tasks.extend(best.into_iter().map(Task::Fit));
         }
         self.done += 1;
@@ -117,30 +129,39 @@ impl Explain {
         self.stage != Stage::Done
     }
 
-    /// Has a trial raced with each effect that can be added: of those that the screen tells with its values, of others with
-    /// those that they find in what the trial leaves.
-    fn extend(&mut self, session: &Session, screened: &Screened, from: usize, seen: bool) {
-        let extended = &mut self.extended[usize::from(!seen)];
+    /// Cost on the scout of what may stand in the place of an effect of the best.
+    fn alike(&self) -> f64 {
+        match self.stage {
+            Stage::Swap => self.limit,
+            _ => 0.0,
+        }
+    }
+
+    /// Has a trial raced with each effect that can be added, or each hidden body: with the values that the screen tells, and
+    /// where it tells none with those that are found in what the trial leaves.
+    fn extend(&mut self, session: &Session, screened: &Screened, from: usize, hidden: bool) {
+        let extended = &mut self.extended[usize::from(hidden)];
         if extended.contains(&from) {
             return;
         }
         extended.push(from);
         let fit = &self.trials[from].scored.fit;
         let ids = self.trials[from].ids();
-        let mut sketches = Vec::new();
-        for effect in session.library().filter(|e| self.is_open(from, *e)) {
-            let hidden = is_hidden_body(effect);
-            if seen {
-                let beside = screened.values(&ids, effect.id());
-                let alone = screened.values(&[], effect.id());
-                let own: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
-                if own.is_empty() && !hidden {
-                    sketches.extend(Sketch::sought(session, fit, effect));
-                }
-                sketches.extend(own.iter().map(|own| Sketch::with(fit, effect, own)));
-            } else if hidden {
+        let mut sketches: Vec<Sketch> = Sketch::again(fit)
+            .filter(|_| !hidden && !ids.is_empty())
+            .into_iter()
+            .collect();
+        for effect in session
+            .library()
+            .filter(|e| is_hidden_body(*e) == hidden && self.is_open(from, *e))
+        {
+            let beside = screened.values(&ids, effect.id());
+            let alone = screened.values(&[], effect.id());
+            let own: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
+            if own.is_empty() || hidden {
                 sketches.extend(Sketch::sought(session, fit, effect));
             }
+            sketches.extend(own.iter().map(|own| Sketch::with(fit, effect, own)));
         }
         self.take(session, sketches);
     }
@@ -157,9 +178,7 @@ impl Explain {
     pub fn progress(&self) -> (f64, String) {
         let text = match self.stage {
             Stage::Base => "Fitting the model".to_owned(),
-            Stage::Level(_) | Stage::Hidden(_) => {
-                self.tasks.front().map_or_else(String::new, Task::text)
-            }
+            Stage::Fit(_) => self.tasks.front().map_or_else(String::new, Task::text),
             Stage::Check(_) => "Checking that every effect is needed".to_owned(),
             Stage::Swap => "Checking what else could explain it".to_owned(),
             Stage::Path | Stage::Done => "Done".to_owned(),
@@ -188,11 +207,17 @@ impl Explain {
                 session
                     .baseline
                     .get_or_insert_with(|| self.trials[0].scored.score.clone());
-                self.open_level(session, screened, 1);
+                self.open_level(
+                    session,
+                    screened,
+                    Level {
+                        size: 1,
+                        hidden: false,
+                    },
+                );
             }
-            Stage::Level(size) => self.open_hidden(session, screened, size),
-            Stage::Hidden(size) => self.judge_level(session, screened, size),
-            Stage::Check(size) => self.judge_check(session, screened, size),
+            Stage::Fit(level) => self.judge_level(session, screened, level),
+            Stage::Check(level) => self.judge_check(session, screened, level),
             Stage::Swap => self.judge_swaps(session, screened),
             Stage::Path => self.stage = Stage::Done,
             Stage::Done => {}
@@ -208,53 +233,63 @@ impl Explain {
         })
     }
 
-    /// Tasks of subsets with so many more effects.
-    fn open_level(&mut self, session: &mut Session, screened: &Screened, size: usize) {
-        self.stage = Stage::Level(size);
+    /// Tasks of the subsets of a level.
+    fn open_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
+        let Level { size, hidden } = level;
+        self.stage = Stage::Fit(level);
         self.looked_at.clear();
-        let enough = size > 1 && session.data.tried_enough();
         // Where the input is not what acted, an effect would be one of another machine.
         let other = matches!(
             session.input_check.verdict,
             InputVerdict::Sign | InputVerdict::ClosedLoop
         );
-        if size > MOST_SIZE || enough || other || self.is_noise(session, self.best) {
+        if other || self.is_noise(session, self.best) {
             self.open_swaps(session, screened);
             return;
         }
-        let from = self.leads.last().copied().unwrap_or(0);
-        session.look_where_left(&self.trials[from].scored.fit);
-        self.limit = f64::INFINITY;
+        let enough = size > 1 && session.data.tried_enough();
+        if size > MOST_SIZE || enough || self.misses > MOST_MISSES {
+            if hidden {
+                self.open_swaps(session, screened);
+            } else {
+                self.misses = 0;
+                self.open_level(
+                    session,
+                    screened,
+                    Level {
+                        size: 1,
+                        hidden: true,
+                    },
+                );
+            }
+            return;
+        }
+        let lead = |hidden: bool| {
+            let leads = &self.leads[usize::from(hidden)];
+            leads.get(size - 2).copied().flatten()
+        };
+        let (visible, with_hidden) = if size > 1 {
+            (lead(false), lead(true))
+        } else {
+            (Some(0), None)
+        };
+        if let Some(from) = visible.or(with_hidden) {
+            session.look_where_left(&self.trials[from].scored.fit);
+        }
+        self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
         let held = self.held_ids();
         let starts = screened.starts(&held, held.len() + size);
-        let sketches = starts.filter_map(|start| Sketch::of(session, &start));
+        let of_level = |start: &Start| start.effects.iter().any(|e| is_hidden_body(*e)) == hidden;
+        let sketches = starts
+            .filter(of_level)
+            .filter_map(|start| Sketch::of(session, &start));
         let sketches: Vec<Sketch> = sketches.take(STARTS).collect();
         self.take(session, sketches);
-        self.extend(session, screened, from, true);
-    }
-
-    /// Tasks of subsets with a hidden body, where those without leave more than noise.
-    fn open_hidden(&mut self, session: &mut Session, screened: &Screened, size: usize) {
-        self.stage = Stage::Hidden(size);
-        if self
-            .trials
-            .iter()
-            .enumerate()
-            .any(|(k, _)| self.size(k) == size && self.is_noise(session, k))
-        {
-            return;
+        if let Some(from) = visible {
+            self.extend(session, screened, from, hidden);
         }
-        let from = self.leads.last().copied().unwrap_or(0);
-        self.extend(session, screened, from, false);
-        if size != 2 {
-            return;
-        }
-        let held = self.held_ids();
-        for effect in session.library().filter(|e| is_hidden_body(*e)) {
-            let alone = [held.as_slice(), &[effect.id()]].concat();
-            if let Some(alone) = self.of(&alone).filter(|alone| *alone != from) {
-                self.extend(session, screened, alone, true);
-            }
+        if let Some(from) = with_hidden.filter(|_| hidden) {
+            self.extend(session, screened, from, false);
         }
     }
 
@@ -266,11 +301,25 @@ impl Explain {
         })
     }
 
-    fn judge_level(&mut self, session: &mut Session, screened: &Screened, size: usize) {
-        let of_size = |t: &usize| self.size(*t) == size && self.holds(*t);
-        let of_size: Vec<usize> = (0..self.trials.len()).filter(of_size).collect();
+    /// Whether a trial belongs to a level.
+    fn is_of(&self, trial: usize, level: Level) -> bool {
+        let mut added = self.trials[trial]
+            .effects()
+            .iter()
+            .filter(|e| !self.held.iter().any(|own| own.id() == e.id()));
+        self.size(trial) == level.size
+            && self.holds(trial)
+            && added.any(|e| is_hidden_body(*e)) == level.hidden
+    }
+
+    fn judge_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
+        let Level { size, hidden } = level;
         if self.looked_at.is_empty() {
-            self.leads.extend(self.lead(session, &of_size));
+            let of_level: Vec<usize> = (0..self.trials.len())
+                .filter(|t| self.is_of(*t, level))
+                .collect();
+            let lead = self.lead(session, &of_level);
+            self.leads[usize::from(hidden)].push(lead);
         }
         // A smaller one may have come up as a part of one that was looked at.
         let open =
@@ -281,12 +330,20 @@ impl Explain {
             .lead(session, &better)
             .filter(|_| self.looked_at.len() < MOST_LEADS);
         let Some(lead) = lead else {
-            self.misses += usize::from(self.size(self.best) < size);
-            self.next_level(session, screened, size);
+            let taken = self.looked_at.contains(&self.best);
+            self.misses = if taken { 0 } else { self.misses + 1 };
+            self.open_level(
+                session,
+                screened,
+                Level {
+                    size: size + 1,
+                    hidden,
+                },
+            );
             return;
         };
         self.looked_at.push(lead);
-        self.stage = Stage::Check(size);
+        self.stage = Stage::Check(level);
         // A smaller model may not have found the valley in which this one is.
         for place in self.held.len()..self.trials[lead].effects().len() {
             if size > 1 || self.without(lead, place).is_none() {
@@ -295,57 +352,57 @@ impl Explain {
         }
     }
 
-    fn judge_check(&mut self, session: &mut Session, screened: &Screened, size: usize) {
+    fn judge_check(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let lead = self.looked_at.last().copied();
         if let Some(lead) = lead.filter(|lead| self.is_needed(session, *lead)) {
             self.best = lead;
-            self.misses = 0;
         }
-        self.judge_level(session, screened, size);
+        self.judge_level(session, screened, level);
     }
 
     fn holds(&self, trial: usize) -> bool {
         self.held.iter().all(|e| self.trials[trial].has(e.id()))
     }
 
-    fn next_level(&mut self, session: &mut Session, screened: &Screened, size: usize) {
-        if self.misses > MOST_MISSES {
-            self.open_swaps(session, screened);
-        } else {
-            self.open_level(session, screened, size + 1);
-        }
-    }
-
-    fn values(&self, trial: usize) -> usize {
-        self.trials[trial].scored.fit.values.len()
+    /// Whether a model has, in the place of an effect of another, a part of that or what that comes near to.
+    fn has_part_of(&self, part: usize, whole: usize) -> bool {
+        let (own, other) = (&self.trials[part], &self.trials[whole]);
+        let mut wholes = other.effects().iter().filter(|e| !own.has(e.id()));
+        own.effects().len() == other.effects().len()
+            && wholes.any(|whole| {
+                own.effects()
+                    .iter()
+                    .any(|e| whole.has_part(e.id()) || whole.limits().contains(&e.id()))
+            })
     }
 
     /// Whether a model has fewer values than another, or as many and a part in the place of the whole.
     fn is_simpler(&self, a: usize, b: usize) -> bool {
-        let (own, other) = (self.trials[a].effects(), self.trials[b].effects());
-        let part = || {
-            other
-                .iter()
-                .any(|whole| own.iter().any(|e| whole.has_part(e.id())))
-        };
-        let (own, other) = (self.values(a), self.values(b));
-        own < other || own == other && part()
+        let (own, other) = (self.trials[a].values(), self.trials[b].values());
+        own < other || own == other && self.has_part_of(a, b)
     }
 
-    /// The one that leaves least; of those that are the same, the one with fewest values.
+    /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect must that is
+    /// added.
+    fn does_as_well(&self, session: &Session, simpler: usize, other: usize) -> bool {
+        let difference = self.difference(session, simpler, other);
+        let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
+        let worth =
+            difference.is_better() && (self.is_noise(session, other) || outweighs(before, after));
+        difference.is_same() || self.has_part_of(simpler, other) && !worth
+    }
+
+    /// The one that leaves least; of those that do as well, the one with fewest values.
     fn lead(&self, session: &Session, trials: &[usize]) -> Option<usize> {
         let error = |t: &usize| self.trials[*t].error();
-        let least = trials
-            .iter()
-            .copied()
-            .min_by(|a, b| error(a).total_cmp(&error(b)))?;
-        trials
-            .iter()
-            .copied()
-            .filter(|t| self.is_simpler(*t, least) && self.difference(session, least, *t).is_same())
+        let all = || trials.iter().copied();
+        let least = all().min_by(|a, b| error(a).total_cmp(&error(b)))?;
+        all()
+            .filter(|t| self.is_simpler(*t, least) && self.does_as_well(session, *t, least))
             .min_by(|a, b| {
-                self.values(*a)
-                    .cmp(&self.values(*b))
+                let values = |t: &usize| self.trials[*t].values();
+                values(a)
+                    .cmp(&values(b))
                     .then(error(a).total_cmp(&error(b)))
             })
             .or(Some(least))

@@ -91,7 +91,7 @@ impl Explain {
     fn swapped(&self) -> Vec<Rival> {
         let best = &self.trials[self.best];
         let (own, held) = (best.ids(), self.held.len());
-        let values = best.scored.fit.values.len();
+        let values = best.values();
         let mut found: Vec<Rival> = Vec::new();
         for (index, trial) in self.trials.iter().enumerate() {
             let ids = trial.ids();
@@ -109,7 +109,7 @@ impl Explain {
             };
             let replaced = best.effects()[*place];
             let fair = !effect.has_part(replaced.id()) && !effect.limits().contains(&replaced.id());
-            if ids.len() == own.len() && fair && trial.scored.fit.values.len() <= values {
+            if ids.len() == own.len() && fair && trial.values() <= values {
                 let rival = Rival {
                     place: *place,
                     effect: *effect,
@@ -134,8 +134,7 @@ impl Explain {
     pub(super) fn judge_swaps(&mut self, session: &mut Session, screened: &Screened) {
         let rivals = self.swapped();
         let is_simpler = |r: &Rival| {
-            self.is_simpler(r.trial, self.best)
-                && self.difference(session, r.trial, self.best).is_same()
+            self.is_simpler(r.trial, self.best) && self.does_as_well(session, r.trial, self.best)
         };
         let better: Vec<usize> = rivals
             .iter()

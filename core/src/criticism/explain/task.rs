@@ -9,7 +9,7 @@ use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
 use crate::criticism::structure::Structure;
 use crate::effect::baseline::Baseline;
-use crate::effect::{Effect, EffectId, Range};
+use crate::effect::{Dimension, Effect, EffectId, ParameterSpec, Range};
 
 /// A model with values from which it may be fitted.
 #[derive(Clone)]
@@ -65,14 +65,39 @@ impl Sketch {
         sketch
     }
 
-    /// A fit with one more effect, from where that finds itself in what the fit leaves.
+    /// A fit with one more effect, from where that finds itself in what the fit leaves. A body that was hidden may have been
+    /// taken for a part of the other.
     pub fn sought(session: &Session, fit: &Fit, effect: &'static dyn Effect) -> Vec<Self> {
         let probed = session.probed(fit);
-        let own = probed.starts(effect, 1.0).into_iter();
-        let own = own.map(|own| Self::with(fit, effect, &own));
+        let own = probed.starts(effect, 1.0);
+        let hidden = effect
+            .parameters()
+            .iter()
+            .position(|p| p.dimension == Dimension::Inertia);
+        let parted = own.iter().filter_map(|own| {
+            let body = fit.values[0] - own[hidden?];
+            (body > 0.0).then(|| Self::with_body(fit, effect, [body, fit.values[1]], own))
+        });
+        let parted: Vec<Self> = parted.collect();
+        let own = own.iter().map(|own| Self::with(fit, effect, own));
         let with_body = probed.starts_with_body(effect, 1.0).into_iter();
-        own.chain(with_body.map(|(body, own)| Self::with_body(fit, effect, body, &own)))
+        own.chain(parted)
+            .chain(with_body.map(|(body, own)| Self::with_body(fit, effect, body, &own)))
             .collect()
+    }
+
+    /// A fit from other starting points, if it has values that the screen cannot tell: it may be in a valley of its own.
+    pub fn again(fit: &Fit) -> Option<Self> {
+        let mut values = fit.values.clone();
+        let effects = fit.structure.effects.iter().enumerate();
+        let open = effects.flat_map(|(k, e)| fit.structure.range(k).zip(e.parameters()));
+        let open: Vec<usize> = open
+            .filter(|(_, spec)| is_contact(spec))
+            .map(|(j, _)| j)
+            .collect();
+        open.iter().for_each(|j| values[*j] = 0.0);
+        let structure = fit.structure.clone();
+        (!open.is_empty()).then_some(Self { structure, values })
     }
 
     /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way.
@@ -82,7 +107,7 @@ impl Sketch {
                 let effect = self.structure.effects[k];
                 self.structure.range(k).zip(effect.parameters())
             })
-            .filter(|(j, spec)| spec.range == Range::Short && self.values[*j] == 0.0)
+            .filter(|(j, spec)| is_contact(spec) && self.values[*j] == 0.0)
             .map(|(j, _)| j)
             .collect();
         if open.is_empty() {
@@ -170,6 +195,11 @@ impl Sketch {
     }
 }
 
+/// Whether a value is the displacement over which a dry contact builds up its force.
+fn is_contact(spec: &ParameterSpec) -> bool {
+    matches!(spec.range, Range::Short | Range::Long)
+}
+
 /// A model to be fitted.
 #[derive(Clone)]
 pub(super) enum Task {
@@ -234,7 +264,7 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
             .chain(sought)
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
-        while heat.advance(session) {}
+        while heat.advance(session, 0.0) {}
         fit = heat.best(1, f64::INFINITY).pop()?.fitted(session);
     }
     let complete = |fit: &Fit| fit.structure.effects.len() == held.len();

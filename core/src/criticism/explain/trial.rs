@@ -41,12 +41,14 @@ impl Trial {
             scored.score.held_blocks.iter(),
             other.score.held_blocks.iter(),
         ];
-        let blocks = session.data.blocks.iter();
-        let held = blocks.map(|block| {
-            halves[usize::from(!block.held_back)]
-                .next()
-                .copied()
-                .unwrap_or(f64::INFINITY)
+        let held = session.data.blocks.iter().zip(&turned.blocks);
+        let held = held.filter_map(|(block, turned)| {
+            let half = match (block.held_back, turned.held_back) {
+                (true, _) => 0,
+                (false, true) => 1,
+                (false, false) => return None,
+            };
+            Some(halves[half].next().copied().unwrap_or(f64::INFINITY))
         });
         let held = held
             .map(|m| if m.is_finite() { m } else { f64::MAX.sqrt() })
@@ -76,6 +78,12 @@ impl Trial {
         } else {
             f64::INFINITY
         }
+    }
+
+    /// Number of values that its effects say something with: how a dry contact builds up its force is seen of few.
+    pub fn values(&self) -> usize {
+        let specs = self.effects().iter().flat_map(|e| e.parameters());
+        specs.filter(|spec| !spec.is_of_contact()).count()
     }
 
     pub fn effects(&self) -> &[&'static dyn Effect] {
