@@ -95,7 +95,9 @@ impl Sketch {
             .filter(|(_, spec)| is_contact(spec))
             .map(|(j, _)| j)
             .collect();
-        open.iter().for_each(|j| values[*j] = 0.0);
+        for j in &open {
+            values[*j] = 0.0;
+        }
         let structure = fit.structure.clone();
         (!open.is_empty()).then_some(Self { structure, values })
     }
