@@ -38,7 +38,7 @@ fn fault(text: &str) -> Option<&'static str> {
         .any(|word| word.starts_with("u_") || word.starts_with("T_") || word.starts_with("c_"))
     {
         Some("a raw symbol")
-    } else if !unit.is_empty() && UNITS.iter().any(|unit| ends(&unit)) {
+    } else if !unit.is_empty() && UNITS.iter().any(ends) {
         Some("two units")
     } else {
         None

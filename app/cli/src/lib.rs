@@ -5,6 +5,7 @@
 
 mod arguments;
 mod batch;
+mod cycle_table;
 mod diagnose;
 mod gap;
 mod limit_cycle;

@@ -8,6 +8,7 @@ use hysteron_core::scenario::{AnyScenario, Scenario};
 use hysteron_core::tuning::{RelayGain, StabilityLimits, relay_gain, stability_limits};
 use serde_json::json;
 
+use crate::cycle_table::CycleTable;
 use crate::limit_cycle_drive::DriveReport;
 use crate::limit_cycle_on_off::OnOffReport;
 use crate::limit_cycle_servo::ServoReport;
@@ -167,7 +168,7 @@ fn text(report: &Report) -> String {
     let mut out = format!("{}\n\n", report.sentences());
     let describing: Vec<Cycle> = p.describing_function.iter().map(|i| i.cycle).collect();
     let exact: Vec<Cycle> = p.exact.iter().map(|c| c.cycle).collect();
-    let mut table = String::new();
+    let mut table = CycleTable::default();
     rows(&mut table, "describing function", &describing);
     rows(&mut table, "exact", &exact);
     rows(
@@ -178,50 +179,36 @@ fn text(report: &Report) -> String {
     if let Some(cycle) = report.long_run.cycle {
         row(&mut table, "simulated", &cycle);
     }
-    // Where nothing oscillates there is no table.
-    if !table.is_empty() {
-        let _ = writeln!(
-            out,
-            "{:<22} {:>16} {:>16}   stable\n{table}Amplitude: half of peak to peak.",
-            "", "period [s]", "amplitude"
-        );
-    }
+    out += &table.text().unwrap_or_default();
     let ultimate = report.ultimate.as_ref().map(|u| u.text.as_str());
     let limits = report.limits.text();
     let _ = writeln!(out, "{}", ultimate.unwrap_or(limits.trim_start()));
     out
 }
 
-fn row(out: &mut String, name: &str, cycle: &Cycle) {
-    let stable = cycle
-        .stable
-        .map_or("not known", |s| if s { "yes" } else { "no" });
-    let (period, amplitude) = (cycle.period, cycle.amplitude);
-    let _ = writeln!(
-        out,
-        "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
-    );
+fn row(table: &mut CycleTable, name: &str, cycle: &Cycle) {
+    table.row(name, cycle.period, cycle.amplitude, cycle.stable);
 }
 
 /// All cycles of a kind, but for a long family of unstable ones, of which the longest and the shortest stand for all.
-fn rows(out: &mut String, name: &str, cycles: &[Cycle]) {
+fn rows(table: &mut CycleTable, name: &str, cycles: &[Cycle]) {
     let mut sorted: Vec<&Cycle> = cycles.iter().collect();
     sorted.sort_by(|a, b| b.period.total_cmp(&a.period));
     let (family, single): (Vec<&Cycle>, Vec<&Cycle>) =
         sorted.into_iter().partition(|c| c.stable == Some(false));
     for cycle in single {
-        row(out, name, cycle);
+        row(table, name, cycle);
     }
     let (listed, folded) = family.split_at(family.len().min(LISTED));
     for cycle in listed {
-        row(out, name, cycle);
+        row(table, name, cycle);
     }
     if let Some(last) = folded.last() {
-        let _ = writeln!(
-            out,
-            "{name:<22} {} more of this family down to a period of {:.9} s: all unstable",
+        let words = format!(
+            "{} more of this family down to a period of {:.9} s: all unstable",
             folded.len(),
             last.period
         );
+        table.words(name, &words);
     }
 }

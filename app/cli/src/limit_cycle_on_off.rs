@@ -7,6 +7,7 @@ use hysteron_core::on_off::{
 };
 use serde_json::{Value, json};
 
+use crate::cycle_table::CycleTable;
 use crate::output::off_by;
 
 /// Version of the JSON object.
@@ -88,14 +89,9 @@ impl OnOffReport {
 
     pub fn text(&self) -> String {
         let mut out = format!("{}\n", self.sentences());
-        let mut table = String::new();
+        let mut table = CycleTable::default();
         for b in self.describing_function.iter().flatten() {
-            row(
-                &mut table,
-                "describing function",
-                (b.period, b.amplitude),
-                b.stable,
-            );
+            table.row("describing function", b.period, b.amplitude, b.stable);
         }
         let found = [
             ("exact", &self.settled.exact),
@@ -103,15 +99,11 @@ impl OnOffReport {
         ];
         for (name, cycle) in found {
             if let Some(c) = cycle {
-                row(&mut table, name, (c.period, c.amplitude), c.stable);
+                table.row(name, c.period, c.amplitude, c.stable);
             }
         }
-        if !table.is_empty() {
-            let _ = writeln!(
-                out,
-                "\n{:<22} {:>16} {:>16}   stable\n{table}Amplitude: half of peak to peak.",
-                "", "period [s]", "amplitude"
-            );
+        if let Some(table) = table.text() {
+            let _ = write!(out, "\n{table}");
         }
         let shown = self
             .settled
@@ -127,14 +119,6 @@ impl OnOffReport {
         }
         out
     }
-}
-
-fn row(out: &mut String, name: &str, (period, amplitude): (f64, f64), stable: Option<bool>) {
-    let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
-    let _ = writeln!(
-        out,
-        "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
-    );
 }
 
 fn cycle(cycle: &OnOffCycle) -> Value {

@@ -7,6 +7,7 @@ use hysteron_core::hunting::{
 };
 use serde_json::{Value, json};
 
+use crate::cycle_table::CycleTable;
 use crate::output::off_by;
 
 /// Version of the JSON object.
@@ -73,33 +74,22 @@ impl ServoReport {
 
     pub fn text(&self) -> String {
         let mut out = format!("{}\n", self.sentences());
-        let mut rows: Vec<(&str, f64, f64, Option<bool>)> = Vec::new();
+        let mut table = CycleTable::default();
         for b in &self.describing_function {
-            rows.push(("describing function", b.period, b.amplitude, b.stable));
+            table.row("describing function", b.period, b.amplitude, b.stable);
         }
         let found = [
             ("exact", &self.settled.exact),
             ("simulated", &self.settled.simulated),
         ];
         for (name, cycle) in found {
-            rows.extend(cycle.map(|c| (name, c.period, c.amplitude, c.stable)));
+            if let Some(c) = cycle {
+                table.row(name, c.period, c.amplitude, c.stable);
+            }
         }
-        if rows.is_empty() {
-            return out;
+        if let Some(table) = table.text() {
+            let _ = write!(out, "\n{table}");
         }
-        let _ = writeln!(
-            out,
-            "\n{:<22} {:>16} {:>16}   stable",
-            "", "period [s]", "amplitude"
-        );
-        for (name, period, amplitude, stable) in rows {
-            let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
-            let _ = writeln!(
-                out,
-                "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
-            );
-        }
-        let _ = writeln!(out, "Amplitude: half of peak to peak.");
         out
     }
 }

@@ -229,10 +229,13 @@ impl Data {
     /// always fitted: without it the state in which the window begins is not told.
     pub fn turned(&self) -> Self {
         let mut turned = self.clone();
-        for block in &mut turned.blocks {
-            let is_window = block.to - block.from == self.window_length(block.window);
-            let begins = block.from == self.windows[block.window];
-            block.held_back = !block.held_back && (is_window || !begins);
+        for (k, block) in turned.blocks.iter_mut().enumerate() {
+            let goes_on = self
+                .blocks
+                .get(k + 1)
+                .is_some_and(|next| next.window == block.window);
+            let begins = goes_on && block.from == self.windows[block.window];
+            block.held_back = !block.held_back && !begins;
         }
         turned
     }
@@ -264,12 +267,6 @@ impl Data {
     /// Samples that are used.
     pub fn used(&self) -> usize {
         self.blocks.iter().map(|b| b.to - b.from).sum()
-    }
-
-    /// Samples that are used of a window.
-    fn window_length(&self, window: usize) -> usize {
-        let own = self.blocks.iter().filter(|b| b.window == window);
-        own.map(|b| b.to - b.from).sum()
     }
 
     /// First sample and end of each window.

@@ -126,7 +126,9 @@ impl Range {
             Self::Signed => (value.is_finite(), "finite"),
             Self::NonNegative => (value >= 0.0, "at least 0"),
             Self::Fraction => ((-0.9..=0.9).contains(&value), "between -0.9 and 0.9"),
-            Self::UnitInterval => ((0.0..=1.0).contains(&value), "between 0 and 1"),
+            Self::UnitInterval | Self::OfContact => {
+                ((0.0..=1.0).contains(&value), "between 0 and 1")
+            }
             _ => (value > 0.0, "above 0"),
         };
         (!right).then_some(wanted)

@@ -4,34 +4,11 @@ use hysteron_core::diagnosis::{Candidate, StepReport};
 use hysteron_core::effect::{EffectId, name_of};
 
 use super::command::Command;
+use super::hints::{LEFT, PRICE};
 use super::look::Look;
 use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
-
-/// What a hint costs, of 100 points.
-pub(super) const PRICE: u32 = 10;
-
-/// Effects that are left to choose from after each hint of a step.
-const LEFT: [usize; 3] = [4, 2, 1];
-
-/// What is known of a round of guessing.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Guess {
-    /// Hints that were bought: for the models with so many effects.
-    bought: Vec<usize>,
-}
-
-impl Guess {
-    /// What hints have cost.
-    pub fn cost(&self) -> u32 {
-        PRICE * self.bought.len() as u32
-    }
-
-    fn hints(&self, effects: usize) -> usize {
-        self.bought.iter().filter(|n| **n == effects).count()
-    }
-}
 
 impl Compare {
     /// Whether what helps is still to be guessed.

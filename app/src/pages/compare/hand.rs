@@ -1,33 +1,14 @@
 //! Parameters that are set by hand: what is in view answers within the frame, the whole record when the slider is let go.
 
-use hysteron_core::by_hand::{ByHand, HandReplay};
-use hysteron_core::effect::EffectId;
+use hysteron_core::by_hand::ByHand;
 use hysteron_work::tasks::HandTask;
 
+use super::by_hand::Hand;
 use super::state::Compare;
 use crate::jobs::{Job, ended};
 
 /// Samples that are replayed within a frame, at most.
 const MOST: usize = 12_000;
-
-/// A model with values that someone sets.
-pub(super) struct Hand {
-    /// Effects of the step whose values they are.
-    effects: Vec<EffectId>,
-    /// In the order of its parameters.
-    pub values: Vec<f64>,
-    /// Whether a slider is held.
-    pub held: bool,
-    /// The model on the samples in view, from the first to before the last; none where it cannot be set by hand.
-    near: Option<(ByHand, (usize, usize))>,
-    /// What it says there, or of the whole record once that is there.
-    pub replay: Option<HandReplay>,
-    /// The samples that have it.
-    pub samples: (usize, usize),
-    /// Whether it is of the whole record, with states that suit the values.
-    pub exact: bool,
-    job: Option<Job<HandTask>>,
-}
 
 /// Where the plots over time note which samples are in view.
 fn seen_key() -> egui::Id {
@@ -108,12 +89,5 @@ impl Compare {
             }
             None => {}
         }
-    }
-}
-
-impl Hand {
-    /// Whether the whole record is being replayed.
-    pub fn is_busy(&self) -> bool {
-        self.job.is_some()
     }
 }

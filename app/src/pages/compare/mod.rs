@@ -4,6 +4,7 @@ mod answer;
 mod atlas;
 mod awaited;
 mod built_in;
+mod by_hand;
 mod choice;
 mod command;
 mod experiment;
@@ -14,6 +15,7 @@ mod formula;
 mod guess;
 mod hand;
 mod hint;
+mod hints;
 mod history;
 mod look;
 mod mapping;
@@ -305,7 +307,7 @@ impl Compare {
         serde_json::json!({
             "guessing": self.is_guessing(),
             "by_hand": self.hand_error().map(|(error, exact)| serde_json::json!({"error": error, "exact": exact})),
-            "busy": self.is_behind() || self.hand.as_ref().is_some_and(hand::Hand::is_busy) || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
+            "busy": self.is_behind() || self.hand.as_ref().is_some_and(by_hand::Hand::is_busy) || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
             "progress": self.progress.0,
             "mapping": self.form.as_ref().map(Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),

@@ -7,7 +7,7 @@ use hysteron_core::user_model::UserModel;
 
 use super::form::Form;
 use super::formula::Typed;
-use super::guess::Guess;
+use super::hints::Guess;
 use super::look::Look;
 use super::opening::Opening;
 use super::sealed::Sealed;

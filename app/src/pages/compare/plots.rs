@@ -9,7 +9,8 @@ use hysteron_core::diagnosis::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
 use hysteron_core::uncertain::titled;
 
-use super::hand::{Hand, note_seen};
+use super::by_hand::Hand;
+use super::hand::note_seen;
 use super::parts::Part;
 use super::state::Compare;
 use crate::language::tr;

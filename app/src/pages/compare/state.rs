@@ -11,10 +11,10 @@ use hysteron_core::user_model::UserModel;
 use hysteron_work::reading::Reading;
 use hysteron_work::tasks::{ExperimentTask, Source};
 
+use super::by_hand::Hand;
 use super::form::Form;
 use super::formula::Typed;
-use super::guess::Guess;
-use super::hand::Hand;
+use super::hints::Guess;
 use super::look::Look;
 use super::opening::Opening;
 use super::parts::{Part, Parts};

@@ -9,7 +9,7 @@ use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
 use crate::criticism::structure::Structure;
 use crate::effect::baseline::Baseline;
-use crate::effect::{Dimension, Effect, EffectId, ParameterSpec, Range};
+use crate::effect::{Dimension, Effect, EffectId, Range};
 
 /// A model with values from which it may be fitted.
 #[derive(Clone)]
@@ -89,27 +89,18 @@ impl Sketch {
     /// A fit from other starting points, if it has values that the screen cannot tell: it may be in a valley of its own.
     pub fn again(fit: &Fit) -> Option<Self> {
         let mut values = fit.values.clone();
-        let effects = fit.structure.effects.iter().enumerate();
-        let open = effects.flat_map(|(k, e)| fit.structure.range(k).zip(e.parameters()));
-        let open: Vec<usize> = open
-            .filter(|(_, spec)| is_contact(spec))
-            .map(|(j, _)| j)
-            .collect();
-        open.iter().for_each(|j| values[*j] = 0.0);
+        let open = displacements(&fit.structure);
+        for j in &open {
+            values[*j] = 0.0;
+        }
         let structure = fit.structure.clone();
         (!open.is_empty()).then_some(Self { structure, values })
     }
 
     /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way.
     pub fn variants(self, session: &Session) -> Vec<Self> {
-        let open: Vec<usize> = (0..self.structure.effects.len())
-            .flat_map(|k| {
-                let effect = self.structure.effects[k];
-                self.structure.range(k).zip(effect.parameters())
-            })
-            .filter(|(j, spec)| is_contact(spec) && self.values[*j] == 0.0)
-            .map(|(j, _)| j)
-            .collect();
+        let mut open = displacements(&self.structure);
+        open.retain(|j| self.values[*j] == 0.0);
         if open.is_empty() {
             return vec![self];
         }
@@ -195,9 +186,12 @@ impl Sketch {
     }
 }
 
-/// Whether a value is the displacement over which a dry contact builds up its force.
-fn is_contact(spec: &ParameterSpec) -> bool {
-    matches!(spec.range, Range::Short | Range::Long)
+/// Places of the values of displacements over which dry contacts build up their force.
+fn displacements(structure: &Structure) -> Vec<usize> {
+    let effects = structure.effects.iter().enumerate();
+    let all = effects.flat_map(|(k, e)| structure.range(k).zip(e.parameters()));
+    let own = all.filter(|(_, spec)| matches!(spec.range, Range::Short | Range::Long));
+    own.map(|(j, _)| j).collect()
 }
 
 /// A model to be fitted.

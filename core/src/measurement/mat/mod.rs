@@ -16,6 +16,7 @@ use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_zlib_with_limit};
 use super::error::Problem;
 use super::series::Series;
 use array::Found;
+#[cfg(not(target_arch = "wasm32"))]
 pub(super) use array::{DEEPEST, columns};
 use element::{COMPRESSED, Element, MATRIX, Reader, TAG, damaged};
 use objects::Subsystem;

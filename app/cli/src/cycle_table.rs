@@ -1,0 +1,37 @@
+//! The table of cycles in which `hysteron limit-cycle` shows what was predicted and what was simulated.
+
+use std::fmt::Write as _;
+
+/// Cycles by name, with period, amplitude and whether they are stable.
+#[derive(Default)]
+pub struct CycleTable {
+    rows: String,
+}
+
+impl CycleTable {
+    /// Adds a cycle; `stable` is `None` where that is not known.
+    pub fn row(&mut self, name: &str, period: f64, amplitude: f64, stable: Option<bool>) {
+        let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
+        let _ = writeln!(
+            self.rows,
+            "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
+        );
+    }
+
+    /// Adds a line of words on cycles of this name.
+    pub fn words(&mut self, name: &str, words: &str) {
+        let _ = writeln!(self.rows, "{name:<22} {words}");
+    }
+
+    /// The table with its head; `None` where nothing oscillates.
+    pub fn text(&self) -> Option<String> {
+        let head = || {
+            format!(
+                "{:<22} {:>16} {:>16}   stable",
+                "", "period [s]", "amplitude"
+            )
+        };
+        let rows = &self.rows;
+        (!rows.is_empty()).then(|| format!("{}\n{rows}Amplitude: half of peak to peak.\n", head()))
+    }
+}
