@@ -73,6 +73,11 @@ impl Effect for StribeckFriction {
         ]
     }
 
+    /// Friction may be all in what it takes to start.
+    fn telling(&self) -> usize {
+        2
+    }
+
     fn contains(&self) -> &'static [EffectId] {
         &[coulomb_friction::ID, presliding_friction::ID]
     }

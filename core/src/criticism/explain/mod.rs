@@ -16,7 +16,7 @@ use super::screen::{Screened, Start};
 use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, outweighs};
 use super::session::{Session, small_share};
 use crate::diagnosis::InputVerdict;
-use crate::effect::{Dimension, Effect, EffectId};
+use crate::effect::{Dimension, Effect, EffectId, Range};
 use heat::Heat;
 pub(super) use judge::{Difference, difference};
 use swap::Rival;
@@ -158,10 +158,20 @@ impl Explain {
             let beside = screened.values(&ids, effect.id());
             let alone = screened.values(&[], effect.id());
             let own: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
-            if own.is_empty() || hidden {
+            // What repeats along the way has a valley at every period.
+            let repeats = effect
+                .parameters()
+                .iter()
+                .any(|p| p.range == Range::Repeating);
+            if own.is_empty() || hidden || repeats {
                 sketches.extend(Sketch::sought(session, fit, effect));
             }
             sketches.extend(own.iter().map(|own| Sketch::with(fit, effect, own)));
+        }
+        // What is missing may have bent the body out of all likeness.
+        if let Some(body) = Sketch::other_body(session, fit) {
+            let again: Vec<Sketch> = sketches.iter().map(|s| s.with_other_body(&body)).collect();
+            sketches.extend(again);
         }
         self.take(session, sketches);
     }
@@ -324,7 +334,10 @@ impl Explain {
         // A smaller one may have come up as a part of one that was looked at.
         let open =
             |t: &usize| self.size(*t) <= size && !self.looked_at.contains(t) && self.holds(*t);
-        let better = |t: &usize| self.difference(session, self.best, *t).is_better();
+        let better = |t: &usize| {
+            self.difference(session, self.best, *t).is_better()
+                || self.explains(session, self.best, *t)
+        };
         let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self
             .lead(session, &better)
@@ -382,13 +395,14 @@ impl Explain {
         own < other || own == other && self.has_part_of(a, b)
     }
 
-    /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect must that is
-    /// added.
+    /// Whether a simpler model does as well as another. What a whole has beside its part must be shown by enough blocks, and be
+    /// worth it as an effect must that is added; where the part leaves noise, it is not.
     fn does_as_well(&self, session: &Session, simpler: usize, other: usize) -> bool {
         let difference = self.difference(session, simpler, other);
         let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
-        let worth =
-            difference.is_better() && (self.is_noise(session, other) || outweighs(before, after));
+        let worth = difference.is_shown()
+            && !self.is_noise(session, simpler)
+            && (self.is_noise(session, other) || outweighs(before, after));
         difference.is_same() || self.has_part_of(simpler, other) && !worth
     }
 
@@ -425,6 +439,13 @@ impl Explain {
             .all(|place| self.needs(session, trial, place))
     }
 
+    /// Whether a model leaves noise where another one leaves more than that, however few blocks show it: what is met once is
+    /// explained all the same.
+    fn explains(&self, session: &Session, before: usize, after: usize) -> bool {
+        let outweighs = outweighs(self.trials[before].error(), self.trials[after].error());
+        outweighs && self.is_noise(session, after) && !self.is_noise(session, before)
+    }
+
     pub fn needs(&self, session: &Session, trial: usize, place: usize) -> bool {
         let Some(without) = self.without(trial, place) else {
             return true;
@@ -437,7 +458,7 @@ impl Explain {
         let matters = (before.powi(2) - after.powi(2)).max(0.0).sqrt() > SMALL_SHARE * first;
         let better = self.difference(session, without, trial).is_better();
         let of_record = session.tells_of_record(&self.trials[trial].scored.fit, place);
-        let explains = noise && outweighs && !self.is_noise(session, without);
+        let explains = self.explains(session, without, trial);
         let scored = &self.trials[trial].scored;
         let shown = scored.shows_marks_of(scored.fit.structure.effects[place], &session.scales);
         shown
@@ -486,9 +507,9 @@ impl Explain {
                 self.tasks.extend(sketch.map(Task::Fit));
             }
         }
-        // Of the model as it was given it is asked as well which of its effects are needed.
+        // Of the model as it was given it is asked as well which of its effects leave a trace.
         for place in 0..self.held.len() {
-            if self.size(self.best) == 0 && self.without(self.best, place).is_none() {
+            if self.without(self.best, place).is_none() {
                 self.tasks.push_back(Task::Without {
                     from: self.best,
                     place,

@@ -5,7 +5,7 @@ use super::tuning::{ALIKE, MOST_SWAPS};
 use super::{Explain, Stage, is_hidden_body};
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
-use crate::effect::Effect;
+use crate::effect::{Effect, ParameterSpec};
 
 /// An effect that could stand in the place of one in the best model.
 #[derive(Clone)]
@@ -16,7 +16,7 @@ pub(in crate::criticism) struct Rival {
     pub trial: usize,
 }
 
-/// Whether the values of two effects mean the same.
+/// Whether the values of two effects have the same dimensions.
 fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
     let dimensions = |e: &dyn Effect| {
         e.parameters()
@@ -25,6 +25,15 @@ fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
             .collect::<Vec<_>>()
     };
     dimensions(a) == dimensions(b)
+}
+
+/// The values of an effect that another one has too, if it has no others.
+fn carried(own: &dyn Effect, values: &[f64], other: &dyn Effect) -> Option<Vec<f64>> {
+    let same =
+        |a: &ParameterSpec, b: &ParameterSpec| a.symbol == b.symbol && a.dimension == b.dimension;
+    let specs = other.parameters().iter();
+    let places = specs.map(|spec| own.parameters().iter().position(|own| same(spec, own)));
+    places.map(|place| Some(values[place?])).collect()
 }
 
 impl Explain {
@@ -53,7 +62,7 @@ impl Explain {
         let rest = &self.trials[without];
         let (ids, own) = (rest.ids(), fit.structure.effects[place]);
         let own_values = &fit.values[fit.structure.range(place)];
-        let mut sketches = Vec::new();
+        let (mut sketches, mut same) = (Vec::new(), Vec::new());
         for effect in session
             .library()
             .filter(|e| self.is_open(without, *e) && e.id() != own.id())
@@ -68,6 +77,9 @@ impl Explain {
             if same_dimensions(own, effect) {
                 starts.push(own_values.to_vec());
             }
+            // What says the same with the same values needs no race.
+            let carried = carried(own, own_values, effect);
+            same.extend(carried.map(|values| Sketch::replacing(fit, place, effect, &values)));
             if starts.is_empty() {
                 let probed = session.probed(&rest.scored.fit);
                 starts = probed.starts(effect, 1.0);
@@ -85,6 +97,7 @@ impl Explain {
             );
         }
         self.take(session, sketches);
+        self.tasks.extend(same.into_iter().map(Task::Fit));
     }
 
     /// Trials that differ from the best in one effect that was added, with the place of that; no richer ones.

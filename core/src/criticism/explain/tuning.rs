@@ -12,6 +12,9 @@ pub(super) const FAR: [f64; 4] = [100.0, 20.0, 5.0, 3.0];
 /// Times its last fall by which the cost of a model may fall yet.
 pub(super) const HOPE: f64 = 3.0;
 
+/// Rounds like the last one for which a fit to the record goes on.
+pub(super) const ROUNDS_LEFT: i32 = 3;
+
 /// Models that are fitted to the whole record after that.
 pub(super) const FITTED: usize = 6;
 

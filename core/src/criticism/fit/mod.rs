@@ -215,7 +215,7 @@ impl Fit {
             self.information[(*j, *j)] += (1.0 - 1.0 / share) / (tolerance * tolerance);
         }
         if !lowered {
-            self.damping = RESTART_DAMPING;
+            self.damping = self.damping.min(RESTART_DAMPING);
             let before = self.cost;
             self.mend_odd_windows(data, scales);
             let found = self.cost < MENDED * before
