@@ -71,7 +71,7 @@ pub fn test() -> Result<(), String> {
     share(&session, &page, &after)?;
     offline(&session, &page)?;
     export::journey(&session, &folder.join("exports"), &page)?;
-    mystery::journey(&session, &page)?;
+    mystery::journey(&session, &page, &folder)?;
     dropped::journey(&session, &page)?;
     way_out::journey(&session, &page)?;
     phone::journey(&session, &folder, port)?;

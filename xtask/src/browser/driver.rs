@@ -158,7 +158,12 @@ impl Session {
 
     /// Turns the wheel at a place: down the page.
     pub fn scroll(&self, x: f64, y: f64) -> Result<(), String> {
-        let turn = json!({"type": "scroll", "x": x.round() as i64, "y": y.round() as i64, "deltaX": 0, "deltaY": 2000, "duration": 0});
+        self.wheel(x, y, 2000)
+    }
+
+    /// Turns the wheel at a place by so many points.
+    pub fn wheel(&self, x: f64, y: f64, points: i64) -> Result<(), String> {
+        let turn = json!({"type": "scroll", "x": x.round() as i64, "y": y.round() as i64, "deltaX": 0, "deltaY": points, "duration": 0});
         let actions = json!({"actions": [{"type": "wheel", "id": "wheel", "actions": [turn]}]});
         self.command("POST", "actions", &actions).map(|_| ())
     }

@@ -1,14 +1,15 @@
 //! A mystery is made, handed on as a link, diagnosed and revealed.
 
+use std::path::Path;
 use std::time::Duration;
 
 use super::driver::Session;
-use super::{click, wait};
+use super::{click, look, wait, wait_and};
 
 const WORD: &str = "blue whale";
 
 /// The whole way, teacher's and student's.
-pub fn journey(session: &Session, page: &str) -> Result<(), String> {
+pub fn journey(session: &Session, page: &str, folder: &Path) -> Result<(), String> {
     click(session, "page:mystery")?;
     click(session, "mystery:choose")?;
     click(session, "mystery:hide:input_delay")?;
@@ -33,6 +34,11 @@ pub fn journey(session: &Session, page: &str) -> Result<(), String> {
     if before.to_string().contains("whale") {
         return Err("the word is in the page".to_owned());
     }
+    if before["guessing"] != true {
+        return Err("a mystery tells at once what helps".to_owned());
+    }
+    look(session, &folder.join("mystery.png"))?;
+    reach(session, "add:input_delay", "guess")?;
     click(session, "add:input_delay")?;
     let after = wait(session, "the model with the input delay", |s| {
         s["busy"] == false && s["effects"].to_string().contains("input_delay")
@@ -52,6 +58,23 @@ pub fn journey(session: &Session, page: &str) -> Result<(), String> {
     if points < 90.0 {
         return Err(format!("the right effect has {points} points only"));
     }
+    Ok(())
+}
+
+/// Turns the wheel over one thing until another is seen.
+fn reach(session: &Session, target: &str, over: &str) -> Result<(), String> {
+    let state = wait(session, over, |s| s["targets"][over].is_array())?;
+    let place = |i: usize| state["targets"][over][i].as_f64().unwrap_or(0.0);
+    let seen = |s: &serde_json::Value| s["targets"][target].is_array();
+    // The page knows the pointer only once it moves.
+    session.hover(&[(place(0), place(1))])?;
+    // One step at a time, or the page goes past it.
+    let step = || {
+        session.wheel(place(0), place(1), 100)?;
+        std::thread::sleep(Duration::from_millis(400));
+        Ok(())
+    };
+    wait_and(session, target, seen, step)?;
     Ok(())
 }
 

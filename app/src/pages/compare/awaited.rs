@@ -25,9 +25,9 @@ pub struct Settings {
     /// What the plots show, and whether beside the step before.
     pub(super) look: Look,
     pub(super) before: bool,
-    /// Whether what helps most is hidden until it is found.
+    /// Whether what helps most is hidden until it is found; if nothing is said, it is in a mystery only.
     #[serde(default)]
-    pub(super) guess: bool,
+    pub(super) guess: Option<bool>,
     /// The effect whose fingerprint is shown, if someone chose one.
     pub(super) fingerprint: Option<String>,
 }

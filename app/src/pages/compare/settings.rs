@@ -38,7 +38,7 @@ impl Settable for Compare {
             finding: self.finding,
             look: self.look,
             before: self.before,
-            guess: self.guess_first,
+            guess: (self.guess_first != self.sealed.is_some()).then_some(self.guess_first),
             fingerprint: self.fingerprint.map(|e| e.to_string()),
         }
     }
@@ -192,6 +192,6 @@ impl Compare {
             look => look,
         };
         self.before = settings.before;
-        self.guess_first = settings.guess;
+        self.guess_first = settings.guess.unwrap_or(self.sealed.is_some());
     }
 }
