@@ -26,6 +26,7 @@ mod import_mat;
 mod limit_cycles;
 mod lost_rows;
 
+mod explained;
 mod measured_tuning;
 mod missing_force;
 mod mystery;
@@ -43,7 +44,6 @@ mod report;
 mod rests;
 mod scenario_text;
 mod screen;
-mod explained;
 mod sensors;
 mod simulation;
 mod slow_and_short;

@@ -39,6 +39,20 @@ pub(super) fn overruled(session: &Session, model: &Scored) -> Vec<Overruled> {
         .collect()
 }
 
+/// A model whose known values are free.
+pub(super) fn released(session: &Session, model: &Trial) -> Trial {
+    let own = &model.scored.fit;
+    let mut structure = own.structure.clone();
+    structure.knowledge = structure.knowledge.released();
+    let (values, starts) = (own.values.clone(), own.starts.clone());
+    let mut fit = Fit::new(&session.data, structure, values, starts, &session.scales);
+    for _ in 0..RELEASED_ITERATIONS {
+        fit.iterate(&session.data, &session.scales);
+    }
+    fit.polish_starts(&session.data, &session.scales);
+    Trial::new(session, fit)
+}
+
 /// Known values that the data contradict: with all of them released the model is better, and these end elsewhere; or nothing
 /// but noise is left since the data were too strong for them.
 pub(super) fn contradictions(session: &Session, model: &Trial) -> Vec<Contradiction> {
@@ -47,15 +61,7 @@ pub(super) fn contradictions(session: &Session, model: &Trial) -> Vec<Contradict
     if held.knowledge.is_free() {
         return Vec::new();
     }
-    let mut structure = held.clone();
-    structure.knowledge = held.knowledge.released();
-    let (values, starts) = (own.fit.values.clone(), own.fit.starts.clone());
-    let mut fit = Fit::new(&session.data, structure, values, starts, &session.scales);
-    for _ in 0..RELEASED_ITERATIONS {
-        fit.iterate(&session.data, &session.scales);
-    }
-    fit.polish_starts(&session.data, &session.scales);
-    let released = Trial::new(session, fit);
+    let released = released(session, model);
     let released = if difference(model, &released, session.motion_square).is_better() {
         &released.scored
     } else if is_plain_noise(&own.score) {

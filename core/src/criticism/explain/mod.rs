@@ -12,6 +12,7 @@ mod tuning;
 
 use std::collections::VecDeque;
 
+use super::contradicted::released;
 use super::screen::{Screened, Start};
 use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, outweighs};
 use super::session::{Session, small_share};
@@ -235,7 +236,10 @@ impl Explain {
     }
 
     fn is_noise(&self, session: &Session, trial: usize) -> bool {
-        let trial = &self.trials[trial];
+        Self::leaves_noise(session, &self.trials[trial])
+    }
+
+    fn leaves_noise(session: &Session, trial: &Trial) -> bool {
         let small = small_share(&trial.scored.fit);
         trial.halves().all(|scored| {
             let score = &scored.score;
@@ -253,7 +257,7 @@ impl Explain {
             session.input_check.verdict,
             InputVerdict::Sign | InputVerdict::ClosedLoop
         );
-        if other || self.is_noise(session, self.best) {
+        if other || self.is_noise(session, self.best) || self.knows_wrongly(session) {
             self.open_swaps(session, screened);
             return;
         }
@@ -301,6 +305,14 @@ impl Explain {
         if let Some(from) = with_hidden.filter(|_| hidden) {
             self.extend(session, screened, from, false);
         }
+    }
+
+    /// Whether the model that effects are added to leaves noise as soon as it gives up what the user knows of it.
+    fn knows_wrongly(&self, session: &Session) -> bool {
+        if self.best != 0 || session.knowledge.is_free() {
+            return false;
+        }
+        Self::leaves_noise(session, &released(session, &self.trials[0]))
     }
 
     /// Whether an effect can be added to a trial.
@@ -490,9 +502,12 @@ impl Explain {
         order
     }
 
-    /// The trial of these effects.
+    /// The trial of these effects: the best model, or the one that leaves least.
     pub fn of(&self, ids: &[EffectId]) -> Option<usize> {
         let same = |t: &Trial| t.effects().len() == ids.len() && ids.iter().all(|id| t.has(*id));
+        if self.trials.get(self.best).is_some_and(same) {
+            return Some(self.best);
+        }
         let found = (0..self.trials.len()).filter(|t| same(&self.trials[*t]));
         found.min_by(|a, b| self.trials[*a].error().total_cmp(&self.trials[*b].error()))
     }

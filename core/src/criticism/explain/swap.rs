@@ -44,6 +44,7 @@ impl Explain {
         session.look_where_left(&best.scored.fit);
         let fit = best.scored.fit.clone();
         self.limit = ALIKE * session.scouted(&fit);
+        self.take(session, Sketch::again(&fit));
         for place in self.held.len()..fit.structure.effects.len() {
             let Some(without) = self.without(self.best, place) else {
                 self.tasks.push_back(Task::Without {
@@ -143,8 +144,25 @@ impl Explain {
         found
     }
 
+    /// The model with the effects of the best that leaves least: another start may have led further.
+    fn best_of_its_kind(&self, session: &Session) -> usize {
+        let best = &self.trials[self.best];
+        let same = |t: &usize| {
+            let other = &self.trials[*t];
+            other.effects().len() == best.effects().len()
+                && best.ids().iter().all(|id| other.has(*id))
+        };
+        let lower = |t: &usize| self.trials[*t].error() < best.error();
+        let all =
+            (0..self.trials.len()).filter(|t| same(t) && lower(t) && self.is_needed(session, *t));
+        let error = |t: &usize| self.trials[*t].error();
+        all.min_by(|a, b| error(a).total_cmp(&error(b)))
+            .unwrap_or(self.best)
+    }
+
     /// Takes what is better, or does as well with fewer values; else what is the same could stand in its place.
     pub(super) fn judge_swaps(&mut self, session: &mut Session, screened: &Screened) {
+        self.best = self.best_of_its_kind(session);
         let rivals = self.swapped();
         let is_simpler = |r: &Rival| {
             self.is_simpler(r.trial, self.best) && self.does_as_well(session, r.trial, self.best)
