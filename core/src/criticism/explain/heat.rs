@@ -117,21 +117,6 @@ impl Heat {
     /// The best of each of so many sets of effects, of those that cost no more than a limit, and a second of the first; and
     /// none is left.
     pub fn best(&mut self, count: usize, limit: f64) -> Vec<Sketch> {
-        if std::env::var("DG").is_ok() {
-            for r in &self.over {
-                eprintln!(
-                    "  heat {:?} {:.1} {:.1} limit {limit:.1} {:?}",
-                    r.1.structure
-                        .ids()
-                        .iter()
-                        .map(|i| i.to_string())
-                        .collect::<Vec<_>>(),
-                    r.0,
-                    r.1.cost,
-                    r.1.values
-                );
-            }
-        }
         let over = std::mem::take(self).over.into_iter();
         let mut sets: Vec<Vec<EffectId>> = Vec::new();
         let near = over

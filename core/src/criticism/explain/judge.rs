@@ -78,12 +78,7 @@ impl Difference {
 
     /// Whether the second model is better.
     pub fn is_better(&self) -> bool {
-        self.least_fall > GREAT_FALL || self.is_shown()
-    }
-
-    /// Whether so many blocks say so that it is not chance.
-    pub fn is_shown(&self) -> bool {
-        self.fall > LEAST_FALL && self.is_certain(self.t)
+        self.least_fall > GREAT_FALL || self.fall > LEAST_FALL && self.is_certain(self.t)
     }
 
     /// Whether neither is better.

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 
 use super::contradicted::released;
 use super::screen::{Screened, Start};
-use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, outweighs};
+use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, is_trifle, outweighs};
 use super::session::{Session, small_share};
 use crate::diagnosis::InputVerdict;
 use crate::effect::{Dimension, Effect, EffectId, Range};
@@ -407,12 +407,15 @@ impl Explain {
         own < other || own == other && self.has_part_of(a, b)
     }
 
-    /// Whether a simpler model does as well as another. What a whole has beside its part must be shown by enough blocks, and be
-    /// worth it as an effect must that is added; where the part leaves noise, it is not.
+    /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect must that is
+    /// added; where the part leaves noise, or a trifle of what there was at first, it is not.
     fn does_as_well(&self, session: &Session, simpler: usize, other: usize) -> bool {
         let difference = self.difference(session, simpler, other);
         let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
-        let worth = difference.is_shown()
+        let scored = &self.trials[simpler].scored;
+        let trifle = is_trifle(before, session.first(scored), small_share(&scored.fit));
+        let worth = difference.is_better()
+            && !trifle
             && !self.is_noise(session, simpler)
             && (self.is_noise(session, other) || outweighs(before, after));
         difference.is_same() || self.has_part_of(simpler, other) && !worth

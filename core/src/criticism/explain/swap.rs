@@ -57,7 +57,7 @@ impl Explain {
         }
     }
 
-    /// Has other effects raced in the place of one of the best model: what can stand there speaks of the same body.
+    /// Has other effects raced in the place of one of the best model.
     fn replace(&mut self, session: &Session, screened: &Screened, place: usize, without: usize) {
         let fit = &self.trials[self.best].scored.fit;
         let rest = &self.trials[without];
@@ -186,11 +186,7 @@ impl Explain {
             self.open_swaps(session, screened);
             return;
         }
-        let same = |r: &Rival| {
-            let own = &self.trials[self.best];
-            self.difference(session, self.best, r.trial).is_same()
-                && own.same_body(&self.trials[r.trial])
-        };
+        let same = |r: &Rival| self.difference(session, self.best, r.trial).is_same();
         self.rivals = rivals.into_iter().filter(same).collect();
         if session.settle_baseline(&self.trials[self.best].scored) {
             *self = Self::new(std::mem::take(&mut self.held));
