@@ -6,7 +6,7 @@
 
 use super::Trial;
 use super::tuning::{
-    ALIKE_IN_BLOCKS, DISCREPANCY, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, UNCHANGED,
+    ALIKE_IN_BLOCKS, DISCREPANCY, FEW_BLOCKS, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, UNCHANGED,
 };
 
 /// How a model differs from another one.
@@ -73,12 +73,17 @@ fn student(normal: f64, freedom: f64) -> f64 {
 
 impl Difference {
     fn is_certain(&self, t: f64) -> bool {
-        self.blocks > 2 && t > student(QUANTILE, self.blocks as f64 - 1.0)
+        self.blocks > FEW_BLOCKS && t > student(QUANTILE, self.blocks as f64 - 1.0)
     }
 
     /// Whether the second model is better.
     pub fn is_better(&self) -> bool {
         self.least_fall > GREAT_FALL || self.fall > LEAST_FALL && self.is_certain(self.t)
+    }
+
+    /// Whether they differ in too few blocks to count: what a limit does may be met once.
+    pub fn is_met_once(&self) -> bool {
+        self.blocks <= FEW_BLOCKS
     }
 
     /// Whether neither is better.

@@ -47,9 +47,18 @@ enum Stage {
 struct Level {
     /// Number of effects that are added.
     size: usize,
-    /// One of them brings a hidden body. Their fits are the longest by far, and the freest: they come last, where everything
-    /// that acts on the body that is measured leaves more than noise.
+    /// One of them brings a hidden body. Their fits are the longest by far, and the freest: of each size they come last, where
+    /// everything that acts on the body that is measured leaves more than noise.
     hidden: bool,
+}
+
+impl Level {
+    fn next(self) -> Self {
+        Self {
+            size: self.size + usize::from(self.hidden),
+            hidden: !self.hidden,
+        }
+    }
 }
 
 /// Whether an effect brings a second body, whose motion is not measured.
@@ -75,7 +84,8 @@ pub(super) struct Explain {
     /// Leads of the present size that were looked at.
     looked_at: Vec<usize>,
     pub best: usize,
-    misses: usize,
+    /// Sizes in a row that brought nothing; and of those with a hidden body.
+    misses: [usize; 2],
     pub rivals: Vec<Rival>,
     swaps: usize,
     done: usize,
@@ -96,7 +106,7 @@ impl Explain {
             leads: [Vec::new(), Vec::new()],
             looked_at: Vec::new(),
             best: 0,
-            misses: 0,
+            misses: [0, 0],
             rivals: Vec::new(),
             swaps: 0,
             done: 0,
@@ -257,25 +267,23 @@ impl Explain {
             session.input_check.verdict,
             InputVerdict::Sign | InputVerdict::ClosedLoop
         );
-        if other || self.is_noise(session, self.best) || self.knows_wrongly(session) {
+        // A hidden body is free: what acts on the measured one, with an effect more, may do as well with fewer values.
+        let doubted =
+            !hidden && self.has_hidden_body(self.best) && size == self.size(self.best) + 1;
+        let explained =
+            self.is_noise(session, self.best) && !doubted || self.knows_wrongly(session);
+        let enough = size > 1 && session.data.tried_enough();
+        if other
+            || explained
+            || enough
+            || size > MOST_SIZE
+            || self.misses.iter().all(|m| *m > MOST_MISSES)
+        {
             self.open_swaps(session, screened);
             return;
         }
-        let enough = size > 1 && session.data.tried_enough();
-        if size > MOST_SIZE || enough || self.misses > MOST_MISSES {
-            if hidden {
-                self.open_swaps(session, screened);
-            } else {
-                self.misses = 0;
-                self.open_level(
-                    session,
-                    screened,
-                    Level {
-                        size: 1,
-                        hidden: true,
-                    },
-                );
-            }
+        if self.misses[usize::from(hidden)] > MOST_MISSES {
+            self.open_level(session, screened, level.next());
             return;
         }
         let lead = |hidden: bool| {
@@ -334,6 +342,11 @@ impl Explain {
             && added.any(|e| is_hidden_body(*e)) == level.hidden
     }
 
+    fn has_hidden_body(&self, trial: usize) -> bool {
+        let mut effects = self.trials[trial].effects().iter();
+        effects.any(|e| is_hidden_body(*e))
+    }
+
     fn judge_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let Level { size, hidden } = level;
         if self.looked_at.is_empty() {
@@ -347,8 +360,10 @@ impl Explain {
         let open =
             |t: &usize| self.size(*t) <= size && !self.looked_at.contains(t) && self.holds(*t);
         let better = |t: &usize| {
-            self.difference(session, self.best, *t).is_better()
-                || self.explains(session, self.best, *t)
+            let difference = self.difference(session, self.best, *t);
+            difference.is_better()
+                || difference.is_met_once() && self.explains(session, self.best, *t)
+                || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best)
         };
         let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self
@@ -356,15 +371,9 @@ impl Explain {
             .filter(|_| self.looked_at.len() < MOST_LEADS);
         let Some(lead) = lead else {
             let taken = self.looked_at.contains(&self.best);
-            self.misses = if taken { 0 } else { self.misses + 1 };
-            self.open_level(
-                session,
-                screened,
-                Level {
-                    size: size + 1,
-                    hidden,
-                },
-            );
+            let misses = &mut self.misses[usize::from(hidden)];
+            *misses = if taken { 0 } else { *misses + 1 };
+            self.open_level(session, screened, level.next());
             return;
         };
         self.looked_at.push(lead);

@@ -186,8 +186,25 @@ impl Explain {
             self.open_swaps(session, screened);
             return;
         }
-        let same = |r: &Rival| self.difference(session, self.best, r.trial).is_same();
-        self.rivals = rivals.into_iter().filter(same).collect();
+        let mut alike: Vec<usize> = vec![self.best];
+        let same = |r: &&Rival| self.difference(session, self.best, r.trial).is_same();
+        alike.extend(rivals.iter().filter(same).map(|r| r.trial));
+        let agree = |a: usize, b: usize| self.trials[a].same_body(&self.trials[b]);
+        // Of what does as well, the body on which most agree is the likeliest.
+        let agreeing = |a: usize| alike.iter().filter(|b| agree(a, **b)).count();
+        let most = alike.iter().copied().map(agreeing).max().unwrap_or(0);
+        if agreeing(self.best) < most && self.swaps < MOST_SWAPS {
+            self.swaps += 1;
+            let other = alike.iter().copied().find(|a| agreeing(*a) == most);
+            self.best = other.unwrap_or(self.best);
+            self.open_swaps(session, screened);
+            return;
+        }
+        let best = self.best;
+        self.rivals = rivals
+            .into_iter()
+            .filter(|r| alike.contains(&r.trial) && agree(best, r.trial))
+            .collect();
         if session.settle_baseline(&self.trials[self.best].scored) {
             *self = Self::new(std::mem::take(&mut self.held));
         } else {

@@ -1,6 +1,6 @@
 //! A model fitted to either half of the blocks of a record.
 
-use super::tuning::OTHER_HALF;
+use super::tuning::{OTHER_HALF, SAME_BODY};
 use crate::criticism::fit::Fit;
 use crate::criticism::score::score;
 use crate::criticism::session::{Scored, Session};
@@ -96,6 +96,15 @@ impl Trial {
 
     pub fn has(&self, id: EffectId) -> bool {
         self.effects().iter().any(|e| e.id() == id)
+    }
+
+    /// Whether two models agree on the body, which the user knows roughly.
+    pub fn same_body(&self, other: &Self) -> bool {
+        let essential = self.scored.fit.structure.baseline.essential();
+        let pairs = self.scored.fit.values.iter().zip(&other.scored.fit.values);
+        pairs
+            .take(essential)
+            .all(|(a, b)| (a - b).abs() <= SAME_BODY * a.abs())
     }
 }
 

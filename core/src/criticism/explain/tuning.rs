@@ -46,6 +46,9 @@ pub(super) const OTHER_HALF: usize = 8;
 /// more than by how much.
 pub(super) const DISCREPANCY: f64 = 0.01;
 
+/// Blocks of which no spread can be told.
+pub(super) const FEW_BLOCKS: usize = 2;
+
 /// Relative change of a block below which a step has changed nothing there.
 pub(super) const UNCHANGED: f64 = 0.02;
 
