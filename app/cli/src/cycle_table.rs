@@ -25,13 +25,10 @@ impl CycleTable {
 
     /// The table with its head; `None` where nothing oscillates.
     pub fn text(&self) -> Option<String> {
-        let head = || {
-            format!(
-                "{:<22} {:>16} {:>16}   stable",
-                "", "period [s]", "amplitude"
-            )
-        };
-        let rows = &self.rows;
-        (!rows.is_empty()).then(|| format!("{}\n{rows}Amplitude: half of peak to peak.\n", head()))
+        let (rows, [none, period, amplitude]) = (&self.rows, ["", "period [s]", "amplitude"]);
+        (!rows.is_empty()).then(|| {
+            let head = format!("{none:<22} {period:>16} {amplitude:>16}   stable");
+            format!("{head}\n{rows}Amplitude: half of peak to peak.\n")
+        })
     }
 }

@@ -156,12 +156,7 @@ impl Session {
         self.pointer(&actions)
     }
 
-    /// Turns the wheel at a place: down the page.
-    pub fn scroll(&self, x: f64, y: f64) -> Result<(), String> {
-        self.wheel(x, y, 2000)
-    }
-
-    /// Turns the wheel at a place by so many points.
+    /// Turns the wheel at a place: so many points down the page.
     pub fn wheel(&self, x: f64, y: f64, points: i64) -> Result<(), String> {
         let turn = json!({"type": "scroll", "x": x.round() as i64, "y": y.round() as i64, "deltaX": 0, "deltaY": points, "duration": 0});
         let actions = json!({"actions": [{"type": "wheel", "id": "wheel", "actions": [turn]}]});

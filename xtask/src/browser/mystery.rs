@@ -14,7 +14,7 @@ pub fn journey(session: &Session, page: &str, folder: &Path) -> Result<(), Strin
     click(session, "mystery:choose")?;
     click(session, "mystery:hide:input_delay")?;
     // The word stands below a long list.
-    session.scroll(300.0, 500.0)?;
+    session.wheel(300.0, 500.0, 2000)?;
     wait(session, "the end of the page", |s| {
         s["targets"]["mystery:make"].is_array()
     })?;
@@ -74,8 +74,7 @@ fn reach(session: &Session, target: &str, over: &str) -> Result<(), String> {
         std::thread::sleep(Duration::from_millis(400));
         Ok(())
     };
-    wait_and(session, target, seen, step)?;
-    Ok(())
+    wait_and(session, target, seen, step).map(|_| ())
 }
 
 /// Types the word where it belongs, once the page stands still and the keyboard is there.

@@ -27,8 +27,11 @@ pub(super) fn ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
+    // In a round of guessing the question comes first.
+    let guessing = page.is_guessing();
     egui::CollapsingHeader::new(tr("Parameters of the model"))
-        .default_open(true)
+        .id_salt(("parameters", guessing))
+        .default_open(!guessing)
         .show(ui, |ui| {
             let fitted: Vec<f64> = report.step.parameters.iter().map(|p| p.value).collect();
             let hand = page.hand();

@@ -43,6 +43,9 @@ pub(super) fn findings_ui(
     ui.separator();
     waterfall::ui(page, ui, targets, commands);
     ui.separator();
+    if let Some(report) = page.report_in(Part::Parameters) {
+        parameters::ui(page, report, ui, targets, commands);
+    }
     if let Some(verdict) = &report.verdict {
         egui::Frame::group(ui.style()).show(ui, |ui| {
             ui.set_width(ui.available_width());
@@ -58,15 +61,12 @@ pub(super) fn findings_ui(
             experiment::ui(page, index, proposal, ui, targets, commands);
         }
     }
-    // The question first: what is missing. Below it, what can be set by hand.
-    if let Some(report) = page.report_in(Part::List) {
-        missing::ui(report, ui);
-        candidates_ui(page, report, ui, targets, commands);
-        own::ui(page, ui, targets, commands);
-    }
-    if let Some(report) = page.report_in(Part::Parameters) {
-        parameters::ui(page, report, ui, targets, commands);
-    }
+    let Some(report) = page.report_in(Part::List) else {
+        return;
+    };
+    missing::ui(report, ui);
+    candidates_ui(page, report, ui, targets, commands);
+    own::ui(page, ui, targets, commands);
 }
 
 pub(super) fn file_ui(

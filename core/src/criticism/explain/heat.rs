@@ -102,8 +102,7 @@ impl Heat {
         let far = FAR[self.round];
         self.over.retain(|entry| {
             let fit = &entry.1;
-            let mut ids = fit.structure.ids();
-            ids.sort_unstable();
+            let ids = sorted_ids(fit);
             let same = || kept.iter().filter(|(k, _)| *k == ids);
             let twin = same().any(|(_, values)| same_place(values, &fit.values));
             let stays = hoped(entry) <= alike.max(far * least) && same().count() < starts && !twin;
@@ -123,8 +122,7 @@ impl Heat {
             .filter(|entry| settled(entry) <= limit)
             .map(|(_, fit)| fit);
         let chosen = near.filter(|fit| {
-            let mut ids = fit.structure.ids();
-            ids.sort_unstable();
+            let ids = sorted_ids(fit);
             let known = sets.iter().filter(|set| **set == ids).count();
             let is_first = known == 0 || known == 1 && sets[0] == ids;
             if is_first {
@@ -134,4 +132,11 @@ impl Heat {
         });
         chosen.take(count).map(Sketch::reached).collect()
     }
+}
+
+/// The effects of a model in an order that does not hang on how it came about.
+fn sorted_ids(fit: &Fit) -> Vec<EffectId> {
+    let mut ids = fit.structure.ids();
+    ids.sort_unstable();
+    ids
 }

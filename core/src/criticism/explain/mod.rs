@@ -61,10 +61,15 @@ impl Level {
     }
 }
 
-/// Whether an effect brings a second body, whose motion is not measured.
-fn is_hidden_body(effect: &dyn Effect) -> bool {
+/// The place of the inertia of a second body, whose motion is not measured, among the values of an effect that brings one.
+fn hidden_inertia(effect: &dyn Effect) -> Option<usize> {
     let mut parameters = effect.parameters().iter();
-    parameters.any(|p| p.dimension == Dimension::Inertia)
+    parameters.position(|p| p.dimension == Dimension::Inertia)
+}
+
+/// Whether an effect brings a second body.
+fn is_hidden_body(effect: &dyn Effect) -> bool {
+    hidden_inertia(effect).is_some()
 }
 
 /// A search that goes on piece by piece.

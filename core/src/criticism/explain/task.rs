@@ -1,8 +1,8 @@
 //! One model to be fitted.
 
-use super::Trial;
 use super::heat::Heat;
 use super::tuning::{CROSSINGS, SAME_BODY, SETTLED, SETTLING};
+use super::{Trial, hidden_inertia};
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
 use crate::criticism::guess::guess;
@@ -10,7 +10,7 @@ use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
 use crate::criticism::structure::Structure;
 use crate::effect::baseline::Baseline;
-use crate::effect::{Dimension, Effect, EffectId, Range, Scales};
+use crate::effect::{Effect, EffectId, Range, Scales};
 use crate::model::Start as WindowStart;
 
 /// A model with values from which it may be fitted.
@@ -88,10 +88,7 @@ impl Sketch {
     pub fn sought(session: &Session, fit: &Fit, effect: &'static dyn Effect) -> Vec<Self> {
         let probed = session.probed(fit);
         let own = probed.starts(effect, 1.0);
-        let hidden = effect
-            .parameters()
-            .iter()
-            .position(|p| p.dimension == Dimension::Inertia);
+        let hidden = hidden_inertia(effect);
         let parted = own.iter().filter_map(|own| {
             let body = fit.values[0] - own[hidden?];
             (body > 0.0).then(|| Self::with_body(fit, effect, [body, fit.values[1]], own))
