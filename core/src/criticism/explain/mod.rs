@@ -432,7 +432,7 @@ impl Explain {
             && !trifle
             && !self.is_noise(session, simpler)
             && (self.is_noise(session, other) || outweighs(before, after));
-        difference.is_same() || self.has_part_of(simpler, other) && !worth
+        difference.is_no_better() || self.has_part_of(simpler, other) && !worth
     }
 
     /// The one that leaves least; of those that do as well, the one with fewest values.
