@@ -308,11 +308,11 @@ fn what_compare_shows_comes_back_in_another_window() {
         &mut here,
         "v1;compare;compare.file=drive-02;compare.look=fingerprint",
     );
-    assert_ne!(state(&here)["fingerprint"], "flattening_friction");
-    here.get_by_label_contains("Flattening friction 0")
+    assert_ne!(state(&here)["fingerprint"], "presliding_friction");
+    here.get_by_label_contains("Presliding friction 0")
         .click_accesskit();
     finish(&mut here);
-    comes_back(&here, &["compare.fingerprint=flattening_friction"]);
+    comes_back(&here, &["compare.fingerprint=presliding_friction"]);
 }
 
 /// Whether the link to what is here has these settings, and shows them in another window.

@@ -35,6 +35,8 @@ enum Stage {
     Fit(Level),
     /// Doing without each effect of the subset that leads.
     Check(Level),
+    /// Fitting the best without each effect that others are to replace.
+    TakeOut,
     /// Trying others in the place of each effect.
     Swap,
     /// Fitting the models on the way to the best.
@@ -192,7 +194,7 @@ impl Explain {
             Stage::Base => "Fitting the model".to_owned(),
             Stage::Fit(_) => self.tasks.front().map_or_else(String::new, Task::text),
             Stage::Check(_) => "Checking that every effect is needed".to_owned(),
-            Stage::Swap => "Checking what else could explain it".to_owned(),
+            Stage::TakeOut | Stage::Swap => "Checking what else could explain it".to_owned(),
             Stage::Path | Stage::Done => "Done".to_owned(),
         };
         let done = self.done as f64;
@@ -230,6 +232,7 @@ impl Explain {
             }
             Stage::Fit(level) => self.judge_level(session, screened, level),
             Stage::Check(level) => self.judge_check(session, screened, level),
+            Stage::TakeOut => self.swap(session, screened),
             Stage::Swap => self.judge_swaps(session, screened),
             Stage::Path => self.stage = Stage::Done,
             Stage::Done => {}

@@ -55,8 +55,21 @@ impl Explain {
         (from..effects.len()).filter(own).collect()
     }
 
-    /// Has other effects tried in the place of each that was added.
+    /// Has what is to be replaced taken out of the best model.
     pub(super) fn open_swaps(&mut self, session: &mut Session, screened: &Screened) {
+        self.stage = Stage::TakeOut;
+        let lacking = |place: &usize| self.without(self.best, *place).is_none();
+        let places = self.open_places(session).into_iter().filter(lacking);
+        let from = self.best;
+        let tasks: Vec<Task> = places.map(|place| Task::Without { from, place }).collect();
+        self.tasks.extend(tasks);
+        if self.tasks.is_empty() {
+            self.swap(session, screened);
+        }
+    }
+
+    /// Has other effects tried in the place of each that was added.
+    pub(super) fn swap(&mut self, session: &mut Session, screened: &Screened) {
         self.stage = Stage::Swap;
         let best = &self.trials[self.best];
         session.look_where_left(&best.scored.fit);
@@ -64,14 +77,9 @@ impl Explain {
         self.limit = ALIKE * session.scouted(&fit);
         self.take(session, Sketch::again(&fit));
         for place in self.open_places(session) {
-            let Some(without) = self.without(self.best, place) else {
-                self.tasks.push_back(Task::Without {
-                    from: self.best,
-                    place,
-                });
-                continue;
-            };
-            self.replace(session, screened, place, without);
+            if let Some(without) = self.without(self.best, place) {
+                self.replace(session, screened, place, without);
+            }
         }
     }
 
