@@ -302,7 +302,7 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
             .chain(sought)
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
-        while heat.advance(session, 0.0) {}
+        while heat.advance(session, 0.0, false) {}
         fit = heat.best(1, f64::INFINITY).pop()?.fitted(session);
     }
     let complete = |fit: &Fit| fit.structure.effects.len() == held.len();
