@@ -267,6 +267,11 @@ impl Data {
         self.outputs.iter().map(|o| o.telling(from, to)).sum()
     }
 
+    /// Whether each block begins anew: of a process that runs through, what is wrong in one goes on in the next.
+    pub fn has_blocks_apart(&self) -> bool {
+        self.blocks.len() == self.windows.len()
+    }
+
     /// Samples that are used.
     pub fn used(&self) -> usize {
         self.blocks.iter().map(|b| b.to - b.from).sum()

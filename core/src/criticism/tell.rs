@@ -202,7 +202,7 @@ fn needless(session: &Session, explain: &Explain, place: usize) -> Vec<EffectId>
 /// than it leaves.
 fn hint(session: &Session, model: &Trial, tried: &[(EffectId, &Trial)]) -> Option<(EffectId, f64)> {
     let best = tried.first()?;
-    let difference = between(model, best.1, session.motion_square);
+    let difference = between(session, model, best.1);
     (difference.least_fall > PROMISING)
         .then(|| (best.0, session.completed(&best.1.scored).score.error))
 }
@@ -228,7 +228,7 @@ fn candidates(
     let mut candidates: Vec<Candidate> = tried
         .iter()
         .map(|(id, trial)| {
-            let difference = between(model, trial, session.motion_square);
+            let difference = between(session, model, trial);
             let (after, values) = (&trial.scored.score, trial.scored.fit.values.len());
             let worse = trial.error() > model.error();
             let noise = !outweighs(after.error, 1.0);
@@ -253,7 +253,7 @@ fn candidates(
                     .iter()
                     .filter(|(other, t)| {
                         other != id
-                            && between(trial, t, session.motion_square).is_same()
+                            && between(session, trial, t).is_same()
                             && difference.is_better()
                     })
                     .map(|(other, _)| *other)

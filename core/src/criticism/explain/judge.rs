@@ -9,6 +9,7 @@ use super::tuning::{
     ALIKE_IN_BLOCKS, DISCREPANCY, FEW_BLOCKS, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, STEADY_FALL,
     UNCHANGED,
 };
+use crate::criticism::session::Session;
 
 /// How a model differs from another one.
 #[derive(Clone, Copy, Debug)]
@@ -21,15 +22,15 @@ pub(in crate::criticism) struct Difference {
     pub fall: f64,
     /// The same of the half where it is less.
     pub least_fall: f64,
-    /// The same without the block of each half that tells most of it.
+    /// The same without the block of each half that tells most of it, where blocks do not hang together.
     steady_fall: f64,
 }
 
-/// The difference from one trial to another, on a record with this mean square of the motion in units of its noise.
-pub(in crate::criticism) fn difference(from: &Trial, to: &Trial, motion_square: f64) -> Difference {
+/// The difference from one trial to another.
+pub(in crate::criticism) fn difference(session: &Session, from: &Trial, to: &Trial) -> Difference {
     let mean = |held: &[f64]| held.iter().sum::<f64>() / held.len().max(1) as f64;
     let usual = mean(&from.held).min(mean(&to.held));
-    let floor = usual.max(1.0) + DISCREPANCY * DISCREPANCY * motion_square;
+    let floor = usual.max(1.0) + DISCREPANCY * DISCREPANCY * session.motion_square;
     let pairs = from.held.iter().zip(&to.held);
     let changes: Vec<f64> = pairs
         .filter(|(a, b)| (*a - *b).abs() > UNCHANGED * a.max(**b))
@@ -66,7 +67,11 @@ pub(in crate::criticism) fn difference(from: &Trial, to: &Trial, motion_square: 
         blocks: changes.len(),
         fall: fall(from.error(), to.error()),
         least_fall: least.fold(f64::INFINITY, f64::min),
-        steady_fall: steady.fold(f64::INFINITY, f64::min),
+        steady_fall: if session.data.has_blocks_apart() {
+            steady.fold(f64::INFINITY, f64::min)
+        } else {
+            f64::NEG_INFINITY
+        },
     }
 }
 

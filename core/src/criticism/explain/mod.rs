@@ -468,7 +468,7 @@ impl Explain {
     }
 
     fn difference(&self, session: &Session, from: usize, to: usize) -> Difference {
-        difference(&self.trials[from], &self.trials[to], session.motion_square)
+        difference(session, &self.trials[from], &self.trials[to])
     }
 
     /// Whether each of the added effects explains more than it leaves, or is needed for what is left to be noise.
