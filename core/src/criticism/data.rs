@@ -44,7 +44,7 @@ const SEEN: f64 = 0.5;
 /// Pieces of motion for each sample after which no further model with a hidden body is tried, and none at all: where so many
 /// do not explain a record, more would not, and it would take minutes. (A gap with friction takes some fifteen thousand, three
 /// effects of which two show only together a hundred thousand.)
-const MOST_MOVES: [f64; 2] = [40_000.0, 200_000.0];
+const MOST_MOVES: [f64; 2] = [40_000.0, 150_000.0];
 
 /// A measurement made ready for fitting.
 #[derive(Clone, Debug)]

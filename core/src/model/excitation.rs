@@ -14,8 +14,6 @@ pub struct Excitation {
     pub(super) input: Vec<f64>,
     /// Input before the record starts.
     pub(super) before: f64,
-    /// Standard deviation of the input.
-    pub(super) swing: f64,
     /// Nothing moves at first, wherever it is.
     pub(super) at_rest: bool,
     /// Sampling time in s, if equal throughout.
@@ -65,7 +63,6 @@ impl Excitation {
             time: time.to_vec(),
             input: input.to_vec(),
             before,
-            swing: deviation(input),
             at_rest: false,
             step: uniform.then_some(mean),
             slow_sensor,
@@ -163,11 +160,4 @@ impl Excitation {
     pub(super) fn speed_after(&self, i: usize) -> f64 {
         (self.position[i + 1] - self.position[i]) / self.step_after(i)
     }
-}
-
-/// Standard deviation about the mean.
-fn deviation(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
 }

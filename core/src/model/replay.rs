@@ -19,8 +19,7 @@ pub struct Start {
     /// Velocity there, rad/s or m/s; the output of a process.
     pub velocity: f64,
     /// By how much the load is off where it is taken to be: its position, and what is then left of its velocity, in
-    /// standard deviations of what its contacts tell, or of a load that follows the noisy motion of the body. Of a process the
-    /// first is by how much what it stores before its output is off at first, in standard deviations of its input.
+    /// standard deviations of what its contacts tell, or of a load that follows the noisy motion of the body.
     pub load: [f64; 2],
 }
 
@@ -75,19 +74,7 @@ impl Excitation {
     /// Whether the load of `model` may be off where it is taken to be, by deviations that a [`Start`] tells.
     pub(crate) fn doubts_load_of(&self, model: &Model, begin: LoadBegin) -> bool {
         let felt = begin == LoadBegin::Felt && model.load.is_some();
-        felt || self.sees_load_of(model)
-            || self.doubt(model).is_some()
-            || self.doubt_of_stored(model) > 0.0
-    }
-
-    /// Standard deviation of what a process stores before its output at first: where it was not at rest, nobody knows what its
-    /// input was before.
-    fn doubt_of_stored(&self, model: &Model) -> f64 {
-        if model.load_before_lag && model.lag.is_some() && !self.at_rest {
-            self.swing
-        } else {
-            0.0
-        }
+        felt || self.sees_load_of(model) || self.doubt(model).is_some()
     }
 
     /// Standard deviations of position and velocity of a load that is never free, from the noise of what it follows.
@@ -250,10 +237,7 @@ impl Excitation {
     fn stored(&self, model: &Model, starts: &[Start], before: f64) -> f64 {
         match starts.first().filter(|_| model.load_before_lag) {
             Some(start) if self.at_rest => model.viscous * start.velocity,
-            Some(start) => {
-                before + model.early_load(0.0) + start.load[0] * self.doubt_of_stored(model)
-            }
-            None => before + model.early_load(0.0),
+            _ => before + model.early_load(0.0),
         }
     }
 

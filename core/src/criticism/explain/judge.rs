@@ -115,3 +115,29 @@ impl Difference {
             || (self.fall.abs() < ALIKE_IN_BLOCKS && !self.is_certain(self.t.abs()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_block_that_tells_most_is_left_out() {
+        let before = [9.0, 100.0, 9.0, 9.0];
+        let after = [8.0, 1.0, 10.0, 8.0];
+        assert_eq!(without_most(&before, &after), [27.0, 26.0]);
+        assert_eq!(without_most(&[], &[]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn what_explains_as_much_as_it_leaves_needs_no_count_of_blocks_but_by_more_than_one() {
+        let step = |steady_fall: f64| Difference {
+            t: 1.9,
+            blocks: 20,
+            fall: 0.45,
+            least_fall: 0.4,
+            steady_fall,
+        };
+        assert!(step(0.3).is_better());
+        assert!(!step(0.1).is_better());
+    }
+}
