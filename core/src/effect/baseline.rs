@@ -225,6 +225,11 @@ impl Baseline {
         }
     }
 
+    /// What the ambient of a process becomes where that integrates: an effect that lets its output drift.
+    pub fn drift() -> EffectId {
+        LOAD
+    }
+
     /// Whether a record of this length, s, does not tell a lag with these values and standard errors from an integrator.
     pub fn may_integrate(self, values: &[f64], errors: &[f64], duration: f64) -> bool {
         let Self::Lag { .. } = self else {

@@ -109,6 +109,11 @@ impl Difference {
         self.blocks <= FEW_BLOCKS
     }
 
+    /// Whether the second does not do better than the first.
+    pub fn is_no_better(&self) -> bool {
+        self.fall < 0.0 || self.is_same()
+    }
+
     /// Whether neither is better.
     pub fn is_same(&self) -> bool {
         self.fall.abs() < SAME

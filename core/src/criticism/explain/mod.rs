@@ -17,10 +17,11 @@ use super::screen::{Screened, Start};
 use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, is_trifle, outweighs};
 use super::session::{Session, small_share};
 use crate::diagnosis::InputVerdict;
-use crate::effect::{Dimension, Effect, EffectId, Range};
+use crate::effect::{Dimension, Effect, EffectId};
 use heat::Heat;
 pub(super) use judge::{Difference, difference};
 use swap::Rival;
+pub(super) use swap::may_replace;
 use task::{Sketch, Task};
 pub(super) use trial::Trial;
 use tuning::{ALIKE, FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
@@ -34,6 +35,8 @@ enum Stage {
     Fit(Level),
     /// Doing without each effect of the subset that leads.
     Check(Level),
+    /// Fitting the best without each effect that others are to replace.
+    TakeOut,
     /// Trying others in the place of each effect.
     Swap,
     /// Fitting the models on the way to the best.
@@ -180,24 +183,9 @@ impl Explain {
             .library()
             .filter(|e| is_hidden_body(*e) == hidden && self.is_open(from, *e))
         {
-            let beside = screened.values(&ids, effect.id());
-            let alone = screened.values(&[], effect.id());
-            let own: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
-            // What repeats along the way has a valley at every period.
-            let repeats = effect
-                .parameters()
-                .iter()
-                .any(|p| p.range == Range::Repeating);
-            if own.is_empty() || hidden || repeats {
-                sketches.extend(Sketch::sought(session, fit, effect));
-            }
-            sketches.extend(own.iter().map(|own| Sketch::with(fit, effect, own)));
+            sketches.extend(Sketch::beside(session, screened, fit, effect));
         }
-        // What is missing may have bent the body out of all likeness.
-        if let Some(body) = Sketch::other_body(session, fit) {
-            let again: Vec<Sketch> = sketches.iter().map(|s| s.with_other_body(&body)).collect();
-            sketches.extend(again);
-        }
+        Sketch::with_other_bodies(&mut sketches, session, fit);
         self.take(session, sketches);
     }
 
@@ -215,7 +203,7 @@ impl Explain {
             Stage::Base => "Fitting the model".to_owned(),
             Stage::Fit(_) => self.tasks.front().map_or_else(String::new, Task::text),
             Stage::Check(_) => "Checking that every effect is needed".to_owned(),
-            Stage::Swap => "Checking what else could explain it".to_owned(),
+            Stage::TakeOut | Stage::Swap => "Checking what else could explain it".to_owned(),
             Stage::Path | Stage::Done => "Done".to_owned(),
         };
         let done = self.done as f64;
@@ -253,6 +241,7 @@ impl Explain {
             }
             Stage::Fit(level) => self.judge_level(session, screened, level),
             Stage::Check(level) => self.judge_check(session, screened, level),
+            Stage::TakeOut => self.swap(session, screened),
             Stage::Swap => self.judge_swaps(session, screened),
             Stage::Path => self.stage = Stage::Done,
             Stage::Done => {}
@@ -441,7 +430,7 @@ impl Explain {
             && !trifle
             && !self.is_noise(session, simpler)
             && (self.is_noise(session, other) || outweighs(before, after));
-        difference.is_same() || self.has_part_of(simpler, other) && !worth
+        difference.is_no_better() || self.has_part_of(simpler, other) && !worth
     }
 
     /// The one that leaves least; of those that do as well, the one with fewest values.
@@ -559,18 +548,18 @@ impl Explain {
         }
     }
 
-    /// Trials with one effect more than these.
-    pub fn with_one_more(&self, ids: &[EffectId]) -> Vec<(EffectId, &Trial)> {
-        let mut found: Vec<(EffectId, &Trial)> = Vec::new();
+    /// Effects that were tried beside these alone, each with its best trial.
+    pub fn with_one_more(&self, ids: &[EffectId]) -> Vec<(&'static dyn Effect, &Trial)> {
+        let mut found: Vec<(&'static dyn Effect, &Trial)> = Vec::new();
         for trial in &self.trials {
-            let own = trial.ids();
-            if own.len() != ids.len() + 1 || !ids.iter().all(|id| own.contains(id)) {
+            let effects = trial.effects();
+            if effects.len() != ids.len() + 1 || !ids.iter().all(|id| trial.has(*id)) {
                 continue;
             }
-            let Some(more) = own.iter().find(|id| !ids.contains(id)) else {
+            let Some(more) = effects.iter().find(|e| !ids.contains(&e.id())) else {
                 continue;
             };
-            match found.iter_mut().find(|(id, _)| id == more) {
+            match found.iter_mut().find(|(e, _)| e.id() == more.id()) {
                 Some(known) if known.1.error() > trial.error() => known.1 = trial,
                 Some(_) => {}
                 None => found.push((*more, trial)),

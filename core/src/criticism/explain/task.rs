@@ -2,7 +2,7 @@
 
 use super::heat::Heat;
 use super::tuning::{CROSSINGS, SAME_BODY, SETTLED, SETTLING};
-use super::{Trial, hidden_inertia};
+use super::{Trial, hidden_inertia, is_hidden_body};
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
 use crate::criticism::guess::guess;
@@ -83,6 +83,28 @@ impl Sketch {
         sketch
     }
 
+    /// A fit with one more effect: with the values that the screen tells beside its effects and alone, and from where that finds
+    /// itself if the screen tells none, or not all that it may be.
+    pub fn beside(
+        session: &Session,
+        screened: &Screened,
+        fit: &Fit,
+        effect: &'static dyn Effect,
+    ) -> Vec<Self> {
+        let beside = screened.values(&fit.structure.ids(), effect.id());
+        let alone = screened.values(&[], effect.id());
+        let told: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
+        // What repeats along the way has a valley at every period.
+        let mut specs = effect.parameters().iter();
+        let repeats = specs.any(|p| p.range == Range::Repeating);
+        let mut sketches = Vec::new();
+        if told.is_empty() || is_hidden_body(effect) || repeats {
+            sketches.extend(Self::sought(session, fit, effect));
+        }
+        sketches.extend(told.iter().map(|own| Self::with(fit, effect, own)));
+        sketches
+    }
+
     /// A fit with one more effect, from where that finds itself in what the fit leaves. A body that was hidden may have been
     /// taken for a part of the other.
     pub fn sought(session: &Session, fit: &Fit, effect: &'static dyn Effect) -> Vec<Self> {
@@ -101,21 +123,25 @@ impl Sketch {
             .collect()
     }
 
-    /// The first guess of the body, where a fit ended with another one.
-    pub fn other_body(session: &Session, fit: &Fit) -> Option<Vec<f64>> {
-        let body = first_guess(session)?;
+    /// Adds the same from the first guess of the body where a fit ended with another one: what is missing may have bent it out of
+    /// all likeness.
+    pub fn with_other_bodies(sketches: &mut Vec<Self>, session: &Session, fit: &Fit) {
+        let Some(body) = first_guess(session) else {
+            return;
+        };
         let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_BODY * a.abs();
         let essential = fit.structure.baseline.essential();
-        let agree = body.iter().zip(&fit.values).take(essential).all(same);
-        (!agree).then_some(body)
-    }
-
-    /// The same with this body.
-    pub fn with_other_body(&self, body: &[f64]) -> Self {
-        let mut sketch = self.clone();
-        sketch.values[..body.len()].copy_from_slice(body);
-        sketch.structure.begin(&mut sketch.values, 0);
-        sketch
+        if body.iter().zip(&fit.values).take(essential).all(same) {
+            return;
+        }
+        let with_body = |sketch: &Self| {
+            let mut sketch = sketch.clone();
+            sketch.values[..body.len()].copy_from_slice(&body);
+            sketch.structure.begin(&mut sketch.values, 0);
+            sketch
+        };
+        let others: Vec<Self> = sketches.iter().map(with_body).collect();
+        sketches.extend(others);
     }
 
     /// A fit from other starting points, if it has values that the screen cannot tell: it may be in a valley of its own.
@@ -292,20 +318,29 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
     let guessed = first_guess(session).unwrap_or_else(|| session.data.baseline.unknown());
     let mut fit = Sketch::new(session, &[], guessed).fitted(session);
     for effect in held {
-        let beside = screened.values(&fit.structure.ids(), effect.id());
-        let told = beside.or_else(|| screened.values(&[], effect.id()));
-        let told = told
+        let mut sketches = Sketch::beside(session, screened, &fit, *effect);
+        Sketch::with_other_bodies(&mut sketches, session, &fit);
+        let all = sketches
             .into_iter()
-            .map(|own| Sketch::with(&fit, *effect, &own));
-        let sought = Sketch::sought(session, &fit, *effect);
-        let all = told
-            .chain(sought)
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
         while heat.advance(session, 0.0, false) {}
-        fit = heat.best(1, f64::INFINITY).pop()?.fitted(session);
+        let fits = heat.best(2, f64::INFINITY).into_iter();
+        let fits = fits.map(|sketch| sketch.fitted(session));
+        fit = least(fits)?;
     }
     let complete = |fit: &Fit| fit.structure.effects.len() == held.len();
-    let all = told.into_iter().chain([fit]).filter(complete);
-    all.min_by(|a, b| a.cost.total_cmp(&b.cost))
+    least(told.into_iter().chain([fit]).filter(complete))
+}
+
+/// The fit that costs least; one whose cost is not finite only where there is no other.
+fn least(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
+    let cost = |fit: &Fit| {
+        if fit.cost.is_finite() {
+            fit.cost
+        } else {
+            f64::INFINITY
+        }
+    };
+    fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
