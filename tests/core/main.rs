@@ -39,6 +39,7 @@ mod parameter_maps;
 mod plants;
 mod random_forces;
 mod real_drive;
+mod real_records;
 mod records;
 mod report;
 mod rests;

@@ -62,7 +62,7 @@ pub(super) fn contradictions(session: &Session, model: &Trial) -> Vec<Contradict
         return Vec::new();
     }
     let released = released(session, model);
-    let released = if difference(model, &released, session.motion_square).is_better() {
+    let released = if difference(session, model, &released).is_better() {
         &released.scored
     } else if is_plain_noise(&own.score) {
         own

@@ -206,7 +206,7 @@ fn hint(
     tried: &[(&'static dyn Effect, &Trial)],
 ) -> Option<(EffectId, f64)> {
     let best = tried.first()?;
-    let difference = between(model, best.1, session.motion_square);
+    let difference = between(session, model, best.1);
     (difference.least_fall > PROMISING)
         .then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
 }
@@ -232,7 +232,7 @@ fn candidates(
     let mut candidates: Vec<Candidate> = tried
         .iter()
         .map(|(effect, trial)| {
-            let difference = between(model, trial, session.motion_square);
+            let difference = between(session, model, trial);
             let (after, values) = (&trial.scored.score, trial.scored.fit.values.len());
             let worse = trial.error() > model.error();
             let noise = !outweighs(after.error, 1.0);
@@ -259,7 +259,7 @@ fn candidates(
                         other.id() != effect.id()
                             && may_replace(*other, *effect)
                             && t.values() <= trial.values()
-                            && between(trial, t, session.motion_square).is_same()
+                            && between(session, trial, t).is_same()
                             && difference.is_better()
                     })
                     .map(|(other, _)| other.id())

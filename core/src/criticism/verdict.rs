@@ -240,11 +240,11 @@ pub(super) fn add_pauses(verdict: &mut Verdict, pauses: usize) {
         0 => return,
         1 => write!(
             verdict.text,
-            " Rows are missing in one place: the model begins anew after it."
+            " Rows are missing in one place, or two runs are joined there: the model begins anew after it."
         ),
         many => write!(
             verdict.text,
-            " Rows are missing in {many} places: the model begins anew after each."
+            " Rows are missing in {many} places, or runs are joined there: the model begins anew after each."
         ),
     };
 }

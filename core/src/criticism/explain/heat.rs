@@ -58,7 +58,8 @@ impl Heat {
     }
 
     /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another one costs.
-    pub fn advance(&mut self, session: &Session, alike: f64) -> bool {
+    /// A race that `gives_up` ends with its round, and nobody wins.
+    pub fn advance(&mut self, session: &Session, alike: f64, gives_up: bool) -> bool {
         let crew = &session.data.crew;
         let width = crew.width().min(self.waiting.len());
         let mut batch: Vec<(f64, Fit)> = self.waiting.drain(..width).collect();
@@ -76,7 +77,9 @@ impl Heat {
         if self.waiting.is_empty() {
             self.cull(alike);
             self.round += 1;
-            if self.round < HEATS.len() {
+            if gives_up {
+                *self = Self::default();
+            } else if self.round < HEATS.len() {
                 self.waiting = self.over.drain(..).collect();
             }
         }

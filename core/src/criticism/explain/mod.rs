@@ -133,7 +133,10 @@ impl Explain {
             let (own, trials) = (&*session, &self.trials);
             let found = crew.gather(batch.len(), |i| batch[i].run(own, screened, trials));
             self.trials.extend(found.into_iter().flatten());
-        } else if !self.heat.advance(session, self.alike()) {
+        } else if !self
+            .heat
+            .advance(session, self.alike(), self.gives_up(session))
+        {
             let places = match self.stage {
                 Stage::Swap => self.size(self.best).max(1),
                 _ => 1,
@@ -146,6 +149,12 @@ impl Explain {
             self.go_on(session, screened);
         }
         self.stage != Stage::Done
+    }
+
+    /// Whether a race is no longer worth while.
+    fn gives_up(&self, session: &Session) -> bool {
+        let hidden = matches!(self.stage, Stage::Fit(level) if level.hidden);
+        hidden && session.data.tried_enough(true)
     }
 
     /// Cost on the scout of what may stand in the place of an effect of the best.
@@ -266,17 +275,17 @@ impl Explain {
             !hidden && self.has_hidden_body(self.best) && size == self.size(self.best) + 1;
         let explained =
             self.is_noise(session, self.best) && !doubted || self.knows_wrongly(session);
-        let enough = size > 1 && session.data.tried_enough();
+        let enough = |hidden: bool| size > 1 && session.data.tried_enough(hidden);
         if other
             || explained
-            || enough
+            || enough(false)
             || size > MOST_SIZE
             || self.misses.iter().all(|m| *m > MOST_MISSES)
         {
             self.open_swaps(session, screened);
             return;
         }
-        if self.misses[usize::from(hidden)] > MOST_MISSES {
+        if self.misses[usize::from(hidden)] > MOST_MISSES || hidden && enough(true) {
             self.open_level(session, screened, level.next());
             return;
         }
@@ -448,7 +457,7 @@ impl Explain {
     }
 
     fn difference(&self, session: &Session, from: usize, to: usize) -> Difference {
-        difference(&self.trials[from], &self.trials[to], session.motion_square)
+        difference(session, &self.trials[from], &self.trials[to])
     }
 
     /// Whether each of the added effects explains more than it leaves, or is needed for what is left to be noise.

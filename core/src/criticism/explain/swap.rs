@@ -250,6 +250,6 @@ impl Explain {
         }
         let fit = session.integrating(&best.scored.fit);
         let trial = fit.map(|fit| Trial::new(session, fit));
-        trial.is_some_and(|t| difference(&t, best, session.motion_square).is_no_better())
+        trial.is_some_and(|t| difference(session, &t, best).is_no_better())
     }
 }

@@ -324,7 +324,7 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
             .into_iter()
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
-        while heat.advance(session, 0.0) {}
+        while heat.advance(session, 0.0, false) {}
         let fits = heat.best(2, f64::INFINITY).into_iter();
         let fits = fits.map(|sketch| sketch.fitted(session));
         fit = least(fits)?;
