@@ -304,6 +304,7 @@ fn what_compare_shows_comes_back_in_another_window() {
         comes_back(&here, parts);
     }
     // Another fingerprint than the one that is shown by itself: of the baseline, beside which others were tried.
+    let mut here = app("compare", TALL);
     show(
         &mut here,
         "v1;compare;compare.file=drive-02;compare.look=fingerprint",

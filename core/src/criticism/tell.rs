@@ -1,7 +1,7 @@
 //! What is told of a model: where it fails, what could be added, and the verdict where nothing should be.
 
 use super::contradicted::overruled;
-use super::explain::{Explain, Trial, difference as between, may_replace};
+use super::explain::{Difference, Explain, Trial, difference as between, may_replace};
 use super::fingerprint::fingerprints;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, designs};
@@ -198,8 +198,12 @@ fn needless(session: &Session, explain: &Explain, place: usize) -> Vec<EffectId>
         .collect()
 }
 
-/// The effect that would lower the error most, and to what, where that is much and yet not beyond chance, or explains less
-/// than it leaves.
+/// Whether a step lowers the error much, and yet not beyond chance.
+fn is_promising(difference: &Difference) -> bool {
+    difference.least_fall > PROMISING && !difference.is_better()
+}
+
+/// The effect that would lower the error most, and to what, where that is much and yet not beyond chance.
 fn hint(
     session: &Session,
     model: &Trial,
@@ -207,8 +211,7 @@ fn hint(
 ) -> Option<(EffectId, f64)> {
     let best = tried.first()?;
     let difference = between(session, model, best.1);
-    (difference.least_fall > PROMISING)
-        .then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
+    is_promising(&difference).then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
 }
 
 /// Every effect of the library, the best first; the suggested one leads.
@@ -247,7 +250,7 @@ fn candidates(
                     delta_bic(before, length, after, values)
                 },
                 significant: difference.is_better() && most,
-                promising: difference.least_fall > PROMISING && !difference.is_better(),
+                promising: is_promising(&difference),
                 parameters: session
                     .parameters(&trial.scored)
                     .into_iter()
