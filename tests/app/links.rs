@@ -303,11 +303,17 @@ fn what_compare_shows_comes_back_in_another_window() {
         finish(&mut here);
         comes_back(&here, parts);
     }
-    // Another fingerprint than the one that is shown by itself.
-    assert_ne!(state(&here)["fingerprint"], "sensor_lag");
-    here.get_by_label_contains("Sensor lag 0").click_accesskit();
+    // Another fingerprint than the one that is shown by itself: of the baseline, beside which others were tried.
+    let mut here = app("compare", TALL);
+    show(
+        &mut here,
+        "v1;compare;compare.file=drive-02;compare.look=fingerprint",
+    );
+    assert_ne!(state(&here)["fingerprint"], "presliding_friction");
+    here.get_by_label_contains("Presliding friction 0")
+        .click_accesskit();
     finish(&mut here);
-    comes_back(&here, &["compare.fingerprint=sensor_lag"]);
+    comes_back(&here, &["compare.fingerprint=presliding_friction"]);
 }
 
 /// Whether the link to what is here has these settings, and shows them in another window.

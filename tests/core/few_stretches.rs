@@ -1,14 +1,15 @@
 //! A slow process that was looked at for a few of its time constants: what is left hangs together, so that a record of
 //! a thousand samples holds a handful of independent stretches.
 
-use crate::support::diagnosis::{classes, finish};
+use crate::support::diagnosis::{classes, finish, step};
 use crate::support::parameter::parameter;
-use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::Diagnosis;
+use hysteron_core::measurement::Measurement;
 use hysteron_core::rig::process::{Excitation, ProcessRig, Stranger};
 
 /// A process of two minutes that is watched for three, with a load that swings as slowly besides.
-fn diagnose(constant_load: f64, swing: f64, period: f64) -> Diagnosis {
+fn record(constant_load: f64, swing: f64, period: f64) -> Measurement {
     let rig = ProcessRig {
         time_constant: 120.0,
         samples: 1000,
@@ -20,7 +21,11 @@ fn diagnose(constant_load: f64, swing: f64, period: f64) -> Diagnosis {
         }),
         ..ProcessRig::default()
     };
-    finish(DiagnosisJob::new(&rig.measure()).unwrap())
+    rig.measure()
+}
+
+fn diagnose(constant_load: f64, swing: f64, period: f64) -> Diagnosis {
+    finish(DiagnosisJob::new(&record(constant_load, swing, period)).unwrap())
 }
 
 #[test]
@@ -51,5 +56,10 @@ fn what_may_be_chance_is_said_as_that() {
         d.verdict.text
     );
     let candidates = &d.steps.last().unwrap().candidates;
-    assert!(candidates.iter().any(|c| c.promising && !c.significant));
+    let offered = candidates.iter().find(|c| c.promising && !c.significant);
+    // What is offered can be added, and leaves what was said.
+    let offered = offered.expect("an offer");
+    let with = step(StepJob::new(&record(0.0, 0.4, 120.0), &offered.effects).unwrap());
+    let change = (with.step.error / offered.error - 1.0).abs();
+    assert!(change < 0.05, "{} for {}", with.step.error, offered.error);
 }

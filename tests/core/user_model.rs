@@ -172,10 +172,10 @@ fn a_value_fixed_rightly_disturbs_nothing() {
 
 #[test]
 fn a_prior_draws_as_strongly_as_it_is_sure() {
-    let measurement = measured("process-02");
+    let measurement = measured("process-01");
     let model = |gain: &str| {
         let known = format!("K = {{ value = {gain} }}");
-        format!("kind = \"process\"\n[parameters]\n{known}\n[[effects]]\nid = \"input_delay\"\n")
+        format!("kind = \"process\"\n[parameters]\n{known}\n")
     };
     let free = diagnose(&measurement, &model("2.0, status = \"free\""));
     let (value, error) = parameter(&free, "K");

@@ -1,7 +1,7 @@
 //! A diagnosis from its begin to its end, and what it found.
 
-use hysteron_core::criticism::DiagnosisJob;
-use hysteron_core::diagnosis::Diagnosis;
+use hysteron_core::criticism::{DiagnosisJob, StepJob};
+use hysteron_core::diagnosis::{Diagnosis, StepReport};
 use hysteron_core::progress::Progress;
 
 /// Runs a diagnosis to its end.
@@ -9,6 +9,15 @@ pub fn finish(mut job: DiagnosisJob) -> Diagnosis {
     loop {
         if let Progress::Done(diagnosis) = job.advance() {
             return diagnosis;
+        }
+    }
+}
+
+/// Runs one step to its end.
+pub fn step(mut job: StepJob) -> StepReport {
+    loop {
+        if let Progress::Done(report) = job.advance() {
+            return report;
         }
     }
 }

@@ -1,6 +1,5 @@
 //! The arguments of `hysteron diagnose`.
 
-use crate::engine::Which;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -44,9 +43,6 @@ pub struct Arguments {
     /// "input=0.5,duration=10,travel=3"; what is not named is as in the file, or twice as fast
     #[arg(long, value_name = "NAME=VALUE,...", value_parser = limits)]
     pub limits: Option<String>,
-    /// The engine: the second one is on trial.
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: Which,
     /// Write the model with the effects that were found to this file, for --model
     #[arg(long, value_name = "OUT.toml")]
     pub save_model: Option<PathBuf>,
@@ -74,7 +70,6 @@ impl Arguments {
             model: None,
             effect: Vec::new(),
             limits: None,
-            engine: Which::default(),
             save_model: None,
             report: None,
             resume: None,

@@ -7,7 +7,6 @@ mod arguments;
 mod batch;
 mod cycle_table;
 mod diagnose;
-mod engine;
 mod gap;
 mod limit_cycle;
 mod limit_cycle_drive;

@@ -3,14 +3,15 @@
 use std::path::Path;
 use std::time::Instant;
 
+use hysteron_core::criticism::DiagnosisJob;
 use hysteron_core::diagnosis::{Diagnosis, Limits};
 use hysteron_core::measurement::{ImportOptions, Mapping, Measurement};
 use hysteron_core::progress::Progress;
 use hysteron_core::report::{self, Provenance, ReportInput};
 use hysteron_core::user_model::UserModel;
+use hysteron_work::cores;
 
 use crate::arguments::{Arguments, Kind};
-use crate::engine::{Engine, Which};
 use crate::read::read;
 use crate::text::render;
 
@@ -129,8 +130,10 @@ pub fn of(
     limits
         .set(arguments.limits.as_deref().unwrap_or_default())
         .map_err(|e| format!("--limits: {e}"))?;
-    let mut job = Engine::of(arguments.engine, measurement, &given, limits)
-        .map_err(|e| format!("{name}: {e}"))?;
+    let mut job = DiagnosisJob::with_model(measurement, &given)
+        .map_err(|e| format!("{name}: {e}"))?
+        .within(limits)
+        .with_crew(&cores::all());
     loop {
         match job.advance() {
             Progress::Running { fraction, text } => show(fraction, &text),
@@ -178,7 +181,6 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
         Kind::Process => "process",
     });
     let model = arguments.model.as_ref().map(|m| m.to_string_lossy());
-    let second = arguments.engine == Which::Second;
     let options = [
         ("--kind", kind),
         ("--model", model.as_deref()),
@@ -192,7 +194,6 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
             arguments.period.as_ref().map(|m| m.text.as_str()),
         ),
         ("--limits", arguments.limits.as_deref()),
-        ("--engine", second.then_some("second")),
     ];
     for (option, value) in options {
         if let Some(value) = value {

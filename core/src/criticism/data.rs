@@ -41,9 +41,10 @@ const GUESS_SAMPLES: usize = 5;
 /// Share of what is left that a scout must see, in times of its share of the record.
 const SEEN: f64 = 0.5;
 
-/// Pieces of motion for each sample after which no further model is tried: where so many do not explain a record, more
-/// would not, and it would take minutes. (A gap with friction takes some fifteen thousand.)
-const MOST_MOVES: f64 = 40_000.0;
+/// Pieces of motion for each sample after which no further model with a hidden body is tried, and none at all: where so many
+/// do not explain a record, more would not, and it would take minutes. (A gap with friction takes some fifteen thousand, three
+/// effects of which two show only together a hundred thousand.)
+const MOST_MOVES: [f64; 2] = [40_000.0, 150_000.0];
 
 /// A measurement made ready for fitting.
 #[derive(Clone, Debug)]
@@ -245,9 +246,11 @@ impl Data {
         self.moves.fetch_add(moves, Ordering::Relaxed);
     }
 
-    /// Whether so many were needed that more would not explain it.
-    pub fn tried_enough(&self) -> bool {
-        self.moves.load(Ordering::Relaxed) as f64 > MOST_MOVES * self.used() as f64
+    /// Whether so many were needed that more would not explain it; models with a `hidden` body take the most by far.
+    pub fn tried_enough(&self, hidden: bool) -> bool {
+        let [of_hidden, of_all] = MOST_MOVES;
+        let most = if hidden { of_hidden } else { of_all };
+        self.moves.load(Ordering::Relaxed) as f64 > most * self.used() as f64
     }
 
     /// The record as it would be if this motion had been measured, without noise.
@@ -262,6 +265,11 @@ impl Data {
     /// Number of measured values of all outputs in a run of samples.
     pub fn measured(&self, from: usize, to: usize) -> usize {
         self.outputs.iter().map(|o| o.telling(from, to)).sum()
+    }
+
+    /// Whether each block begins anew: of a process that runs through, what is wrong in one goes on in the next.
+    pub fn has_blocks_apart(&self) -> bool {
+        self.blocks.len() == self.windows.len()
     }
 
     /// Samples that are used.

@@ -1,7 +1,7 @@
 //! Long computations as resumable jobs: threads natively, a worker on the web, a loop in tests.
 
+use super::contradicted::contradictions;
 use super::explain::Explain;
-use super::knowledge::contradictions;
 use super::next_experiment::{Design, TRYING};
 use super::screen::Screened;
 use super::session::Session;
@@ -50,9 +50,7 @@ impl Search {
                 .explain
                 .trials
                 .get(self.explain.best)
-                .map_or_else(Vec::new, |best| {
-                    contradictions(&self.session, &best.scored, f64::INFINITY)
-                });
+                .map_or_else(Vec::new, |best| contradictions(&self.session, best));
             self.tell.designs(&self.session, &self.explain)
         });
         let Some(design) = designs.first_mut() else {

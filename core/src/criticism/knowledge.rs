@@ -2,21 +2,11 @@
 
 use std::sync::Arc;
 
-use super::fit::Fit;
-use super::score::score;
-use super::select::{helps, is_plain_noise};
-use super::session::{Scored, Session};
 use super::structure::Structure;
-use crate::diagnosis::{Contradiction, CriticismError, Overruled};
+use crate::diagnosis::CriticismError;
 use crate::effect::EffectId;
 use crate::measurement::Measurement;
 use crate::user_model::{Known, Status, UserModel};
-
-/// Standard errors by which the data must miss a known value to contradict it.
-const CLEAR: f64 = 3.0;
-
-/// Iterations of a fit whose known values are released.
-const RELEASED_ITERATIONS: usize = 8;
 
 /// What the user brought; empty where nothing is known.
 #[derive(Clone, Default)]
@@ -53,7 +43,7 @@ impl Knowledge {
     }
 
     /// The same where no value is held: every parameter is free.
-    fn released(&self) -> Self {
+    pub fn released(&self) -> Self {
         Self {
             entries: Arc::from([]),
             present: Arc::clone(&self.present),
@@ -64,11 +54,6 @@ impl Knowledge {
     /// Whether the user's model has this effect.
     pub fn has(&self, id: EffectId) -> bool {
         self.present.contains(&id)
-    }
-
-    /// Effects of the user's model.
-    pub fn present(&self) -> &[EffectId] {
-        &self.present
     }
 
     /// Whether no value is held.
@@ -147,83 +132,4 @@ impl Structure {
         }
         self.hold(values);
     }
-}
-
-/// Tolerances by which the data must have moved a known value to overrule it.
-const OVERRULED: f64 = 3.0;
-
-/// Values with a tolerance that the data have moved by more than three of it.
-pub(super) fn overruled(session: &Session, model: &Scored) -> Vec<Overruled> {
-    let known = model.fit.structure.known();
-    let found = session.parameters(model);
-    let pairs = known.into_iter().zip(found);
-    pairs
-        .filter_map(|(known, found)| {
-            let known = known?;
-            let Status::Prior(tolerance) = known.status else {
-                return None;
-            };
-            ((found.value - known.value).abs() > OVERRULED * tolerance).then_some(Overruled {
-                effect: found.effect,
-                name: found.name,
-                given: known.value,
-                tolerance,
-                found: found.value,
-                unit: found.unit,
-            })
-        })
-        .collect()
-}
-
-/// Known values that the data contradict: with all of them released the error falls beyond chance, further
-/// than by any effect (which would leave `best`), and these end elsewhere; or nothing but noise is left since the data were
-/// too strong for them.
-pub(super) fn contradictions(session: &Session, model: &Scored, best: f64) -> Vec<Contradiction> {
-    let held = &model.fit.structure;
-    if held.knowledge.is_free() {
-        return Vec::new();
-    }
-    let mut structure = held.clone();
-    structure.knowledge = held.knowledge.released();
-    let (values, starts) = (model.fit.values.clone(), model.fit.starts.clone());
-    let mut fit = Fit::new(&session.data, structure, values, starts, &session.scales);
-    for _ in 0..RELEASED_ITERATIONS {
-        fit.iterate(&session.data, &session.scales);
-    }
-    fit.polish_starts(&session.data, &session.scales);
-    let released = Scored {
-        score: score(&session.data, &fit),
-        fit,
-    };
-    let overruled = is_plain_noise(&model.score);
-    let released = if helps(&model.score, &released.score) && released.score.error <= best {
-        &released
-    } else if overruled {
-        model
-    } else {
-        return Vec::new();
-    };
-    let wanted = session.parameters(released);
-    held.known()
-        .into_iter()
-        .zip(wanted)
-        .filter_map(|(known, wanted)| {
-            let known = known?;
-            let tolerance = match known.status {
-                Status::Free => return None,
-                Status::Prior(tolerance) => tolerance,
-                Status::Fixed => 0.0,
-            };
-            let clear = CLEAR * libm::hypot(wanted.std_error, tolerance);
-            ((wanted.value - known.value).abs() > clear).then_some(Contradiction {
-                effect: wanted.effect,
-                name: wanted.name,
-                held: known.value,
-                wanted: wanted.value,
-                std_error: wanted.std_error,
-                unit: wanted.unit,
-                error: released.score.error,
-            })
-        })
-        .collect()
 }

@@ -3,6 +3,7 @@
 mod atlas;
 mod axes;
 mod before;
+mod contradicted;
 mod correlation;
 mod cost;
 mod cut;
@@ -11,11 +12,8 @@ mod explain;
 mod fingerprint;
 mod fit;
 mod guess;
-mod job;
 mod jobs;
-mod judge;
 mod knowledge;
-mod leap;
 mod locate;
 mod missing;
 mod next_experiment;
@@ -24,19 +22,16 @@ mod odd_windows;
 mod one_way;
 mod output;
 mod probes;
-mod race;
 mod ranking;
 mod record;
 mod residual_test;
 mod score;
 mod screen;
-mod search;
 mod select;
 mod session;
 mod sight;
 mod spectrum;
 mod split;
-mod step;
 mod structure;
 mod tell;
 mod units;
@@ -44,13 +39,7 @@ mod verdict;
 mod window;
 mod window_sums;
 
-pub use job::DiagnosisJob;
+pub use jobs::{DiagnosisJob, StepJob};
 pub use next_experiment::{Controller, ExperimentJob};
 pub use noise::noise_level;
 pub use screen::screen;
-pub use step::StepJob;
-
-/// The second engine, on trial: subsets of the screen, fitted exactly and judged by blocked cross-validation.
-pub mod second {
-    pub use super::jobs::{DiagnosisJob, StepJob};
-}

@@ -1,45 +1,6 @@
-//! Does an effect help beyond chance, and can two effects be told apart?
-//!
-//! Models are compared on held-back data by `n_eff ln(SSE_before / SSE_after)`, the likelihood-ratio
-//! statistic with the number of residuals divided by their autocorrelation, so that structured
-//! residuals do not pass for evidence.
+//! Is what a model leaves noise, or a trifle, and does a step explain more than it leaves?
 
 use super::score::Score;
-
-/// Least statistic for an effect to be added. For a needless effect it is chi-squared with a few
-/// degrees of freedom; 30 keeps the chance below 1e-5 even for five parameters, and there are some
-/// ten candidates in each of a few steps.
-const LEAST_STATISTIC: f64 = 30.0;
-
-/// Least relative fall of the held-back error: what changes the error by less may be real, but is
-/// not what the model is missing.
-pub(super) const LEAST_FALL: f64 = 0.03;
-
-/// Relative fall of the error on both parts that counts whatever the statistic says, and in however few blocks: that is no
-/// chance however few independent stretches a record has, and what is left is correlated because something else is missing.
-const GREAT_FALL: f64 = 0.7;
-
-/// Of the held-back blocks in which a step changes the error, the least share in which it falls, and the least number
-/// of these (fewer do if they are that share of all, or if nothing but noise is left in them).
-const LEAST_BLOCKS: f64 = 0.6;
-const FEWEST_BETTER: usize = 3;
-
-/// Relative change of the squared error of a block below which the step does nothing there: a limit of the input acts
-/// only where the input is as large.
-const UNCHANGED: f64 = 0.02;
-
-/// Statistic below which two models count as the same within noise: near what it takes to add one.
-const SAME_STATISTIC: f64 = 25.0;
-
-/// A model with so many more parameters that these weigh this many times that is not the same as one that leaves nothing
-/// but noise: it would have to be better, and there is nothing left to be better at.
-const TOO_RICH: f64 = 1.4;
-
-/// Held-back blocks of which one may be left out.
-const FEWEST_BLOCKS: usize = 6;
-
-/// Relative difference of error above which two models differ whatever the statistic says.
-const SAME_SHARE: f64 = 0.01;
 
 /// Error, in noise units, and autocorrelation up to which a residual is noise: the noise level
 /// itself is known to some per cent only.
@@ -61,124 +22,15 @@ const SURE_NOISE_ERROR: f64 = 1.05;
 pub(super) const SMALL_SHARE: f64 = 2e-3;
 const SMALL_ERROR: f64 = 3.0;
 
-/// The same share where the input is known at its samples only, and what it did between them was found from the rest.
-pub(super) const SAMPLED_SHARE: f64 = 1e-2;
-
-/// Error, in noise units, up to which little is left.
-pub(super) const LITTLE_LEFT: f64 = 3.0;
-
-/// Part of the way (in logarithms) that speaks for a part of an effect where more is left.
-const PART_OF_THE_WAY: f64 = 0.5;
+/// The same share where the input is known at its samples only, and what it did between them was found from the rest: a straight
+/// line between two samples is off by a quarter of their distance in radians, of what the shift does; this is that of an input
+/// with twelve samples to a radian.
+pub(super) const SAMPLED_SHARE: f64 = 2e-2;
 
 /// Share of the held-back blocks that may be more than noise, and share of the error there that may be
 /// left, where a model explains all the rest.
 const ODD_STRETCHES: f64 = 0.35;
 const STRETCH_SHARE: f64 = 0.02;
-
-/// Likelihood-ratio statistic of `after` over `before` on held-back data; positive if better.
-fn statistic(before: &Score, after: &Score) -> f64 {
-    let effective = after.held_count / after.correlation.max(1.0);
-    2.0 * effective * libm::log(before.error / after.error)
-}
-
-/// Relative fall of the held-back error from `before` to `after`.
-pub(super) fn fall(before: &Score, after: &Score) -> f64 {
-    1.0 - after.error / before.error
-}
-
-/// Relative fall of the error on the held-back or on the fitted part, whichever is less.
-pub(super) fn fall_on_both(before: &Score, after: &Score) -> f64 {
-    fall(before, after).min(1.0 - after.error_fit / before.error_fit)
-}
-
-/// The relative fall of the usual held-back block: where a few blocks show another effect besides, only these may stay as
-/// they were, or become worse.
-pub(super) fn usual_fall(before: &Score, after: &Score) -> f64 {
-    let blocks = before.held_blocks.iter().zip(&after.held_blocks);
-    let mut ratios: Vec<f64> = blocks.map(|(b, a)| a / b).collect();
-    ratios.sort_by(f64::total_cmp);
-    let usual = ratios.get(ratios.len() / 2).copied();
-    1.0 - usual.unwrap_or(1.0).sqrt()
-}
-
-/// Whether held-back data want the step from `before` to `after`.
-pub(super) fn helps(before: &Score, after: &Score) -> bool {
-    fall_on_both(before, after) > GREAT_FALL
-        || (statistic(before, after) > LEAST_STATISTIC
-            && fall(before, after) > LEAST_FALL
-            && helps_widely(&before.held_blocks, &after.held_blocks))
-}
-
-/// Whether the error falls in most of the blocks in which it changes, and not only somewhat in one or two.
-fn helps_widely(before: &[f64], after: &[f64]) -> bool {
-    let least = |count: usize| LEAST_BLOCKS * count as f64;
-    let falls = |(from, to): &(&f64, &f64)| **to < (1.0 - UNCHANGED) * **from;
-    let better = || before.iter().zip(after).filter(falls);
-    let worse = after.iter().zip(before).filter(falls).count();
-    let count = better().count();
-    let explained = || better().all(|(_, left)| *left < NOISE_ERROR * NOISE_ERROR);
-    count as f64 > least(count + worse)
-        && (count >= FEWEST_BETTER || count as f64 > least(before.len()) || explained())
-}
-
-/// Whether two models with `a_len` and `b_len` parameters leave the same error within noise, on all held-back blocks
-/// but the one in which they differ most: what was before a record began is not known, so that its first block may
-/// speak for either.
-pub(super) fn same(a: &Score, a_len: usize, b: &Score, b_len: usize) -> bool {
-    let penalty = (b_len as f64 - a_len as f64) * libm::log(a.held_count);
-    let (own, other) = usual_errors(a, b);
-    let effective = a.held_count / a.correlation.max(1.0);
-    let statistic = 2.0 * effective * libm::log(other / own);
-    (statistic + penalty).abs() < SAME_STATISTIC && (1.0 - own / other).abs() < SAME_SHARE
-}
-
-/// Whether a model with this many `more` parameters than one with this score need not be compared with it.
-pub(super) fn is_too_rich(score: &Score, more: usize) -> bool {
-    let weight = more as f64 * libm::log(score.held_count);
-    is_plain_noise(score) && weight > TOO_RICH * SAME_STATISTIC
-}
-
-/// Errors of two models on all held-back blocks but the one in which they differ most.
-fn usual_errors(a: &Score, b: &Score) -> (f64, f64) {
-    let blocks = a.held_blocks.iter().zip(&b.held_blocks);
-    let differs = |(a, b): (&f64, &f64)| (a - b).abs();
-    let most = blocks
-        .clone()
-        .enumerate()
-        .max_by(|x, y| differs(x.1).total_cmp(&differs(y.1)));
-    let Some((odd, _)) = most.filter(|_| a.held_blocks.len() >= FEWEST_BLOCKS) else {
-        return (a.error, b.error);
-    };
-    let rest = blocks.enumerate().filter(|(k, _)| *k != odd);
-    let (own, other) = rest.fold((0.0, 0.0), |sum, (_, (a, b))| (sum.0 + a, sum.1 + b));
-    // In proportion to the whole, so that blocks of unlike length do not matter.
-    let all = |blocks: &[f64]| blocks.iter().sum::<f64>();
-    (
-        a.error * (own / all(&a.held_blocks)).sqrt(),
-        b.error * (other / all(&b.held_blocks)).sqrt(),
-    )
-}
-
-/// Whether a `part` of an effect does as well as the `whole` for all that the data can tell: what is left may be
-/// correlated so far that the whole gains by chance, or it is next to nothing of what there was at `first`.
-pub(super) fn suffices(part: &Score, whole: &Score, first: &Score) -> bool {
-    (statistic(part, whole) < SAME_STATISTIC && fall(part, whole) < LEAST_FALL)
-        || !matters(part, whole, first)
-}
-
-/// Whether a `part` of an effect is added `before` the whole: where even the whole leaves much, its further values only
-/// bend to what another effect would explain, and the part takes most of the way.
-pub(super) fn goes_first(before: &Score, part: &Score, whole: &Score) -> bool {
-    let way = |to: &Score| libm::log(before.error / to.error);
-    whole.error > LITTLE_LEFT && way(part) > PART_OF_THE_WAY * way(whole)
-}
-
-/// Whether the step from `before` to `after` takes away more than a trifle of the error that there was at
-/// `first`: below that, an effect only mends what a clock, a rig or an equation is off by.
-pub(super) fn matters(before: &Score, after: &Score, first: &Score) -> bool {
-    let gain = (before.error.powi(2) - after.error.powi(2)).max(0.0).sqrt();
-    gain > SMALL_SHARE * first.error
-}
 
 /// Whether the step from the error `before` to that `after` it explains more than it leaves beyond the noise.
 pub(super) fn outweighs(before: f64, after: f64) -> bool {
@@ -253,32 +105,6 @@ pub(super) fn delta_bic(before: &Score, before_len: usize, after: &Score, after_
 mod tests {
     use super::*;
 
-    /// Ten blocks, the first of them with these mean squares.
-    fn blocks(first: &[f64], rest: f64) -> Vec<f64> {
-        let mut all = first.to_vec();
-        all.resize(10, rest);
-        all
-    }
-
-    #[test]
-    fn an_effect_may_act_in_a_few_blocks_or_explain_one_or_two() {
-        let helps = |acting: &[f64], rest: f64| {
-            let before = blocks(&vec![400.0; acting.len()], 1.0);
-            helps_widely(&before, &blocks(acting, rest))
-        };
-        assert!(helps(&[3.0, 3.0, 3.0], 1.01));
-        assert!(!helps(&[3.0, 3.0], 1.01));
-        assert!(helps(&[1.1], 1.01));
-        assert!(!helps(&[1.0, 1.0, 1.0], 1.05));
-        assert!(helps(&[1.0; 7], 1.05));
-    }
-
-    #[test]
-    fn of_few_blocks_most_must_become_better() {
-        assert!(helps_widely(&[9.0, 4.0], &[1.0, 1.0]));
-        assert!(!helps_widely(&[9.0, 1.0], &[2.0, 1.0]));
-    }
-
     /// White noise within the steps of a counter, with these errors.
     fn noise(error: f64, error_fit: f64) -> Score {
         Score {
@@ -291,34 +117,6 @@ mod tests {
             correlation: 1.0,
             within_counts: true,
         }
-    }
-
-    #[test]
-    fn what_takes_away_most_on_both_parts_helps_however_few_stretches_there_are() {
-        let few = |error: f64, error_fit: f64| Score {
-            held_count: 400.0,
-            correlation: 200.0,
-            ..noise(error, error_fit)
-        };
-        assert!(helps(&few(30.0, 32.0), &few(5.0, 5.5)));
-        assert!(!helps(&few(30.0, 32.0), &few(5.0, 25.0)));
-        assert!(!helps(&few(30.0, 32.0), &few(15.0, 16.0)));
-        let in_one_block = |error: f64, error_fit: f64, most: f64, rest: f64| Score {
-            held_blocks: blocks(&[most], rest),
-            ..few(error, error_fit)
-        };
-        let before = in_one_block(300.0, 4000.0, 9e5, 1.0);
-        assert!(helps(&before, &in_one_block(6.0, 1.5, 300.0, 1.3)));
-        assert!(!helps(&before, &in_one_block(6.0, 3000.0, 300.0, 1.3)));
-    }
-
-    #[test]
-    fn a_part_goes_first_where_even_the_whole_leaves_much() {
-        let goes =
-            |part, whole| goes_first(&noise(1000.0, 0.0), &noise(part, 0.0), &noise(whole, 0.0));
-        assert!(goes(100.0, 50.0));
-        assert!(!goes(800.0, 50.0));
-        assert!(!goes(100.0, 1.1));
     }
 
     #[test]

@@ -17,14 +17,15 @@ use super::screen::Screened;
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
+use super::structure::Structure;
 use crate::crew::Crew;
 use crate::diagnosis::{
     ChannelNoise, CriticismError, InputCheck, InputVerdict, Parameter, Replay, ReplayChannel,
-    Screening, Subset,
+    Screening,
 };
 use crate::effect::{
     self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
-    Rubbing, Scales, SeenGap,
+    Scales, SeenGap,
     baseline::{self, Baseline},
 };
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
@@ -141,8 +142,6 @@ pub(super) struct Session {
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
-    /// The body that moves, where the baseline had run off from it.
-    pub held: Option<Rubbing>,
     /// Inertia and viscous friction of a drive that the screen told.
     screened_body: Option<[f64; 2]>,
     /// Mean square of the motion in units of the noise.
@@ -152,8 +151,6 @@ pub(super) struct Session {
     pub motion: Motion,
     /// Whether the input explains the motion.
     pub input_check: InputCheck,
-    /// Subsets of effects that the screen found, the best first.
-    pub screened: Vec<Subset>,
     /// The gap that a drifting test shows.
     gap: Option<SeenGap>,
     pub input_unit: String,
@@ -207,15 +204,8 @@ impl Session {
         let compared = data.thinned(COMPARED);
         let session = Self {
             scales,
-            held: None,
             screened_body,
             input_check: screening.input_check.clone(),
-            screened: screening
-                .subsets
-                .iter()
-                .filter(|subset| !subset.effects.is_empty())
-                .cloned()
-                .collect(),
             motion_square: motion_square(&compared, |_| true),
             probes: Probes::default(),
             scout: compared.scout(),
@@ -324,22 +314,43 @@ impl Session {
         })
     }
 
-    /// Takes a process whose output stays where the input leaves it for what it is, by its last model; true if that is to be
-    /// fitted again. An earlier one may miss a dead time, and find the process slower than it is.
-    pub fn settle_baseline(&mut self, scored: &Scored) -> bool {
+    /// Whether the output of a process may stay where the input leaves it, by its last model: an earlier one may miss a dead time,
+    /// and find the process slower than it is.
+    pub fn may_integrate(&self, scored: &Scored) -> bool {
         let fit = &scored.fit;
         let (symbols, duration) = (fit.structure.symbols(), self.scales.duration);
         let known = symbols
             .iter()
             .any(|(o, s)| self.knowledge.find(*o, s).is_some());
         let errors = scored.standard_errors();
-        let may_integrate = fit
-            .structure
-            .baseline
-            .may_integrate(&fit.values, &errors, duration);
-        if known || !may_integrate {
-            return false;
+        let baseline = fit.structure.baseline;
+        !known && baseline.may_integrate(&fit.values, &errors, duration)
+    }
+
+    /// A fit of a process that integrates, with the effects of another one and what is left of its ambient: a drift.
+    pub fn integrating(&self, fit: &Fit) -> Option<Fit> {
+        let mut data = self.data.clone();
+        data.baseline = Baseline::Integrator;
+        let plain = data.excitation.effective_input(&Baseline::plain());
+        let mut values = guess(&data, &plain)?;
+        values.extend_from_slice(&fit.values[fit.structure.baseline_len()..]);
+        let mut effects = fit.structure.effects.clone();
+        let drift = self.known().find(|e| e.id() == Baseline::drift());
+        if let Some(drift) = drift.filter(|e| effects.iter().all(|own| own.id() != e.id())) {
+            effects.push(drift);
+            values.extend(drift.parameters().iter().map(|_| 0.0));
         }
+        let structure = Structure::new(Baseline::Integrator, effects, self.knowledge.clone());
+        let starts = data.guessed_starts();
+        let mut fit = Fit::new(&data, structure, values, starts, &self.scales);
+        while !fit.done {
+            fit.iterate(&data, &self.scales);
+        }
+        Some(fit)
+    }
+
+    /// Takes a process for one whose output stays where the input leaves it.
+    pub fn integrate(&mut self) {
         let parts = [
             Some(&mut self.data),
             Some(&mut self.scout),
@@ -348,40 +359,6 @@ impl Session {
         for data in parts.into_iter().flatten() {
             data.baseline = Baseline::Integrator;
         }
-        true
-    }
-
-    /// Settles sizes by the fitted baseline; true if its body is held, so that it is to be fitted again.
-    ///
-    /// A body that rests for most of the record seems held by its own weight, nothing shows in the answers of that, and no
-    /// single effect does as much: where the balance of momentum tells another one, models keep near that. Where the guess
-    /// had a far heavier body, sizes are those of the fit: a resonance turns a body against its input, and tells a regression
-    /// nothing.
-    pub fn settle_body(&mut self, fit: &Fit) -> bool {
-        let bare = fit.structure.effects.is_empty();
-        if self.kind() != Kind::Drive || !bare || self.held.is_some() {
-            return false;
-        }
-        if self.knowledge.find(None, baseline::INERTIA).is_none() {
-            let balanced = self.probed(fit).probe.other_body(fit.values[0]);
-            let other = |body: &[f64; 2]| far_apart(body[0], fit.values[0]);
-            let screened = || {
-                self.screened_body
-                    .filter(other)
-                    .map(|body| Rubbing { body, load: 0.0 })
-            };
-            self.held = balanced.or_else(screened);
-        }
-        let (inertia, viscous) = self.data.baseline.body(&fit.values);
-        if let Some(Rubbing { body, .. }) = self.held {
-            self.scales = Scales {
-                inertia_factor: HELD_FACTOR,
-                ..self.whole().scales(body[0], body[1])
-            };
-        } else if self.scales.inertia > FAR_HEAVIER * inertia {
-            self.scales = self.whole().scales(inertia, viscous);
-        }
-        self.held.is_some()
     }
 
     /// Settles sizes by the fitted baseline: where the screen told another body, by that, since a body that rests for most of
@@ -403,11 +380,6 @@ impl Session {
     /// Score of the baseline, or of `scored` if there is none yet.
     pub fn first<'a>(&'a self, scored: &'a Scored) -> &'a Score {
         self.baseline.as_ref().unwrap_or(&scored.score)
-    }
-
-    /// Whether models are compared on a part of the record.
-    pub fn is_thinned(&self) -> bool {
-        self.full.is_some()
     }
 
     /// The whole record.
@@ -476,15 +448,9 @@ impl Session {
         })
     }
 
-    /// Whether the newest effect of a fit is more than a trifle of the input: where a motion is unstable, its least
+    /// Whether the effect at a place of a fit is more than a trifle of the input: where a motion is unstable, its least
     /// disturbance grows until it is seen, and an asymmetry of the last digits of a record seems to explain it.
-    pub fn is_sizeable(&self, fit: &Fit) -> bool {
-        let last = fit.structure.effects.len().checked_sub(1);
-        last.is_none_or(|place| self.is_sizeable_at(fit, place))
-    }
-
-    /// The same of the effect at a place.
-    pub fn is_sizeable_at(&self, fit: &Fit, place: usize) -> bool {
+    pub fn is_sizeable(&self, fit: &Fit, place: usize) -> bool {
         let structure = &fit.structure;
         let Some(newest) = structure.effects.get(place) else {
             return true;

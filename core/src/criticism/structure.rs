@@ -48,41 +48,6 @@ impl Structure {
         next
     }
 
-    /// The same without the effects that `effect` contains, and their values left out of `values`.
-    pub fn without_contained(&self, effect: &dyn Effect, values: &[f64]) -> (Self, Vec<f64>) {
-        let (mut rest, mut kept) = (self.clone(), values.to_vec());
-        for index in (0..self.effects.len()).rev() {
-            if effect.has_part(self.effects[index].id()) {
-                kept.drain(rest.range(index));
-                rest = rest.without(index);
-            }
-        }
-        (rest, kept)
-    }
-
-    /// Whether `effect` contains one of its effects.
-    pub fn is_widened_by(&self, effect: &dyn Effect) -> bool {
-        self.effects.iter().any(|own| effect.has_part(own.id()))
-    }
-
-    /// The same without the effect at `index`.
-    pub fn without(&self, index: usize) -> Self {
-        let mut next = self.clone();
-        next.effects.remove(index);
-        next.load_begin = LoadBegin::Followed;
-        next
-    }
-
-    /// The same of a process that integrates, with its values.
-    pub fn integrating(&self, values: &[f64]) -> (Self, Vec<f64>) {
-        let mut next = self.clone();
-        next.baseline = Baseline::Integrator;
-        let inertia = self.baseline.body(values).0;
-        let mut own = vec![1.0 / inertia];
-        own.extend(&values[self.baseline_len()..]);
-        (next, own)
-    }
-
     /// The effects, in their order.
     pub fn ids(&self) -> Vec<EffectId> {
         self.effects.iter().map(|e| e.id()).collect()

@@ -1,8 +1,8 @@
 //! What is told of a model: where it fails, what could be added, and the verdict where nothing should be.
 
-use super::explain::{Explain, Trial, difference as between};
+use super::contradicted::overruled;
+use super::explain::{Difference, Explain, Trial, difference as between, may_replace};
 use super::fingerprint::fingerprints;
-use super::knowledge::overruled;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, designs};
 use super::one_way::OneWay;
@@ -112,7 +112,7 @@ impl Tell {
         });
         let unknown = verdict.as_ref().is_some_and(|v| v.unknown);
         let scored: Vec<(EffectId, &Scored)> =
-            tried.iter().map(|(id, t)| (*id, &t.scored)).collect();
+            tried.iter().map(|(e, t)| (e.id(), &t.scored)).collect();
         Some(StepReport {
             fingerprints: fingerprints(session, model, &scored, &findings),
             missing: if unknown {
@@ -198,13 +198,20 @@ fn needless(session: &Session, explain: &Explain, place: usize) -> Vec<EffectId>
         .collect()
 }
 
-/// The effect that would lower the error most, and to what, where that is much and yet not beyond chance, or explains less
-/// than it leaves.
-fn hint(session: &Session, model: &Trial, tried: &[(EffectId, &Trial)]) -> Option<(EffectId, f64)> {
+/// Whether a step lowers the error much, and yet not beyond chance.
+fn is_promising(difference: &Difference) -> bool {
+    difference.least_fall > PROMISING && !difference.is_better()
+}
+
+/// The effect that would lower the error most, and to what, where that is much and yet not beyond chance.
+fn hint(
+    session: &Session,
+    model: &Trial,
+    tried: &[(&'static dyn Effect, &Trial)],
+) -> Option<(EffectId, f64)> {
     let best = tried.first()?;
-    let difference = between(model, best.1, session.motion_square);
-    (difference.least_fall > PROMISING)
-        .then(|| (best.0, session.completed(&best.1.scored).score.error))
+    let difference = between(session, model, best.1);
+    is_promising(&difference).then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
 }
 
 /// Every effect of the library, the best first; the suggested one leads.
@@ -212,7 +219,7 @@ fn candidates(
     session: &Session,
     model: &Trial,
     whole: &Scored,
-    tried: &[(EffectId, &Trial)],
+    tried: &[(&'static dyn Effect, &Trial)],
     suggestion: Option<EffectId>,
 ) -> Vec<Candidate> {
     let before = &model.scored.score;
@@ -227,14 +234,14 @@ fn candidates(
     let count = libm::log(before.fit_count);
     let mut candidates: Vec<Candidate> = tried
         .iter()
-        .map(|(id, trial)| {
-            let difference = between(model, trial, session.motion_square);
+        .map(|(effect, trial)| {
+            let difference = between(session, model, trial);
             let (after, values) = (&trial.scored.score, trial.scored.fit.values.len());
             let worse = trial.error() > model.error();
             let noise = !outweighs(after.error, 1.0);
             let most = outweighs(before.error, after.error) || noise;
             Candidate {
-                effects: vec![*id],
+                effects: vec![effect.id()],
                 // Every effect contains "none of it", so it never has to make things worse.
                 error: share * if worse { before.error } else { after.error },
                 delta_bic: if worse {
@@ -243,20 +250,22 @@ fn candidates(
                     delta_bic(before, length, after, values)
                 },
                 significant: difference.is_better() && most,
-                promising: difference.least_fall > PROMISING && !difference.is_better(),
+                promising: is_promising(&difference),
                 parameters: session
                     .parameters(&trial.scored)
                     .into_iter()
-                    .filter(|p| p.effect == Some(*id))
+                    .filter(|p| p.effect == Some(effect.id()))
                     .collect(),
                 equivalent_to: tried
                     .iter()
                     .filter(|(other, t)| {
-                        other != id
-                            && between(trial, t, session.motion_square).is_same()
+                        other.id() != effect.id()
+                            && may_replace(*other, *effect)
+                            && t.values() <= trial.values()
+                            && between(session, trial, t).is_same()
                             && difference.is_better()
                     })
-                    .map(|(other, _)| *other)
+                    .map(|(other, _)| other.id())
                     .collect(),
             }
         })
@@ -266,7 +275,7 @@ fn candidates(
             .effects()
             .iter()
             .all(|own| own.id() != e.id() && !own.has_part(e.id()))
-            && tried.iter().all(|(id, _)| *id != e.id())
+            && tried.iter().all(|(effect, _)| effect.id() != e.id())
     });
     candidates.extend(open.map(|e| Candidate {
         effects: vec![e.id()],

@@ -8,8 +8,7 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{
-    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Overruled, Parameter, Step,
-    Verdict,
+    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Overruled, Parameter, Verdict,
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
@@ -241,11 +240,11 @@ pub(super) fn add_pauses(verdict: &mut Verdict, pauses: usize) {
         0 => return,
         1 => write!(
             verdict.text,
-            " Rows are missing in one place: the model begins anew after it."
+            " Rows are missing in one place, or two runs are joined there: the model begins anew after it."
         ),
         many => write!(
             verdict.text,
-            " Rows are missing in {many} places: the model begins anew after each."
+            " Rows are missing in {many} places, or runs are joined there: the model begins anew after each."
         ),
     };
 }
@@ -356,29 +355,6 @@ const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than
 /// For what is one constant while a drive turns one way.
 const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the motion, a \
     dead zone with the input, and a constant load never.";
-
-/// The verdict where a diagnosis was stopped before it settled.
-pub(super) fn undecided(steps: &[Step], present: &[EffectId]) -> Verdict {
-    let last = steps.iter().min_by(|a, b| a.error.total_cmp(&b.error));
-    let missing = last.map_or_else(Vec::new, |step| {
-        step.effects
-            .iter()
-            .filter(|e| **e != effect::VISCOUS_FRICTION && !present.contains(e))
-            .filter(|e| !is_of_record(**e))
-            .map(|e| vec![*e])
-            .collect()
-    });
-    Verdict {
-        missing,
-        complete: false,
-        unknown: true,
-        next_experiment: None,
-        experiments: Vec::new(),
-        contradicted: Vec::new(),
-        overruled: Vec::new(),
-        text: "Many effects help a little and none explains the rest: the model structure itself may be wrong.".to_owned(),
-    }
-}
 
 fn names(ids: &[EffectId], between: &str) -> String {
     let names: Vec<&str> = ids.iter().map(|id| name_of(*id)).collect();

@@ -83,8 +83,9 @@ impl NextExperiment {
         for lag in [model.lag, model.sensor_lag].into_iter().flatten() {
             denominator = slower(&denominator, lag);
         }
+        let denominator: Vec<f64> = denominator.into_iter().map(shown).collect();
         Some(Opening::Loop(Box::new(ExploreInput {
-            plant: TransferFunction::new(&[gain], &denominator, model.delay),
+            plant: TransferFunction::new(&[shown(gain)], &denominator, shown(model.delay)),
             relay,
             noise: None,
         })))
@@ -117,6 +118,11 @@ impl NextExperiment {
     }
 }
 
+/// A coefficient with as many digits as one reads in an equation; a fitted one is known to fewer.
+fn shown(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 /// A denominator multiplied by `lag s + 1`; the highest power is first.
 fn slower(denominator: &[f64], lag: f64) -> Vec<f64> {
     let mut longer: Vec<f64> = denominator.iter().map(|c| lag * c).collect();
@@ -131,6 +137,13 @@ fn slower(denominator: &[f64], lag: f64) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::diagnosis::{Limits, Parameter, Status};
+
+    #[test]
+    fn a_coefficient_is_shown_with_six_digits() {
+        assert_eq!(shown(0.000_879_996_655_141_020_1), 8.799_97e-4);
+        assert_eq!(shown(31_925.472_031_970_59), 31_925.5);
+        assert!(shown(f64::INFINITY).is_infinite() && shown(0.0) == 0.0);
+    }
 
     #[test]
     fn a_process_with_two_lags_and_a_load_becomes_a_loop() {

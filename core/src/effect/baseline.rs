@@ -31,9 +31,6 @@ pub(crate) struct BaselineParameter {
     pub effect: Option<EffectId>,
 }
 
-/// Place of the viscous friction in the baseline of a drive.
-pub(crate) const DAMPING: usize = 1;
-
 /// Place of the ambient in that of a process which comes to rest.
 const AMBIENT: usize = 2;
 
@@ -226,6 +223,11 @@ impl Baseline {
             Self::Drive | Self::Integrator => 0,
             Self::Lag { .. } => 1,
         }
+    }
+
+    /// What the ambient of a process becomes where that integrates: an effect that lets its output drift.
+    pub fn drift() -> EffectId {
+        LOAD
     }
 
     /// Whether a record of this length, s, does not tell a lag with these values and standard errors from an integrator.

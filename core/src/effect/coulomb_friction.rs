@@ -56,10 +56,6 @@ impl Effect for CoulombFriction {
         starts(probe.friction_level(), probe)
     }
 
-    fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        starts(probe.dissipated_level(), probe)
-    }
-
     fn starts_with_body(&self, probe: &Probe, _share: f64) -> Vec<BodyStart> {
         let Some(balance) = probe.balanced_in_motion(|_, v| -v.signum()) else {
             return Vec::new();

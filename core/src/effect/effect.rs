@@ -26,12 +26,6 @@ pub trait Effect: Sync {
     /// Values from which a fit may start, most likely first; several where the error has several valleys. The effect is
     /// only asked for if it leaves less than this `share` of the squared error: what takes long to search for need not be.
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>>;
-    /// The same for a drive without viscous friction, where that of a model without this effect may have taken its
-    /// place.
-    fn starts_undamped(&self, _probe: &Probe) -> Vec<Vec<f64>> {
-        Vec::new()
-    }
-
     /// The same with inertia and viscous friction of the body, where the record tells them together.
     fn starts_with_body(&self, _probe: &Probe, _share: f64) -> Vec<BodyStart> {
         Vec::new()
@@ -84,12 +78,6 @@ pub trait Effect: Sync {
     /// Whether the effect of this id is this one with some values at 0.
     fn has_part(&self, id: EffectId) -> bool {
         self.contains().contains(&id)
-    }
-
-    /// Whether it is worth a try only where one of the effects that it contains comes to something: what it adds to
-    /// them does not hide them.
-    fn needs_its_parts(&self) -> bool {
-        false
     }
 
     /// Exchanges `values` with those of the `body` where they only have each other's roles; true if it did. Of

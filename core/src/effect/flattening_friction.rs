@@ -76,10 +76,6 @@ impl Effect for FlatteningFriction {
         &[coulomb_friction::ID]
     }
 
-    fn needs_its_parts(&self) -> bool {
-        true
-    }
-
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Force(|m, half| {
             -m.velocity / (m.velocity.abs() + half[0])

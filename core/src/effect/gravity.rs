@@ -1,7 +1,9 @@
 //! Gravity on an arm: a torque that follows the sine of the angle.
 
 use super::atom::Values;
-use super::{Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Probe, Range};
+use super::{
+    Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Probe, Range, constant_load,
+};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -66,6 +68,11 @@ impl Effect for Gravity {
         fit.map_or_else(Vec::new, |fit| {
             vec![arm(fit.coefficients[0], fit.coefficients[1])]
         })
+    }
+
+    /// Over a small angle, an arm far from upright is a constant load.
+    fn limits(&self) -> &'static [EffectId] {
+        &[constant_load::ID]
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {

@@ -96,10 +96,6 @@ impl Effect for PreslidingFriction {
         all
     }
 
-    fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        starts(probe.dissipated_level(), probe)
-    }
-
     /// Where friction builds up over a long way, what it takes looked like a viscous friction that there is not.
     fn starts_with_body(&self, probe: &Probe, share: f64) -> Vec<BodyStart> {
         let mut found = long_starts(probe, share);

@@ -375,25 +375,6 @@ impl Probe {
         level.max(LEAST_FRICTION * self.scales.force)
     }
 
-    /// Friction level that would take all the power that the input brings: where a drive runs at few speeds, the
-    /// viscous friction of a model without dry friction has taken its place and hides it from the unexplained force.
-    pub fn dissipated_level(&self) -> f64 {
-        let (mut power, mut speed) = (0.0, 0.0);
-        for (from, to) in &self.spans {
-            for k in *from..(to - 1).min(self.acting.len()) {
-                let v = 0.5 * (self.velocity[k] + self.velocity[k + 1]);
-                power += self.acting[k] * v;
-                speed += v.abs();
-            }
-        }
-        let level = power / speed;
-        if level.is_finite() {
-            level.max(LEAST_FRICTION * self.scales.force)
-        } else {
-            LEAST_FRICTION * self.scales.force
-        }
-    }
-
     /// Constant force that the unexplained force suggests, beside friction and another body.
     pub fn offset(&self) -> f64 {
         let found = self.beside_friction(Vec::new()).map(|forces| forces[2]);

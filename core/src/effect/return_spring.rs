@@ -1,7 +1,7 @@
 //! A spring to the ground.
 
 use super::atom::Values;
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, constant_load};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -62,6 +62,11 @@ impl Effect for ReturnSpring {
         let fit = probe.regress(&[&place, &always]);
         let found = fit.and_then(|fit| spring(-fit.coefficients[0], fit.coefficients[1]));
         found.into_iter().collect()
+    }
+
+    /// A spring that is relaxed far away is a constant load.
+    fn limits(&self) -> &'static [EffectId] {
+        &[constant_load::ID]
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {

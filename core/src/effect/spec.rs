@@ -114,8 +114,8 @@ pub enum Range {
     /// At least `RIGID_CROSSINGS` times [`Scales::crossed`], at most the travel: friction that built up over more
     /// would be a spring.
     Long,
-    /// At least `SEEN_TURN` times its [`Scales::of`]: what repeats over the position goes through most of a wave within
-    /// the travel.
+    /// At least `SEEN_TURN` times its [`Scales::of`]: what repeats over the position is seen to do so within the
+    /// travel.
     Repeating,
 }
 
@@ -171,9 +171,9 @@ pub const HARDEST: f64 = 300.0;
 /// A load lighter than this share of the motor is part of it.
 pub const LIGHTEST: f64 = 0.03;
 
-/// Radians in the travel from which a periodic force is known by its wave, three quarters of a turn; less of it may look
-/// like any other force.
-pub const SEEN_TURN: f64 = 0.75 * TAU;
+/// Radians in the travel from which a periodic force is seen to repeat, a turn and a half; less of it may look like any other
+/// force.
+pub const SEEN_TURN: f64 = 1.5 * TAU;
 
 /// A wave within this factor of the longest is at the end of its range.
 const AT_END: f64 = 1.001;

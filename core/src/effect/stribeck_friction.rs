@@ -73,12 +73,13 @@ impl Effect for StribeckFriction {
         ]
     }
 
-    fn contains(&self) -> &'static [EffectId] {
-        &[coulomb_friction::ID, presliding_friction::ID]
+    /// Friction may be all in what it takes to start.
+    fn telling(&self) -> usize {
+        2
     }
 
-    fn needs_its_parts(&self) -> bool {
-        true
+    fn contains(&self) -> &'static [EffectId] {
+        &[coulomb_friction::ID, presliding_friction::ID]
     }
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
@@ -104,18 +105,6 @@ impl Effect for StribeckFriction {
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         let best = found.into_iter().take(2);
         best.flat_map(|f| contacts(f.1, crossed)).collect()
-    }
-
-    fn starts_undamped(&self, probe: &Probe) -> Vec<Vec<f64>> {
-        let (level, crossed) = (probe.dissipated_level(), probe.scales.crossed());
-        let at = |share: &f64| {
-            let speed = share * probe.scales.speed;
-            vec![level, 0.1 * level, speed, 0.5 * crossed, 0.1]
-        };
-        let speeds = SPEEDS.iter().skip(1).step_by(3);
-        speeds
-            .flat_map(|share| contacts(at(share), crossed))
-            .collect()
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {

@@ -16,7 +16,8 @@ use crate::exponential::exponential;
 
 /// `x, s, v, u, z`, and with them what is held: `w, q, p`.
 const MOVING: usize = 5;
-const ALL: usize = 8;
+const HELD: usize = 3;
+const ALL: usize = MOVING + HELD;
 const VELOCITY: usize = 2;
 const LOAD_VELOCITY: usize = 3;
 
@@ -27,7 +28,7 @@ const TERMS: usize = 10;
 pub(super) struct Series {
     /// Position of the body at the begin.
     from: f64,
-    terms: [SVector<f64, ALL>; TERMS],
+    terms: [SVector<f64, MOVING>; TERMS],
 }
 
 impl Series {
@@ -131,9 +132,16 @@ impl Joint {
     /// Motion from here under these forces, over times in which the joint does not swing far; body or load may be held by dry
     /// friction.
     pub fn series(&self, joined: &Joined, forces: &Forces, [body, load]: [bool; 2]) -> Series {
-        let mut terms = [joined.vector(forces); TERMS];
+        let all = joined.vector(forces);
+        let mut terms = [all.fixed_rows::<MOVING>(0).into_owned(); TERMS];
         for k in 1..TERMS {
-            terms[k] = self.rates * terms[k - 1] / k as f64;
+            // What is held drives the first term alone.
+            let held = if k == 1 {
+                all.fixed_rows::<HELD>(MOVING).into_owned()
+            } else {
+                SVector::zeros()
+            };
+            terms[k] = self.rate(&terms[k - 1], &held) / k as f64;
             if body {
                 terms[k][VELOCITY] = 0.0;
             }
@@ -145,6 +153,24 @@ impl Joint {
             from: joined.body.x,
             terms,
         }
+    }
+
+    /// Rates of change of what moves. Two thirds of the matrix are 0, and contacts take most of the time of a fit with a gap.
+    fn rate(
+        &self,
+        moving: &SVector<f64, MOVING>,
+        held: &SVector<f64, HELD>,
+    ) -> SVector<f64, MOVING> {
+        let [_, s, v, u, z] = (*moving).into();
+        let [w, q, p] = (*held).into();
+        let r = &self.rates;
+        SVector::from([
+            v,
+            v - u,
+            r[(2, 1)] * s + r[(2, 2)] * v + r[(2, 3)] * u + r[(2, 4)] * z + r[(2, 6)] * q,
+            r[(3, 1)] * s + r[(3, 2)] * v + r[(3, 3)] * u + r[(3, 7)] * p,
+            r[(4, 4)] * z + r[(4, 5)] * w,
+        ])
     }
 
     /// State after `h` seconds under these forces; `None` for a duration that was not prepared.

@@ -54,20 +54,11 @@ pub struct Load {
     pub coupling: Coupling,
 }
 
-/// A load this many times as heavy as the body does not move.
-const HEAVIEST: f64 = 1e3;
-
 /// Radians of the fastest oscillation in one step; its phase is then right to a few parts in ten
 /// thousand.
 pub(super) const STEP_RADIANS: f64 = 0.2;
 
 impl Load {
-    /// Whether it does not move beside a body of this inertia within so long (s), by its weight or by its viscous friction.
-    pub fn is_still(&self, inertia: f64, duration: f64) -> bool {
-        let heaviest = HEAVIEST * inertia.abs();
-        self.inertia > heaviest || self.viscous * duration > heaviest
-    }
-
     /// Rate at which its swing on a joint loses energy, 1/s: twice the rate at which the swing decays.
     pub(super) fn decay(&self) -> f64 {
         (self.coupling.damping + self.viscous) / self.inertia

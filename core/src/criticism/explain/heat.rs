@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use super::task::Sketch;
-use super::tuning::{FAR, HEATS, HOPE};
+use super::tuning::{FAR, HEATS, HOPE, ROUNDS_LEFT};
 use crate::criticism::fit::{Fit, same_place};
 use crate::criticism::session::Session;
 use crate::effect::EffectId;
@@ -16,6 +16,22 @@ pub(super) struct Heat {
     waiting: VecDeque<(f64, Fit)>,
     over: Vec<(f64, Fit)>,
     round: usize,
+}
+
+/// What a model may come to: the cost of one that still falls fast says little.
+fn hoped((before, fit): &(f64, Fit)) -> f64 {
+    let falls = if fit.done { 0.0 } else { before - fit.cost };
+    (fit.cost - HOPE * falls).max(0.0)
+}
+
+/// Where a model ends if each further round lowers its cost as the last one did.
+fn settled((before, fit): &(f64, Fit)) -> f64 {
+    let ratio = if fit.done {
+        1.0
+    } else {
+        (fit.cost / before).min(1.0)
+    };
+    fit.cost * ratio.powi(ROUNDS_LEFT)
 }
 
 impl Heat {
@@ -42,7 +58,8 @@ impl Heat {
     }
 
     /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another one costs.
-    pub fn advance(&mut self, session: &Session, alike: f64) -> bool {
+    /// A race that `gives_up` ends with its round, and nobody wins.
+    pub fn advance(&mut self, session: &Session, alike: f64, gives_up: bool) -> bool {
         let crew = &session.data.crew;
         let width = crew.width().min(self.waiting.len());
         let mut batch: Vec<(f64, Fit)> = self.waiting.drain(..width).collect();
@@ -60,7 +77,9 @@ impl Heat {
         if self.waiting.is_empty() {
             self.cull(alike);
             self.round += 1;
-            if self.round < HEATS.len() {
+            if gives_up {
+                *self = Self::default();
+            } else if self.round < HEATS.len() {
                 self.waiting = self.over.drain(..).collect();
             }
         }
@@ -70,11 +89,6 @@ impl Heat {
     /// Leaves the best of each set of effects, and none that is far behind.
     fn cull(&mut self, alike: f64) {
         let (_, starts) = HEATS[self.round];
-        // What still falls fast is judged by where it may come to.
-        let hoped = |(before, fit): &(f64, Fit)| {
-            let falls = if fit.done { 0.0 } else { before - fit.cost };
-            (fit.cost - HOPE * falls).max(0.0)
-        };
         let last = self.round + 1 == HEATS.len();
         let key = |entry: &(f64, Fit)| if last { entry.1.cost } else { hoped(entry) };
         self.over.sort_by(|a, b| {
@@ -90,11 +104,11 @@ impl Heat {
         let mut kept: Vec<(Vec<EffectId>, Vec<f64>)> = Vec::new();
         let far = FAR[self.round];
         self.over.retain(|entry| {
-            let (fit, hoped) = (&entry.1, key(entry));
+            let fit = &entry.1;
             let ids = sorted_ids(fit);
             let same = || kept.iter().filter(|(k, _)| *k == ids);
             let twin = same().any(|(_, values)| same_place(values, &fit.values));
-            let stays = hoped <= alike.max(far * least) && same().count() < starts && !twin;
+            let stays = hoped(entry) <= alike.max(far * least) && same().count() < starts && !twin;
             if stays {
                 kept.push((ids, fit.values.clone()));
             }
@@ -107,7 +121,9 @@ impl Heat {
     pub fn best(&mut self, count: usize, limit: f64) -> Vec<Sketch> {
         let over = std::mem::take(self).over.into_iter();
         let mut sets: Vec<Vec<EffectId>> = Vec::new();
-        let near = over.map(|(_, fit)| fit).filter(|fit| fit.cost <= limit);
+        let near = over
+            .filter(|entry| settled(entry) <= limit)
+            .map(|(_, fit)| fit);
         let chosen = near.filter(|fit| {
             let ids = sorted_ids(fit);
             let known = sets.iter().filter(|set| **set == ids).count();

@@ -6,8 +6,10 @@
 
 use super::Trial;
 use super::tuning::{
-    ALIKE_IN_BLOCKS, DISCREPANCY, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, UNCHANGED,
+    ALIKE_IN_BLOCKS, DISCREPANCY, FEW_BLOCKS, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, STEADY_FALL,
+    UNCHANGED,
 };
+use crate::criticism::session::Session;
 
 /// How a model differs from another one.
 #[derive(Clone, Copy, Debug)]
@@ -20,13 +22,15 @@ pub(in crate::criticism) struct Difference {
     pub fall: f64,
     /// The same of the half where it is less.
     pub least_fall: f64,
+    /// The same without the block of each half that tells most of it, where blocks do not hang together.
+    steady_fall: f64,
 }
 
-/// The difference from one trial to another, on a record with this mean square of the motion in units of its noise.
-pub(in crate::criticism) fn difference(from: &Trial, to: &Trial, motion_square: f64) -> Difference {
+/// The difference from one trial to another.
+pub(in crate::criticism) fn difference(session: &Session, from: &Trial, to: &Trial) -> Difference {
     let mean = |held: &[f64]| held.iter().sum::<f64>() / held.len().max(1) as f64;
     let usual = mean(&from.held).min(mean(&to.held));
-    let floor = usual.max(1.0) + DISCREPANCY * DISCREPANCY * motion_square;
+    let floor = usual.max(1.0) + DISCREPANCY * DISCREPANCY * session.motion_square;
     let pairs = from.held.iter().zip(&to.held);
     let changes: Vec<f64> = pairs
         .filter(|(a, b)| (*a - *b).abs() > UNCHANGED * a.max(**b))
@@ -35,10 +39,13 @@ pub(in crate::criticism) fn difference(from: &Trial, to: &Trial, motion_square: 
     let count = changes.len() as f64;
     let mean = changes.iter().sum::<f64>() / count;
     let squares: f64 = changes.iter().map(|c| (c - mean).powi(2)).sum();
+    // Of a slow process neighbouring blocks hang together, and tell less than as many others (Newey and West 1987, one lag).
+    let neighbours = changes.windows(2).map(|c| (c[0] - mean) * (c[1] - mean));
+    let together = 2.0 * neighbours.sum::<f64>().max(0.0);
     let t = if changes.len() < 2 {
         0.0
     } else {
-        mean / (squares / (count - 1.0) / count)
+        mean / ((squares + together) / (count - 1.0) / count)
             .sqrt()
             .max(f64::MIN_POSITIVE)
     };
@@ -49,14 +56,31 @@ pub(in crate::criticism) fn difference(from: &Trial, to: &Trial, motion_square: 
             f64::NEG_INFINITY
         }
     };
-    let halves = from.halves().zip(to.halves());
-    let least = halves.map(|(a, b)| fall(a.score.error, b.score.error));
+    let halves = || from.halves().zip(to.halves());
+    let least = halves().map(|(a, b)| fall(a.score.error, b.score.error));
+    let steady = halves().map(|(a, b)| {
+        let [a, b] = without_most(&a.score.held_blocks, &b.score.held_blocks);
+        fall(a.sqrt(), b.sqrt())
+    });
     Difference {
         t: if t.is_finite() { t } else { 0.0 },
         blocks: changes.len(),
         fall: fall(from.error(), to.error()),
         least_fall: least.fold(f64::INFINITY, f64::min),
+        steady_fall: if session.data.has_blocks_apart() {
+            steady.fold(f64::INFINITY, f64::min)
+        } else {
+            f64::NEG_INFINITY
+        },
     }
+}
+
+/// Sums of two series without the place where the second is less by the most.
+fn without_most(a: &[f64], b: &[f64]) -> [f64; 2] {
+    let pairs = || a.iter().zip(b);
+    let sums = pairs().fold([0.0, 0.0], |[x, y], (a, b)| [x + a, y + b]);
+    let most = pairs().max_by(|x, y| (x.0 - x.1).total_cmp(&(y.0 - y.1)));
+    most.map_or(sums, |(a, b)| [sums[0] - a, sums[1] - b])
 }
 
 /// Student's quantile for so many degrees of freedom, from that of the normal distribution (Cornish and Fisher 1960).
@@ -70,17 +94,55 @@ fn student(normal: f64, freedom: f64) -> f64 {
 
 impl Difference {
     fn is_certain(&self, t: f64) -> bool {
-        self.blocks > 2 && t > student(QUANTILE, self.blocks as f64 - 1.0)
+        self.blocks > FEW_BLOCKS && t > student(QUANTILE, self.blocks as f64 - 1.0)
     }
 
-    /// Whether the second model is better.
+    /// Whether the second model is better. A real machine does more than any model says: where a step explains more than it
+    /// leaves, in either half and not by one block, what is left beside may hide that from a test of the mean.
     pub fn is_better(&self) -> bool {
-        self.least_fall > GREAT_FALL || self.fall > LEAST_FALL && self.is_certain(self.t)
+        let steady = self.least_fall.min(self.steady_fall) > STEADY_FALL;
+        self.least_fall > GREAT_FALL || steady || self.fall > LEAST_FALL && self.is_certain(self.t)
+    }
+
+    /// Whether they differ in too few blocks to count: what a limit does may be met once.
+    pub fn is_met_once(&self) -> bool {
+        self.blocks <= FEW_BLOCKS
+    }
+
+    /// Whether the second does not do better than the first.
+    pub fn is_no_better(&self) -> bool {
+        self.fall < 0.0 || self.is_same()
     }
 
     /// Whether neither is better.
     pub fn is_same(&self) -> bool {
         self.fall.abs() < SAME
             || (self.fall.abs() < ALIKE_IN_BLOCKS && !self.is_certain(self.t.abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_block_that_tells_most_is_left_out() {
+        let before = [9.0, 100.0, 9.0, 9.0];
+        let after = [8.0, 1.0, 10.0, 8.0];
+        assert_eq!(without_most(&before, &after), [27.0, 26.0]);
+        assert_eq!(without_most(&[], &[]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn what_explains_as_much_as_it_leaves_needs_no_count_of_blocks_but_by_more_than_one() {
+        let step = |steady_fall: f64| Difference {
+            t: 1.9,
+            blocks: 20,
+            fall: 0.45,
+            least_fall: 0.4,
+            steady_fall,
+        };
+        assert!(step(0.3).is_better());
+        assert!(!step(0.1).is_better());
     }
 }

@@ -12,14 +12,16 @@ mod tuning;
 
 use std::collections::VecDeque;
 
+use super::contradicted::released;
 use super::screen::{Screened, Start};
-use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, outweighs};
+use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, is_trifle, outweighs};
 use super::session::{Session, small_share};
 use crate::diagnosis::InputVerdict;
 use crate::effect::{Dimension, Effect, EffectId};
 use heat::Heat;
 pub(super) use judge::{Difference, difference};
 use swap::Rival;
+pub(super) use swap::may_replace;
 use task::{Sketch, Task};
 pub(super) use trial::Trial;
 use tuning::{ALIKE, FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
@@ -33,6 +35,8 @@ enum Stage {
     Fit(Level),
     /// Doing without each effect of the subset that leads.
     Check(Level),
+    /// Fitting the best without each effect that others are to replace.
+    TakeOut,
     /// Trying others in the place of each effect.
     Swap,
     /// Fitting the models on the way to the best.
@@ -46,9 +50,18 @@ enum Stage {
 struct Level {
     /// Number of effects that are added.
     size: usize,
-    /// One of them brings a hidden body. Their fits are the longest by far, and the freest: they come last, where everything
-    /// that acts on the body that is measured leaves more than noise.
+    /// One of them brings a hidden body. Their fits are the longest by far, and the freest: of each size they come last, where
+    /// everything that acts on the body that is measured leaves more than noise.
     hidden: bool,
+}
+
+impl Level {
+    fn next(self) -> Self {
+        Self {
+            size: self.size + usize::from(self.hidden),
+            hidden: !self.hidden,
+        }
+    }
 }
 
 /// The place of the inertia of a second body, whose motion is not measured, among the values of an effect that brings one.
@@ -79,7 +92,8 @@ pub(super) struct Explain {
     /// Leads of the present size that were looked at.
     looked_at: Vec<usize>,
     pub best: usize,
-    misses: usize,
+    /// Sizes in a row that brought nothing; and of those with a hidden body.
+    misses: [usize; 2],
     pub rivals: Vec<Rival>,
     swaps: usize,
     done: usize,
@@ -100,7 +114,7 @@ impl Explain {
             leads: [Vec::new(), Vec::new()],
             looked_at: Vec::new(),
             best: 0,
-            misses: 0,
+            misses: [0, 0],
             rivals: Vec::new(),
             swaps: 0,
             done: 0,
@@ -119,7 +133,10 @@ impl Explain {
             let (own, trials) = (&*session, &self.trials);
             let found = crew.gather(batch.len(), |i| batch[i].run(own, screened, trials));
             self.trials.extend(found.into_iter().flatten());
-        } else if !self.heat.advance(session, self.alike()) {
+        } else if !self
+            .heat
+            .advance(session, self.alike(), self.gives_up(session))
+        {
             let places = match self.stage {
                 Stage::Swap => self.size(self.best).max(1),
                 _ => 1,
@@ -132,6 +149,12 @@ impl Explain {
             self.go_on(session, screened);
         }
         self.stage != Stage::Done
+    }
+
+    /// Whether a race is no longer worth while.
+    fn gives_up(&self, session: &Session) -> bool {
+        let hidden = matches!(self.stage, Stage::Fit(level) if level.hidden);
+        hidden && session.data.tried_enough(true)
     }
 
     /// Cost on the scout of what may stand in the place of an effect of the best.
@@ -160,14 +183,9 @@ impl Explain {
             .library()
             .filter(|e| is_hidden_body(*e) == hidden && self.is_open(from, *e))
         {
-            let beside = screened.values(&ids, effect.id());
-            let alone = screened.values(&[], effect.id());
-            let own: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
-            if own.is_empty() || hidden {
-                sketches.extend(Sketch::sought(session, fit, effect));
-            }
-            sketches.extend(own.iter().map(|own| Sketch::with(fit, effect, own)));
+            sketches.extend(Sketch::beside(session, screened, fit, effect));
         }
+        Sketch::with_other_bodies(&mut sketches, session, fit);
         self.take(session, sketches);
     }
 
@@ -185,7 +203,7 @@ impl Explain {
             Stage::Base => "Fitting the model".to_owned(),
             Stage::Fit(_) => self.tasks.front().map_or_else(String::new, Task::text),
             Stage::Check(_) => "Checking that every effect is needed".to_owned(),
-            Stage::Swap => "Checking what else could explain it".to_owned(),
+            Stage::TakeOut | Stage::Swap => "Checking what else could explain it".to_owned(),
             Stage::Path | Stage::Done => "Done".to_owned(),
         };
         let done = self.done as f64;
@@ -223,6 +241,7 @@ impl Explain {
             }
             Stage::Fit(level) => self.judge_level(session, screened, level),
             Stage::Check(level) => self.judge_check(session, screened, level),
+            Stage::TakeOut => self.swap(session, screened),
             Stage::Swap => self.judge_swaps(session, screened),
             Stage::Path => self.stage = Stage::Done,
             Stage::Done => {}
@@ -230,7 +249,10 @@ impl Explain {
     }
 
     fn is_noise(&self, session: &Session, trial: usize) -> bool {
-        let trial = &self.trials[trial];
+        Self::leaves_noise(session, &self.trials[trial])
+    }
+
+    fn leaves_noise(session: &Session, trial: &Trial) -> bool {
         let small = small_share(&trial.scored.fit);
         trial.halves().all(|scored| {
             let score = &scored.score;
@@ -248,25 +270,23 @@ impl Explain {
             session.input_check.verdict,
             InputVerdict::Sign | InputVerdict::ClosedLoop
         );
-        if other || self.is_noise(session, self.best) {
+        // A hidden body is free: what acts on the measured one, with an effect more, may do as well with fewer values.
+        let doubted =
+            !hidden && self.has_hidden_body(self.best) && size == self.size(self.best) + 1;
+        let explained =
+            self.is_noise(session, self.best) && !doubted || self.knows_wrongly(session);
+        let enough = |hidden: bool| size > 1 && session.data.tried_enough(hidden);
+        if other
+            || explained
+            || enough(false)
+            || size > MOST_SIZE
+            || self.misses.iter().all(|m| *m > MOST_MISSES)
+        {
             self.open_swaps(session, screened);
             return;
         }
-        let enough = size > 1 && session.data.tried_enough();
-        if size > MOST_SIZE || enough || self.misses > MOST_MISSES {
-            if hidden {
-                self.open_swaps(session, screened);
-            } else {
-                self.misses = 0;
-                self.open_level(
-                    session,
-                    screened,
-                    Level {
-                        size: 1,
-                        hidden: true,
-                    },
-                );
-            }
+        if self.misses[usize::from(hidden)] > MOST_MISSES || hidden && enough(true) {
+            self.open_level(session, screened, level.next());
             return;
         }
         let lead = |hidden: bool| {
@@ -298,6 +318,14 @@ impl Explain {
         }
     }
 
+    /// Whether the model that effects are added to leaves noise as soon as it gives up what the user knows of it.
+    fn knows_wrongly(&self, session: &Session) -> bool {
+        if self.best != 0 || session.knowledge.is_free() {
+            return false;
+        }
+        Self::leaves_noise(session, &released(session, &self.trials[0]))
+    }
+
     /// Whether an effect can be added to a trial.
     fn is_open(&self, trial: usize, effect: &dyn Effect) -> bool {
         let effects = self.trials[trial].effects();
@@ -317,6 +345,11 @@ impl Explain {
             && added.any(|e| is_hidden_body(*e)) == level.hidden
     }
 
+    fn has_hidden_body(&self, trial: usize) -> bool {
+        let mut effects = self.trials[trial].effects().iter();
+        effects.any(|e| is_hidden_body(*e))
+    }
+
     fn judge_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let Level { size, hidden } = level;
         if self.looked_at.is_empty() {
@@ -329,22 +362,21 @@ impl Explain {
         // A smaller one may have come up as a part of one that was looked at.
         let open =
             |t: &usize| self.size(*t) <= size && !self.looked_at.contains(t) && self.holds(*t);
-        let better = |t: &usize| self.difference(session, self.best, *t).is_better();
+        let better = |t: &usize| {
+            let difference = self.difference(session, self.best, *t);
+            difference.is_better()
+                || difference.is_met_once() && self.explains(session, self.best, *t)
+                || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best)
+        };
         let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self
             .lead(session, &better)
             .filter(|_| self.looked_at.len() < MOST_LEADS);
         let Some(lead) = lead else {
             let taken = self.looked_at.contains(&self.best);
-            self.misses = if taken { 0 } else { self.misses + 1 };
-            self.open_level(
-                session,
-                screened,
-                Level {
-                    size: size + 1,
-                    hidden,
-                },
-            );
+            let misses = &mut self.misses[usize::from(hidden)];
+            *misses = if taken { 0 } else { *misses + 1 };
+            self.open_level(session, screened, level.next());
             return;
         };
         self.looked_at.push(lead);
@@ -388,13 +420,17 @@ impl Explain {
     }
 
     /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect must that is
-    /// added.
+    /// added; where the part leaves noise, or a trifle of what there was at first, it is not.
     fn does_as_well(&self, session: &Session, simpler: usize, other: usize) -> bool {
         let difference = self.difference(session, simpler, other);
         let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
-        let worth =
-            difference.is_better() && (self.is_noise(session, other) || outweighs(before, after));
-        difference.is_same() || self.has_part_of(simpler, other) && !worth
+        let scored = &self.trials[simpler].scored;
+        let trifle = is_trifle(before, session.first(scored), small_share(&scored.fit));
+        let worth = difference.is_better()
+            && !trifle
+            && !self.is_noise(session, simpler)
+            && (self.is_noise(session, other) || outweighs(before, after));
+        difference.is_no_better() || self.has_part_of(simpler, other) && !worth
     }
 
     /// The one that leaves least; of those that do as well, the one with fewest values.
@@ -421,13 +457,20 @@ impl Explain {
     }
 
     fn difference(&self, session: &Session, from: usize, to: usize) -> Difference {
-        difference(&self.trials[from], &self.trials[to], session.motion_square)
+        difference(session, &self.trials[from], &self.trials[to])
     }
 
     /// Whether each of the added effects explains more than it leaves, or is needed for what is left to be noise.
     fn is_needed(&self, session: &Session, trial: usize) -> bool {
         (self.held.len()..self.trials[trial].effects().len())
             .all(|place| self.needs(session, trial, place))
+    }
+
+    /// Whether a model leaves noise where another one leaves more than that, however few blocks show it: what is met once is
+    /// explained all the same.
+    fn explains(&self, session: &Session, before: usize, after: usize) -> bool {
+        let outweighs = outweighs(self.trials[before].error(), self.trials[after].error());
+        outweighs && self.is_noise(session, after) && !self.is_noise(session, before)
     }
 
     pub fn needs(&self, session: &Session, trial: usize, place: usize) -> bool {
@@ -442,12 +485,12 @@ impl Explain {
         let matters = (before.powi(2) - after.powi(2)).max(0.0).sqrt() > SMALL_SHARE * first;
         let better = self.difference(session, without, trial).is_better();
         let of_record = session.tells_of_record(&self.trials[trial].scored.fit, place);
-        let explains = noise && outweighs && !self.is_noise(session, without);
+        let explains = self.explains(session, without, trial);
         let scored = &self.trials[trial].scored;
         let shown = scored.shows_marks_of(scored.fit.structure.effects[place], &session.scales);
         shown
             && scored.tells_of(place)
-            && session.is_sizeable_at(&scored.fit, place)
+            && session.is_sizeable(&scored.fit, place)
             && (of_record || matters)
             && (better && (noise || outweighs || of_record) || explains)
     }
@@ -474,9 +517,12 @@ impl Explain {
         order
     }
 
-    /// The trial of these effects.
+    /// The trial of these effects: the best model, or the one that leaves least.
     pub fn of(&self, ids: &[EffectId]) -> Option<usize> {
         let same = |t: &Trial| t.effects().len() == ids.len() && ids.iter().all(|id| t.has(*id));
+        if self.trials.get(self.best).is_some_and(same) {
+            return Some(self.best);
+        }
         let found = (0..self.trials.len()).filter(|t| same(&self.trials[*t]));
         found.min_by(|a, b| self.trials[*a].error().total_cmp(&self.trials[*b].error()))
     }
@@ -491,9 +537,9 @@ impl Explain {
                 self.tasks.extend(sketch.map(Task::Fit));
             }
         }
-        // Of the model as it was given it is asked as well which of its effects are needed.
+        // Of the model as it was given it is asked as well which of its effects leave a trace.
         for place in 0..self.held.len() {
-            if self.size(self.best) == 0 && self.without(self.best, place).is_none() {
+            if self.without(self.best, place).is_none() {
                 self.tasks.push_back(Task::Without {
                     from: self.best,
                     place,
@@ -502,18 +548,18 @@ impl Explain {
         }
     }
 
-    /// Trials with one effect more than these.
-    pub fn with_one_more(&self, ids: &[EffectId]) -> Vec<(EffectId, &Trial)> {
-        let mut found: Vec<(EffectId, &Trial)> = Vec::new();
+    /// Effects that were tried beside these alone, each with its best trial.
+    pub fn with_one_more(&self, ids: &[EffectId]) -> Vec<(&'static dyn Effect, &Trial)> {
+        let mut found: Vec<(&'static dyn Effect, &Trial)> = Vec::new();
         for trial in &self.trials {
-            let own = trial.ids();
-            if own.len() != ids.len() + 1 || !ids.iter().all(|id| own.contains(id)) {
+            let effects = trial.effects();
+            if effects.len() != ids.len() + 1 || !ids.iter().all(|id| trial.has(*id)) {
                 continue;
             }
-            let Some(more) = own.iter().find(|id| !ids.contains(id)) else {
+            let Some(more) = effects.iter().find(|e| !ids.contains(&e.id())) else {
                 continue;
             };
-            match found.iter_mut().find(|(id, _)| id == more) {
+            match found.iter_mut().find(|(e, _)| e.id() == more.id()) {
                 Some(known) if known.1.error() > trial.error() => known.1 = trial,
                 Some(_) => {}
                 None => found.push((*more, trial)),

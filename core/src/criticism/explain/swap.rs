@@ -2,10 +2,10 @@
 
 use super::task::{Sketch, Task};
 use super::tuning::{ALIKE, MOST_SWAPS};
-use super::{Explain, Stage, is_hidden_body};
+use super::{Explain, Stage, Trial, difference, is_hidden_body};
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
-use crate::effect::Effect;
+use crate::effect::{Effect, ParameterSpec};
 
 /// An effect that could stand in the place of one in the best model.
 #[derive(Clone)]
@@ -16,7 +16,7 @@ pub(in crate::criticism) struct Rival {
     pub trial: usize,
 }
 
-/// Whether the values of two effects mean the same.
+/// Whether the values of two effects have the same dimensions.
 fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
     let dimensions = |e: &dyn Effect| {
         e.parameters()
@@ -27,33 +27,69 @@ fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
     dimensions(a) == dimensions(b)
 }
 
+/// The values of an effect that another one has too, if it has no others.
+fn carried(own: &dyn Effect, values: &[f64], other: &dyn Effect) -> Option<Vec<f64>> {
+    let same =
+        |a: &ParameterSpec, b: &ParameterSpec| a.symbol == b.symbol && a.dimension == b.dimension;
+    let specs = other.parameters().iter();
+    let places = specs.map(|spec| own.parameters().iter().position(|own| same(spec, own)));
+    places.map(|place| Some(values[place?])).collect()
+}
+
+/// Whether one effect may stand in the place of another: what has that as a part, or comes near to it, says the same with more.
+pub(in crate::criticism) fn may_replace(effect: &dyn Effect, replaced: &dyn Effect) -> bool {
+    !effect.has_part(replaced.id()) && !effect.limits().contains(&replaced.id())
+}
+
 impl Explain {
-    /// Has other effects tried in the place of each that was added.
+    /// Places of the best model in which others are tried: of what was added; where that is nothing, of what the user added to
+    /// what is known.
+    fn open_places(&self, session: &Session) -> Vec<usize> {
+        let effects = self.trials[self.best].effects();
+        let own = |k: &usize| !session.knowledge.has(effects[*k].id());
+        let from = if self.size(self.best) == 0 {
+            0
+        } else {
+            self.held.len()
+        };
+        (from..effects.len()).filter(own).collect()
+    }
+
+    /// Has what is to be replaced taken out of the best model.
     pub(super) fn open_swaps(&mut self, session: &mut Session, screened: &Screened) {
+        self.stage = Stage::TakeOut;
+        let lacking = |place: &usize| self.without(self.best, *place).is_none();
+        let places = self.open_places(session).into_iter().filter(lacking);
+        let from = self.best;
+        let tasks: Vec<Task> = places.map(|place| Task::Without { from, place }).collect();
+        self.tasks.extend(tasks);
+        if self.tasks.is_empty() {
+            self.swap(session, screened);
+        }
+    }
+
+    /// Has other effects tried in the place of each that was added.
+    pub(super) fn swap(&mut self, session: &mut Session, screened: &Screened) {
         self.stage = Stage::Swap;
         let best = &self.trials[self.best];
         session.look_where_left(&best.scored.fit);
         let fit = best.scored.fit.clone();
         self.limit = ALIKE * session.scouted(&fit);
-        for place in self.held.len()..fit.structure.effects.len() {
-            let Some(without) = self.without(self.best, place) else {
-                self.tasks.push_back(Task::Without {
-                    from: self.best,
-                    place,
-                });
-                continue;
-            };
-            self.replace(session, screened, place, without);
+        self.take(session, Sketch::again(&fit));
+        for place in self.open_places(session) {
+            if let Some(without) = self.without(self.best, place) {
+                self.replace(session, screened, place, without);
+            }
         }
     }
 
-    /// Has other effects raced in the place of one of the best model: what can stand there speaks of the same body.
+    /// Has other effects raced in the place of one of the best model.
     fn replace(&mut self, session: &Session, screened: &Screened, place: usize, without: usize) {
         let fit = &self.trials[self.best].scored.fit;
         let rest = &self.trials[without];
         let (ids, own) = (rest.ids(), fit.structure.effects[place]);
         let own_values = &fit.values[fit.structure.range(place)];
-        let mut sketches = Vec::new();
+        let (mut sketches, mut same) = (Vec::new(), Vec::new());
         for effect in session
             .library()
             .filter(|e| self.is_open(without, *e) && e.id() != own.id())
@@ -68,6 +104,9 @@ impl Explain {
             if same_dimensions(own, effect) {
                 starts.push(own_values.to_vec());
             }
+            // What says the same with the same values needs no race.
+            let carried = carried(own, own_values, effect);
+            same.extend(carried.map(|values| Sketch::replacing(fit, place, effect, &values)));
             if starts.is_empty() {
                 let probed = session.probed(&rest.scored.fit);
                 starts = probed.starts(effect, 1.0);
@@ -85,19 +124,19 @@ impl Explain {
             );
         }
         self.take(session, sketches);
+        self.tasks.extend(same.into_iter().map(Task::Fit));
     }
 
     /// Trials that differ from the best in one effect that was added, with the place of that; no richer ones.
-    fn swapped(&self) -> Vec<Rival> {
+    fn swapped(&self, session: &Session) -> Vec<Rival> {
         let best = &self.trials[self.best];
-        let (own, held) = (best.ids(), self.held.len());
+        let own = best.ids();
         let values = best.values();
+        let places = self.open_places(session);
         let mut found: Vec<Rival> = Vec::new();
         for (index, trial) in self.trials.iter().enumerate() {
             let ids = trial.ids();
-            let gone: Vec<usize> = (held..own.len())
-                .filter(|k| !ids.contains(&own[*k]))
-                .collect();
+            let gone: Vec<usize> = (0..own.len()).filter(|k| !ids.contains(&own[*k])).collect();
             let new: Vec<&'static dyn Effect> = trial
                 .effects()
                 .iter()
@@ -107,8 +146,7 @@ impl Explain {
             let ([place], [effect]) = (gone.as_slice(), new.as_slice()) else {
                 continue;
             };
-            let replaced = best.effects()[*place];
-            let fair = !effect.has_part(replaced.id()) && !effect.limits().contains(&replaced.id());
+            let fair = places.contains(place) && may_replace(*effect, best.effects()[*place]);
             if ids.len() == own.len() && fair && trial.values() <= values {
                 let rival = Rival {
                     place: *place,
@@ -130,19 +168,40 @@ impl Explain {
         found
     }
 
+    /// The model with the effects of the best that leaves least: another start may have led further.
+    fn best_of_its_kind(&self, session: &Session) -> usize {
+        let best = &self.trials[self.best];
+        let same = |t: &usize| {
+            let other = &self.trials[*t];
+            other.effects().len() == best.effects().len()
+                && best.ids().iter().all(|id| other.has(*id))
+        };
+        let lower = |t: &usize| self.trials[*t].error() < best.error();
+        let all =
+            (0..self.trials.len()).filter(|t| same(t) && lower(t) && self.is_needed(session, *t));
+        let error = |t: &usize| self.trials[*t].error();
+        all.min_by(|a, b| error(a).total_cmp(&error(b)))
+            .unwrap_or(self.best)
+    }
+
     /// Takes what is better, or does as well with fewer values; else what is the same could stand in its place.
     pub(super) fn judge_swaps(&mut self, session: &mut Session, screened: &Screened) {
-        let rivals = self.swapped();
+        self.best = self.best_of_its_kind(session);
+        let rivals = self.swapped(session);
+        // What the user added stays.
+        let is_added = |r: &&Rival| r.place >= self.held.len();
         let is_simpler = |r: &Rival| {
             self.is_simpler(r.trial, self.best) && self.does_as_well(session, r.trial, self.best)
         };
         let better: Vec<usize> = rivals
             .iter()
+            .filter(is_added)
             .filter(|r| self.difference(session, self.best, r.trial).is_better())
             .map(|r| r.trial)
             .collect();
         let simpler: Vec<usize> = rivals
             .iter()
+            .filter(is_added)
             .filter(|r| is_simpler(r))
             .map(|r| r.trial)
             .collect();
@@ -155,16 +214,42 @@ impl Explain {
             self.open_swaps(session, screened);
             return;
         }
-        let same = |r: &Rival| {
-            let own = &self.trials[self.best];
-            self.difference(session, self.best, r.trial).is_same()
-                && own.same_body(&self.trials[r.trial])
-        };
-        self.rivals = rivals.into_iter().filter(same).collect();
-        if session.settle_baseline(&self.trials[self.best].scored) {
+        let mut alike: Vec<usize> = vec![self.best];
+        let same = |r: &&Rival| self.difference(session, self.best, r.trial).is_same();
+        alike.extend(rivals.iter().filter(same).map(|r| r.trial));
+        let agree = |a: usize, b: usize| self.trials[a].same_body(&self.trials[b]);
+        // Of what does as well, the body on which most agree is the likeliest.
+        let agreeing = |a: usize| alike.iter().filter(|b| agree(a, **b)).count();
+        let most = alike.iter().copied().map(agreeing).max().unwrap_or(0);
+        let added = self.size(self.best) > 0;
+        if added && agreeing(self.best) < most && self.swaps < MOST_SWAPS {
+            self.swaps += 1;
+            let other = alike.iter().copied().find(|a| agreeing(*a) == most);
+            self.best = other.unwrap_or(self.best);
+            self.open_swaps(session, screened);
+            return;
+        }
+        let best = self.best;
+        self.rivals = rivals
+            .into_iter()
+            .filter(|r| alike.contains(&r.trial) && agree(best, r.trial))
+            .collect();
+        if self.integrates(session) {
+            session.integrate();
             *self = Self::new(std::mem::take(&mut self.held));
         } else {
             self.open_path(session);
         }
+    }
+
+    /// Whether a process whose output stays where the input leaves it does as well as the best.
+    fn integrates(&self, session: &Session) -> bool {
+        let best = &self.trials[self.best];
+        if !session.may_integrate(&best.scored) {
+            return false;
+        }
+        let fit = session.integrating(&best.scored.fit);
+        let trial = fit.map(|fit| Trial::new(session, fit));
+        trial.is_some_and(|t| difference(session, &t, best).is_no_better())
     }
 }

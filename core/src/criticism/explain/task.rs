@@ -1,21 +1,25 @@
 //! One model to be fitted.
 
 use super::heat::Heat;
-use super::tuning::{CROSSINGS, SETTLED, SETTLING};
-use super::{Trial, hidden_inertia};
+use super::tuning::{CROSSINGS, SAME_BODY, SETTLED, SETTLING};
+use super::{Trial, hidden_inertia, is_hidden_body};
+use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
 use crate::criticism::guess::guess;
 use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
 use crate::criticism::structure::Structure;
 use crate::effect::baseline::Baseline;
-use crate::effect::{Effect, EffectId, Range};
+use crate::effect::{Effect, EffectId, Range, Scales};
+use crate::model::Start as WindowStart;
 
 /// A model with values from which it may be fitted.
 #[derive(Clone)]
 pub(super) struct Sketch {
     structure: Structure,
     values: Vec<f64>,
+    /// States from which windows began in the fit that it comes from.
+    known: Vec<WindowStart>,
 }
 
 impl Sketch {
@@ -23,7 +27,11 @@ impl Sketch {
     fn new(session: &Session, effects: &[&'static dyn Effect], mut values: Vec<f64>) -> Self {
         let structure = session.structure(effects);
         structure.begin(&mut values, 0);
-        Self { structure, values }
+        Self {
+            structure,
+            values,
+            known: Vec::new(),
+        }
     }
 
     /// A subset with the values that the screen told; none where an effect is not in the library.
@@ -43,7 +51,7 @@ impl Sketch {
         let mut values = fit.values.clone();
         values.extend(own);
         structure.begin(&mut values, fit.values.len());
-        Self { structure, values }
+        Self::from(fit, structure, values)
     }
 
     /// A fit with another effect, which has these values, at a place.
@@ -54,7 +62,17 @@ impl Sketch {
         structure.effects[place] = effect;
         structure.load_begin = crate::model::LoadBegin::Followed;
         structure.begin(&mut values, structure.range(place).start);
-        Self { structure, values }
+        Self::from(fit, structure, values)
+    }
+
+    /// Another model that begins where a fit did.
+    fn from(fit: &Fit, structure: Structure, values: Vec<f64>) -> Self {
+        let known = fit.starts.clone();
+        Self {
+            structure,
+            values,
+            known,
+        }
     }
 
     /// The same with a body of its own.
@@ -63,6 +81,28 @@ impl Sketch {
         sketch.values[..2].copy_from_slice(&body);
         sketch.structure.begin(&mut sketch.values, 0);
         sketch
+    }
+
+    /// A fit with one more effect: with the values that the screen tells beside its effects and alone, and from where that finds
+    /// itself if the screen tells none, or not all that it may be.
+    pub fn beside(
+        session: &Session,
+        screened: &Screened,
+        fit: &Fit,
+        effect: &'static dyn Effect,
+    ) -> Vec<Self> {
+        let beside = screened.values(&fit.structure.ids(), effect.id());
+        let alone = screened.values(&[], effect.id());
+        let told: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
+        // What repeats along the way has a valley at every period.
+        let mut specs = effect.parameters().iter();
+        let repeats = specs.any(|p| p.range == Range::Repeating);
+        let mut sketches = Vec::new();
+        if told.is_empty() || is_hidden_body(effect) || repeats {
+            sketches.extend(Self::sought(session, fit, effect));
+        }
+        sketches.extend(told.iter().map(|own| Self::with(fit, effect, own)));
+        sketches
     }
 
     /// A fit with one more effect, from where that finds itself in what the fit leaves. A body that was hidden may have been
@@ -83,6 +123,27 @@ impl Sketch {
             .collect()
     }
 
+    /// Adds the same from the first guess of the body where a fit ended with another one: what is missing may have bent it out of
+    /// all likeness.
+    pub fn with_other_bodies(sketches: &mut Vec<Self>, session: &Session, fit: &Fit) {
+        let Some(body) = first_guess(session) else {
+            return;
+        };
+        let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_BODY * a.abs();
+        let essential = fit.structure.baseline.essential();
+        if body.iter().zip(&fit.values).take(essential).all(same) {
+            return;
+        }
+        let with_body = |sketch: &Self| {
+            let mut sketch = sketch.clone();
+            sketch.values[..body.len()].copy_from_slice(&body);
+            sketch.structure.begin(&mut sketch.values, 0);
+            sketch
+        };
+        let others: Vec<Self> = sketches.iter().map(with_body).collect();
+        sketches.extend(others);
+    }
+
     /// A fit from other starting points, if it has values that the screen cannot tell: it may be in a valley of its own.
     pub fn again(fit: &Fit) -> Option<Self> {
         let mut values = fit.values.clone();
@@ -91,7 +152,7 @@ impl Sketch {
             values[*j] = 0.0;
         }
         let structure = fit.structure.clone();
-        (!open.is_empty()).then_some(Self { structure, values })
+        (!open.is_empty()).then_some(Self::from(fit, structure, values))
     }
 
     /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way.
@@ -121,24 +182,38 @@ impl Sketch {
             effects.push(fit.structure.effects[place]);
             values.extend_from_slice(&fit.values[fit.structure.range(place)]);
         }
-        Some(Self::new(session, &effects, values))
+        let known = fit.starts.clone();
+        Some(Self {
+            known,
+            ..Self::new(session, &effects, values)
+        })
     }
 
     pub fn effects(&self) -> &[&'static dyn Effect] {
         &self.structure.effects
     }
 
+    /// Its fit to a record, or to a part of it, not begun: of the states that are measured and those that are known, each window
+    /// takes the one that suits it.
+    fn on(&self, data: &Data, scales: &Scales) -> Fit {
+        let mut starts = data.guessed_starts();
+        let (structure, values) = (self.structure.clone(), self.values.clone());
+        let mut fit = Fit::new(data, structure, values, starts.clone(), scales);
+        for start in &mut starts {
+            let place = self.known.binary_search_by_key(&start.sample, |s| s.sample);
+            if let Ok(place) = place {
+                *start = self.known[place];
+            }
+        }
+        if !self.known.is_empty() {
+            fit.take_better(data, &starts);
+        }
+        fit
+    }
+
     /// Its fit on the scout, not begun.
     pub fn begun(&self, session: &Session) -> Fit {
-        let (scout, scales) = (&session.scout, &session.scales);
-        let starts = scout.guessed_starts();
-        Fit::new(
-            scout,
-            self.structure.clone(),
-            self.values.clone(),
-            starts,
-            scales,
-        )
+        self.on(&session.scout, &session.scales)
     }
 
     /// The model that a fit on the scout came to.
@@ -146,20 +221,14 @@ impl Sketch {
         Self {
             structure: fit.structure,
             values: fit.values,
+            known: fit.starts,
         }
     }
 
     /// Fitted to the whole record.
     pub fn fitted(&self, session: &Session) -> Fit {
         let (data, scales) = (&session.data, &session.scales);
-        let starts = data.guessed_starts();
-        let mut fit = Fit::new(
-            data,
-            self.structure.clone(),
-            self.values.clone(),
-            starts,
-            scales,
-        );
+        let mut fit = self.on(data, scales);
         for _ in 0..SETTLING {
             let before = fit.cost;
             while !fit.done {
@@ -231,34 +300,47 @@ impl Task {
     }
 }
 
+/// The body by regression of the motion alone.
+fn first_guess(session: &Session) -> Option<Vec<f64>> {
+    let plain = Baseline::plain();
+    guess(
+        &session.data,
+        &session.data.excitation.effective_input(&plain),
+    )
+}
+
 /// The model that effects are added to: from what the screen told, and one effect after the other.
 fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) -> Option<Fit> {
     let ids: Vec<EffectId> = held.iter().map(|e| e.id()).collect();
     let told = screened.starts(&ids, ids.len()).next();
     let told = told.and_then(|start| Sketch::of(session, &start));
     let told = told.map(|sketch| sketch.fitted(session));
-    let plain = Baseline::plain();
-    let guessed = guess(
-        &session.data,
-        &session.data.excitation.effective_input(&plain),
-    );
-    let guessed = guessed.unwrap_or_else(|| session.data.baseline.unknown());
+    let guessed = first_guess(session).unwrap_or_else(|| session.data.baseline.unknown());
     let mut fit = Sketch::new(session, &[], guessed).fitted(session);
     for effect in held {
-        let beside = screened.values(&fit.structure.ids(), effect.id());
-        let told = beside.or_else(|| screened.values(&[], effect.id()));
-        let told = told
+        let mut sketches = Sketch::beside(session, screened, &fit, *effect);
+        Sketch::with_other_bodies(&mut sketches, session, &fit);
+        let all = sketches
             .into_iter()
-            .map(|own| Sketch::with(&fit, *effect, &own));
-        let sought = Sketch::sought(session, &fit, *effect);
-        let all = told
-            .chain(sought)
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
-        while heat.advance(session, 0.0) {}
-        fit = heat.best(1, f64::INFINITY).pop()?.fitted(session);
+        while heat.advance(session, 0.0, false) {}
+        let fits = heat.best(2, f64::INFINITY).into_iter();
+        let fits = fits.map(|sketch| sketch.fitted(session));
+        fit = least(fits)?;
     }
     let complete = |fit: &Fit| fit.structure.effects.len() == held.len();
-    let all = told.into_iter().chain([fit]).filter(complete);
-    all.min_by(|a, b| a.cost.total_cmp(&b.cost))
+    least(told.into_iter().chain([fit]).filter(complete))
+}
+
+/// The fit that costs least; one whose cost is not finite only where there is no other.
+fn least(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
+    let cost = |fit: &Fit| {
+        if fit.cost.is_finite() {
+            fit.cost
+        } else {
+            f64::INFINITY
+        }
+    };
+    fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }

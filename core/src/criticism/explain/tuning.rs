@@ -1,7 +1,8 @@
 //! Every constant of fit and judge: what it is, its unit, and why it has that value.
 
-/// Subsets of the screen of one size that are scanned.
-pub(super) const STARTS: usize = 8;
+/// Subsets of the screen of one size that are scanned: as many as there are effects of a drive. What holds a body at rest
+/// hardly shows in the weak form, where its velocity has no sign: beside the best of the others each has its turn.
+pub(super) const STARTS: usize = 24;
 
 /// Rounds on the scout: iterations, and starting points of a set of effects that go on to the next.
 pub(super) const HEATS: [(usize, usize); 4] = [(1, 4), (2, 3), (4, 2), (8, 2)];
@@ -11,6 +12,9 @@ pub(super) const FAR: [f64; 4] = [100.0, 20.0, 5.0, 3.0];
 
 /// Times its last fall by which the cost of a model may fall yet.
 pub(super) const HOPE: f64 = 3.0;
+
+/// Rounds like the last one for which a fit to the record goes on.
+pub(super) const ROUNDS_LEFT: i32 = 3;
 
 /// Models that are fitted to the whole record after that.
 pub(super) const FITTED: usize = 6;
@@ -43,6 +47,9 @@ pub(super) const OTHER_HALF: usize = 8;
 /// more than by how much.
 pub(super) const DISCREPANCY: f64 = 0.01;
 
+/// Blocks of which no spread can be told.
+pub(super) const FEW_BLOCKS: usize = 2;
+
 /// Relative change of a block below which a step has changed nothing there.
 pub(super) const UNCHANGED: f64 = 0.02;
 
@@ -60,6 +67,9 @@ pub(super) const ALIKE_IN_BLOCKS: f64 = 0.1;
 
 /// Fall of the error of both halves that needs no count of blocks.
 pub(super) const GREAT_FALL: f64 = 0.7;
+
+/// The same where the block of either half that tells most of it is left out: the step explains as much as it leaves.
+pub(super) const STEADY_FALL: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
 /// Relative difference of inertia (of a process: gain and time constant) up to which two models speak of the same body.
 pub(super) const SAME_BODY: f64 = 0.2;

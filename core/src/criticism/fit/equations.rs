@@ -8,14 +8,11 @@ use crate::criticism::data::Data;
 use crate::criticism::window_sums::{
     BODY_STATES, STATES, WindowSums, changed, inverse, kept_within, reduced, state,
 };
-use crate::effect::{Effect, EffectId, Scales};
+use crate::effect::{Effect, Scales};
 use crate::model::Start;
 
 /// Step for differences with respect to where a load is, in its standard deviations.
 const LOAD_DIFFERENCE: f64 = 0.1;
-
-/// The effect whose first parameter is a half gap.
-const GAP: EffectId = EffectId::new("backlash");
 
 /// Size of a parameter in its standard errors from which data tell it.
 const MARKED: f64 = 3.0;
@@ -242,16 +239,6 @@ impl Fit {
         values.all(|(j, p)| {
             let stands_out = self.values[j] > MARKED * errors[j];
             (stands_out || !marks.contains(&p.symbol)) && !p.is_too_long(self.values[j], scales)
-        })
-    }
-
-    /// Whether a gap stands out beside the noise.
-    pub fn shows_gap(&self) -> bool {
-        let mut effects = self.structure.effects.iter();
-        let place = effects.position(|e| e.id() == GAP);
-        place.is_some_and(|place| {
-            let j = self.structure.range(place).start;
-            self.values[j] > MARKED * self.standard_errors(1.0)[j]
         })
     }
 

@@ -29,9 +29,6 @@ const CREEP: f64 = 1e-4;
 /// Damping of the first step.
 const FIRST_DAMPING: f64 = 1e-3;
 
-/// Iterations of the baseline before an effect is fitted.
-const BODY_ITERATIONS: usize = 2;
-
 /// Iterations of a fit whose values were put in order.
 const ORDERED_ITERATIONS: usize = 4;
 
@@ -47,9 +44,6 @@ const RESTART_DAMPING: f64 = 1e-3;
 
 /// Share of the cost below which better states of odd windows are worth going on for.
 const MENDED: f64 = 0.999;
-
-/// A fit is stuck where its last step should have lowered the cost by more than this share of it, and did not.
-const STUCK: f64 = 1e-4;
 
 /// Times that other valleys are looked for, the iterations that each is given, and the share of the cost below which one
 /// is lower.
@@ -130,8 +124,6 @@ pub(super) struct Fit {
     /// Times that other valleys were looked for.
     valleys_seen: usize,
     pub done: bool,
-    /// Values from which it began.
-    origin: Vec<f64>,
     /// Share of the cost by which the first step of the last iteration should have lowered it.
     hope: f64,
     /// Inverse covariance of the values for unit noise, from the last iteration.
@@ -152,7 +144,6 @@ impl Fit {
         let p = values.len();
         let mut fit = Self {
             structure,
-            origin: values.clone(),
             values,
             starts,
             motion,
@@ -224,7 +215,7 @@ impl Fit {
             self.information[(*j, *j)] += (1.0 - 1.0 / share) / (tolerance * tolerance);
         }
         if !lowered {
-            self.damping = RESTART_DAMPING;
+            self.damping = self.damping.min(RESTART_DAMPING);
             let before = self.cost;
             self.mend_odd_windows(data, scales);
             let found = self.cost < MENDED * before
@@ -268,18 +259,6 @@ impl Fit {
         self.cost < LOWER_VALLEY * present
     }
 
-    /// Whether it stopped short of the least cost: its steps should have lowered it and did not, as where the motion
-    /// bends sharply all along a valley.
-    pub fn is_stuck(&self) -> bool {
-        self.done && (self.hope > STUCK || self.iterations >= MAX_ITERATIONS)
-    }
-
-    /// Values as many times farther on as they have come: from beyond, the way back along a valley may be smooth.
-    pub fn beyond(&self, times: f64) -> Vec<f64> {
-        let pairs = self.values.iter().zip(&self.origin);
-        pairs.map(|(to, from)| to + times * (to - from)).collect()
-    }
-
     /// Motion with these values and starts; a load that they leave alone is not followed again.
     fn simulate(&self, data: &Data, values: &[f64], starts: &[Start]) -> Motion {
         simulate(data, &self.structure, values, starts, &self.motion)
@@ -288,18 +267,6 @@ impl Fit {
     /// What a step must lower: the cost of the data and of what the user knows before.
     fn objective(&self, data: &Data, motion: &Motion, values: &[f64], scale: f64) -> f64 {
         robust_cost(data, motion, scale) + self.structure.prior_cost(values)
-    }
-
-    /// Fits the baseline alone, the effects as they are: with a wrong body the values of a new effect
-    /// would be led astray at once.
-    pub fn fit_body(&mut self, data: &Data, scales: &Scales) {
-        self.held = self.structure.baseline_len();
-        for _ in 0..BODY_ITERATIONS {
-            self.iterate(data, scales);
-        }
-        self.held = usize::MAX;
-        (self.iterations, self.stalls, self.damping) = (0, 0, FIRST_DAMPING);
-        self.done = !self.cost.is_finite();
     }
 
     /// Motion with new values; where it got worse than the `present` cost, each window starts from the better of its

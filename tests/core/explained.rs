@@ -1,9 +1,9 @@
-//! The second engine, on trial: it finds what is hidden on rigs that are not its model.
+//! What is hidden on rigs that are not the model is found, and nothing else.
 
 use crate::support::case::{Case, Hidden};
 use crate::support::diagnosis::classes;
 use crate::support::{drive_cases, process_cases};
-use hysteron_core::criticism::second::{DiagnosisJob, StepJob};
+use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::{Diagnosis, StepReport};
 use hysteron_core::measurement::Measurement;
 use hysteron_core::progress::Progress;

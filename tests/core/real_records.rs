@@ -1,0 +1,147 @@
+//! Records of real machines and processes whose owners know what acts in them, and a sister of one that is made here.
+//!
+//! The records are not part of the project, see [`shared`].
+
+use std::fmt::Write as _;
+
+use crate::support::diagnosis::{classes, finish};
+use crate::support::parameter::parameter;
+use crate::support::shared::shared;
+use hysteron_core::criticism::DiagnosisJob;
+use hysteron_core::diagnosis::Diagnosis;
+use hysteron_core::measurement::import_csv;
+
+fn diagnose(name: &str, csv: &[u8]) -> Diagnosis {
+    let record = import_csv(name, csv, None).unwrap();
+    finish(DiagnosisJob::new(&record).unwrap())
+}
+
+fn diagnose_shared(file: &str) -> Option<Diagnosis> {
+    let csv = shared(&format!("failing/{file}"))?;
+    Some(diagnose(file, &csv))
+}
+
+/// That these classes are missing, and no other.
+fn check(d: &Diagnosis, missing: &[&[&str]]) {
+    let mut found = classes(d);
+    for class in &mut found {
+        class.sort_unstable();
+    }
+    found.sort();
+    assert_eq!(found, missing, "{}", d.verdict.text);
+}
+
+fn check_near(d: &Diagnosis, symbol: &str, known: f64, tolerance: f64) {
+    let p = parameter(d, symbol);
+    assert!(
+        (p.value / known - 1.0).abs() < tolerance,
+        "{symbol} {} ± {}, known {known}",
+        p.value,
+        p.std_error
+    );
+}
+
+const SPRING: &[&str] = &["gravity", "return_spring"];
+
+/// A robot servo with an arm, in volts: neither the arm's weight nor friction that grows with load explains it without the other.
+#[test]
+fn an_arm_has_weight_and_its_gears_rub_the_more_the_more_they_carry() {
+    let Some(d) = diagnose_shared("servo-xl330-volts.csv") else {
+        return;
+    };
+    check(&d, &[SPRING, &["load_dependent_friction"]]);
+}
+
+/// An electronic oscillator with a hardening spring, nine samples to a period: J 5.37e-6, d 2.25e-4, k 0.99, k3 3.9.
+#[test]
+fn an_oscillator_has_its_hardening_spring() {
+    let Some(d) = diagnose_shared("silverbox-as-drive.csv") else {
+        return;
+    };
+    check(&d, &[SPRING, &["hardening_spring"]]);
+    check_near(&d, "J1", 5.37e-6, 0.05);
+    check_near(&d, "k3", 3.9, 0.05);
+}
+
+/// A motor that turns one way, with measured torque.
+#[test]
+fn a_motor_that_turns_one_way_does_not_tell_its_friction() {
+    let Some(d) = diagnose_shared("one-way-drive.csv") else {
+        return;
+    };
+    check(&d, &[&["constant_load", "coulomb_friction", "dead_zone"]]);
+}
+
+/// An industrial servo in one move: friction of 5.5 % at 27 rad/s, 7.2 at 61, 8.9 at 102 and 9.4 at 174.
+#[test]
+fn friction_that_flattens_with_speed_is_found_in_one_move() {
+    let Some(d) = diagnose_shared("servo-single-move.csv") else {
+        return;
+    };
+    let found = classes(&d).concat();
+    assert!(found.contains(&"flattening_friction"), "{}", d.verdict.text);
+}
+
+/// Length of the arm's record in samples of 5 ms, and steps of the simulation in one.
+const SAMPLES: u32 = 2500;
+const STEPS: u32 = 50;
+
+/// Weight of the arm, N m, and share of its drive that the gears take.
+const WEIGHT: f64 = 5.7;
+const SHARE: f64 = 0.55;
+
+/// Where the arm is sent, rad, every one and a half seconds.
+const PLACES: [f64; 10] = [0.6, -0.4, 0.9, 0.1, -0.8, 0.5, -0.2, 0.7, -0.6, 0.3];
+
+fn target(t: f64) -> f64 {
+    let move_number = (t / 1.5) as usize;
+    let to = PLACES[move_number % 10];
+    let from = if move_number == 0 {
+        0.0
+    } else {
+        PLACES[(move_number - 1) % 10]
+    };
+    let share = ((t - 1.5 * move_number as f64) / 0.6).min(1.0);
+    from + (to - from) * share * share * (3.0 - 2.0 * share)
+}
+
+/// An arm of 0.07 kg m^2 on gears that hold it between moves, with an encoder of 4096 counts a turn.
+fn arm() -> String {
+    let (inertia, viscous, dry, count) = (0.07, 0.5, 0.1, 1.53e-3);
+    let mut csv = "t [s],u [N m],x1 [rad]\n".to_owned();
+    let (mut x, mut v) = (0.0_f64, 0.0_f64);
+    for sample in 0..SAMPLES {
+        let t = 5e-3 * f64::from(sample);
+        let seen = (x / count).round() * count;
+        let u = (16.0 * (target(t) - seen)).clamp(-7.4, 7.4);
+        writeln!(csv, "{t:.4},{u:.5},{seen:.5}").unwrap();
+        let step = 5e-3 / f64::from(STEPS);
+        let friction = dry + SHARE * u.abs();
+        for _ in 0..STEPS {
+            let drive = u - WEIGHT * libm::sin(x) - viscous * v;
+            let way = if v == 0.0 { drive } else { v };
+            let moved = v + (drive - friction.copysign(way)) / inertia * step;
+            // It stays where it turns round, and where its drive does not overcome friction.
+            let stays = if v == 0.0 {
+                drive.abs() <= friction
+            } else {
+                moved * v < 0.0
+            };
+            v = if stays { 0.0 } else { moved };
+            x += v * step;
+        }
+    }
+    csv
+}
+
+#[test]
+fn so_do_those_of_an_arm_that_is_made_here() {
+    let d = diagnose("arm", arm().as_bytes());
+    let found = classes(&d).concat();
+    for effect in ["gravity", "load_dependent_friction"] {
+        assert!(found.contains(&effect), "{effect}: {}", d.verdict.text);
+    }
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+    check_near(&d, "a", WEIGHT, 0.03);
+    check_near(&d, "m", SHARE, 0.03);
+}
