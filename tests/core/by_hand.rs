@@ -1,11 +1,11 @@
 //! Values set by hand: the fit stays what it was, another value leaves more, and the states settle to it.
 
+use crate::support::diagnosis::step;
 use hysteron_core::by_hand::ByHand;
 use hysteron_core::criticism::StepJob;
 use hysteron_core::diagnosis::StepReport;
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::{Measurement, import_csv};
-use hysteron_core::progress::Progress;
 use hysteron_core::user_model::UserModel;
 
 fn fitted(name: &str, effects: &[&str]) -> (Measurement, StepReport) {
@@ -23,12 +23,7 @@ fn fitted(name: &str, effects: &[&str]) -> (Measurement, StepReport) {
         .map(|id| id.expect("an effect"))
         .collect();
     let model = UserModel::blank(measurement.kind);
-    let mut job = StepJob::with_model(&measurement, &effects, &model).expect("a job");
-    let report = loop {
-        if let Progress::Done(report) = job.advance() {
-            break report;
-        }
-    };
+    let report = step(StepJob::with_model(&measurement, &effects, &model).expect("a job"));
     (measurement, report)
 }
 

@@ -1,12 +1,11 @@
 //! What is hidden on rigs that are not the model is found, and nothing else.
 
 use crate::support::case::{Case, Hidden};
-use crate::support::diagnosis::classes;
+use crate::support::diagnosis::{classes, finish, step};
 use crate::support::{drive_cases, process_cases};
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
-use hysteron_core::diagnosis::{Diagnosis, StepReport};
+use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::Measurement;
-use hysteron_core::progress::Progress;
 
 /// A seed to develop on.
 const SEED: u64 = 5;
@@ -18,21 +17,7 @@ fn case(name: &str) -> Case {
 }
 
 fn diagnose(measurement: &Measurement) -> Diagnosis {
-    let mut job = DiagnosisJob::new(measurement).unwrap();
-    loop {
-        if let Progress::Done(diagnosis) = job.advance() {
-            return diagnosis;
-        }
-    }
-}
-
-fn step(measurement: &Measurement) -> StepReport {
-    let mut job = StepJob::new(measurement, &[]).unwrap();
-    loop {
-        if let Progress::Done(report) = job.advance() {
-            return report;
-        }
-    }
+    finish(DiagnosisJob::new(measurement).unwrap())
 }
 
 #[test]
@@ -71,7 +56,7 @@ fn what_is_hidden_is_found_and_nothing_else() {
 fn a_step_offers_what_the_diagnosis_adds_first() {
     let measurement = case("Coulomb and load").measure();
     let diagnosis = diagnose(&measurement);
-    let report = step(&measurement);
+    let report = step(StepJob::new(&measurement, &[]).unwrap());
     let first = diagnosis.steps[1].effects.last().copied();
     assert!(first.is_some());
     assert_eq!(report.suggestion, first);

@@ -1,18 +1,13 @@
 //! What an effect would leave is told before it is added.
 
+use crate::support::diagnosis::step;
 use crate::support::rig::Rig;
 use hysteron_core::criticism::StepJob;
 use hysteron_core::diagnosis::StepReport;
 use hysteron_core::measurement::Measurement;
-use hysteron_core::progress::Progress;
 
 fn baseline(measurement: &Measurement) -> StepReport {
-    let mut job = StepJob::new(measurement, &[]).unwrap();
-    loop {
-        if let Progress::Done(report) = job.advance() {
-            return report;
-        }
-    }
+    step(StepJob::new(measurement, &[]).unwrap())
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use crate::support::diagnosis::{classes, finish};
+use crate::support::diagnosis::{classes, finish, step};
 use crate::support::parameter::parameter;
 use crate::support::servo::servo;
 use crate::support::sparse::thinned;
@@ -12,7 +12,6 @@ use crate::support::value::check_value;
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::{Measurement, import_csv};
-use hysteron_core::progress::Progress;
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Random, Recorded, Stranger};
 
 /// Friction and load of these machines, N m.
@@ -219,12 +218,7 @@ fn a_load_behind_a_shaft_is_offered_at_once() {
         recorded: Recorded::Both,
         ..machine(5e3, 6000, Excitation::Multisine { amplitude: 0.12 })
     };
-    let mut job = StepJob::new(&rig.measure(), &[]).unwrap();
-    let report = loop {
-        if let Progress::Done(report) = job.advance() {
-            break report;
-        }
-    };
+    let report = step(StepJob::new(&rig.measure(), &[]).unwrap());
     assert!(report.verdict.is_none(), "{:?}", report.verdict);
     let best = &report.step.candidates[0];
     assert_eq!(best.effects[0].as_str(), "joint_compliance");

@@ -2,13 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use crate::support::diagnosis::{classes, finish};
+use crate::support::diagnosis::{classes, finish, step};
 use crate::support::servo::servo;
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::effect::{EffectId, Formula, registry};
 use hysteron_core::measurement::{Kind, Measurement, import_csv};
-use hysteron_core::progress::Progress;
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Stranger};
 use hysteron_core::user_model::UserModel;
 use proptest::prelude::*;
@@ -115,12 +114,7 @@ fn a_formula_of_what_the_model_has_is_needless() {
         EffectId::own("again").unwrap(),
     ];
     let model = with_candidate("again: -p*v-q*v^3");
-    let mut job = StepJob::with_model(&measurement, &effects, &model).unwrap();
-    let report = loop {
-        if let Progress::Done(report) = job.advance() {
-            break report;
-        }
-    };
+    let report = step(StepJob::with_model(&measurement, &effects, &model).unwrap());
     assert_eq!(report.needless, effects[1..], "{:?}", report.verdict);
 }
 

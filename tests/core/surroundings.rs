@@ -2,14 +2,13 @@
 
 use std::fmt::Write as _;
 
-use crate::support::diagnosis::classes;
+use crate::support::diagnosis::{classes, step};
 use crate::support::file::diagnose;
 use crate::support::value::check_value;
 use hysteron_core::criticism::StepJob;
 use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::import_csv;
-use hysteron_core::progress::Progress;
 use hysteron_core::rig::Random;
 
 const DELAY: EffectId = EffectId::new("input_delay");
@@ -117,12 +116,7 @@ fn an_output_that_is_on_its_way_at_first_was_driven_before() {
     for cut in (400..rows.len()).filter(steady).step_by(9).take(6) {
         let part = [&rows[..1], &rows[cut..]].concat().join("\n");
         let record = import_csv("heater", part.as_bytes(), None).unwrap();
-        let mut job = StepJob::new(&record, &effects).unwrap();
-        let report = loop {
-            if let Progress::Done(report) = job.advance() {
-                break report;
-            }
-        };
+        let report = step(StepJob::new(&record, &effects).unwrap());
         assert!(report.step.error < 1.1, "row {cut}: {}", report.step.error);
     }
 }
