@@ -12,6 +12,7 @@ mod explain;
 mod fingerprint;
 mod fit;
 mod guess;
+mod integrating;
 mod jobs;
 mod knowledge;
 mod locate;

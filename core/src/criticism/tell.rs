@@ -259,11 +259,11 @@ fn candidates(
                 equivalent_to: tried
                     .iter()
                     .filter(|(other, t)| {
-                        other.id() != effect.id()
+                        difference.is_better()
+                            && other.id() != effect.id()
                             && may_replace(*other, *effect)
                             && t.values() <= trial.values()
                             && between(session, trial, t).is_same()
-                            && difference.is_better()
                     })
                     .map(|(other, _)| other.id())
                     .collect(),

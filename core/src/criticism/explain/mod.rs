@@ -9,13 +9,13 @@ mod swap;
 mod task;
 mod trial;
 mod tuning;
+mod weigh;
 
 use std::collections::VecDeque;
 
 use super::contradicted::released;
 use super::screen::{Screened, Start};
-use super::select::{SMALL_SHARE, is_all_that_counters_show, is_noise, is_trifle, outweighs};
-use super::session::{Session, small_share};
+use super::session::Session;
 use crate::diagnosis::InputVerdict;
 use crate::effect::{Dimension, Effect, EffectId};
 use heat::Heat;
@@ -174,11 +174,8 @@ impl Explain {
         }
         extended.push(from);
         let fit = &self.trials[from].scored.fit;
-        let ids = self.trials[from].ids();
-        let mut sketches: Vec<Sketch> = Sketch::again(fit)
-            .filter(|_| !hidden && !ids.is_empty())
-            .into_iter()
-            .collect();
+        let mut sketches: Vec<Sketch> =
+            Sketch::again(fit).filter(|_| !hidden).into_iter().collect();
         for effect in session
             .library()
             .filter(|e| is_hidden_body(*e) == hidden && self.is_open(from, *e))
@@ -242,22 +239,10 @@ impl Explain {
             Stage::Fit(level) => self.judge_level(session, screened, level),
             Stage::Check(level) => self.judge_check(session, screened, level),
             Stage::TakeOut => self.swap(session, screened),
-            Stage::Swap => self.judge_swaps(session, screened),
+            Stage::Swap => self.judge_swaps(session),
             Stage::Path => self.stage = Stage::Done,
             Stage::Done => {}
         }
-    }
-
-    fn is_noise(&self, session: &Session, trial: usize) -> bool {
-        Self::leaves_noise(session, &self.trials[trial])
-    }
-
-    fn leaves_noise(session: &Session, trial: &Trial) -> bool {
-        let small = small_share(&trial.scored.fit);
-        trial.halves().all(|scored| {
-            let score = &scored.score;
-            is_all_that_counters_show(score) || is_noise(score, session.first(scored), small)
-        })
     }
 
     /// Tasks of the subsets of a level.
@@ -282,7 +267,7 @@ impl Explain {
             || size > MOST_SIZE
             || self.misses.iter().all(|m| *m > MOST_MISSES)
         {
-            self.open_swaps(session, screened);
+            self.open_swaps(session);
             return;
         }
         if self.misses[usize::from(hidden)] > MOST_MISSES || hidden && enough(true) {
@@ -401,100 +386,6 @@ impl Explain {
         self.held.iter().all(|e| self.trials[trial].has(e.id()))
     }
 
-    /// Whether a model has, in the place of an effect of another, a part of that or what that comes near to.
-    fn has_part_of(&self, part: usize, whole: usize) -> bool {
-        let (own, other) = (&self.trials[part], &self.trials[whole]);
-        let mut wholes = other.effects().iter().filter(|e| !own.has(e.id()));
-        own.effects().len() == other.effects().len()
-            && wholes.any(|whole| {
-                own.effects()
-                    .iter()
-                    .any(|e| whole.has_part(e.id()) || whole.limits().contains(&e.id()))
-            })
-    }
-
-    /// Whether a model has fewer values than another, or as many and a part in the place of the whole.
-    fn is_simpler(&self, a: usize, b: usize) -> bool {
-        let (own, other) = (self.trials[a].values(), self.trials[b].values());
-        own < other || own == other && self.has_part_of(a, b)
-    }
-
-    /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect must that is
-    /// added; where the part leaves noise, or a trifle of what there was at first, it is not.
-    fn does_as_well(&self, session: &Session, simpler: usize, other: usize) -> bool {
-        let difference = self.difference(session, simpler, other);
-        let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
-        let scored = &self.trials[simpler].scored;
-        let trifle = is_trifle(before, session.first(scored), small_share(&scored.fit));
-        let worth = difference.is_better()
-            && !trifle
-            && !self.is_noise(session, simpler)
-            && (self.is_noise(session, other) || outweighs(before, after));
-        difference.is_no_better() || self.has_part_of(simpler, other) && !worth
-    }
-
-    /// The one that leaves least; of those that do as well, the one with fewest values.
-    fn lead(&self, session: &Session, trials: &[usize]) -> Option<usize> {
-        let error = |t: &usize| self.trials[*t].error();
-        let all = || trials.iter().copied();
-        let least = all().min_by(|a, b| error(a).total_cmp(&error(b)))?;
-        all()
-            .filter(|t| self.is_simpler(*t, least) && self.does_as_well(session, *t, least))
-            .min_by(|a, b| {
-                let values = |t: &usize| self.trials[*t].values();
-                values(a)
-                    .cmp(&values(b))
-                    .then(error(a).total_cmp(&error(b)))
-            })
-            .or(Some(least))
-    }
-
-    /// The trial with the effects of this one but that at a place.
-    fn without(&self, trial: usize, place: usize) -> Option<usize> {
-        let mut ids = self.trials[trial].ids();
-        ids.remove(place);
-        self.of(&ids)
-    }
-
-    fn difference(&self, session: &Session, from: usize, to: usize) -> Difference {
-        difference(session, &self.trials[from], &self.trials[to])
-    }
-
-    /// Whether each of the added effects explains more than it leaves, or is needed for what is left to be noise.
-    fn is_needed(&self, session: &Session, trial: usize) -> bool {
-        (self.held.len()..self.trials[trial].effects().len())
-            .all(|place| self.needs(session, trial, place))
-    }
-
-    /// Whether a model leaves noise where another one leaves more than that, however few blocks show it: what is met once is
-    /// explained all the same.
-    fn explains(&self, session: &Session, before: usize, after: usize) -> bool {
-        let outweighs = outweighs(self.trials[before].error(), self.trials[after].error());
-        outweighs && self.is_noise(session, after) && !self.is_noise(session, before)
-    }
-
-    pub fn needs(&self, session: &Session, trial: usize, place: usize) -> bool {
-        let Some(without) = self.without(trial, place) else {
-            return true;
-        };
-        let noise = self.is_noise(session, trial);
-        let (before, after) = (self.trials[without].error(), self.trials[trial].error());
-        let outweighs = outweighs(before, after);
-        // Below that an effect only mends what a clock, a rig or an equation is off by.
-        let first = session.baseline.as_ref().map_or(0.0, |first| first.error);
-        let matters = (before.powi(2) - after.powi(2)).max(0.0).sqrt() > SMALL_SHARE * first;
-        let better = self.difference(session, without, trial).is_better();
-        let of_record = session.tells_of_record(&self.trials[trial].scored.fit, place);
-        let explains = self.explains(session, without, trial);
-        let scored = &self.trials[trial].scored;
-        let shown = scored.shows_marks_of(scored.fit.structure.effects[place], &session.scales);
-        shown
-            && scored.tells_of(place)
-            && session.is_sizeable(&scored.fit, place)
-            && (of_record || matters)
-            && (better && (noise || outweighs || of_record) || explains)
-    }
-
     /// Effects of the best model in the order in which they are added: each leaves least beside those before.
     pub fn order(&self) -> Vec<EffectId> {
         let mut order: Vec<EffectId> = self.held.iter().map(|e| e.id()).collect();
@@ -527,6 +418,13 @@ impl Explain {
         found.min_by(|a, b| self.trials[*a].error().total_cmp(&self.trials[*b].error()))
     }
 
+    /// The trial with the effects of this one but that at a place.
+    fn without(&self, trial: usize, place: usize) -> Option<usize> {
+        let mut ids = self.trials[trial].ids();
+        ids.remove(place);
+        self.of(&ids)
+    }
+
     fn open_path(&mut self, session: &Session) {
         self.stage = Stage::Path;
         let order = self.order();
@@ -538,12 +436,15 @@ impl Explain {
             }
         }
         // Of the model as it was given it is asked as well which of its effects leave a trace.
-        for place in 0..self.held.len() {
-            if self.without(self.best, place).is_none() {
-                self.tasks.push_back(Task::Without {
-                    from: self.best,
-                    place,
-                });
+        self.take_out(0..self.held.len());
+    }
+
+    /// Has the best fitted without the effect at each of these places, where that was not done yet.
+    fn take_out(&mut self, places: impl IntoIterator<Item = usize>) {
+        let from = self.best;
+        for place in places {
+            if self.without(from, place).is_none() {
+                self.tasks.push_back(Task::Without { from, place });
             }
         }
     }

@@ -56,16 +56,9 @@ impl Explain {
     }
 
     /// Has what is to be replaced taken out of the best model.
-    pub(super) fn open_swaps(&mut self, session: &mut Session, screened: &Screened) {
+    pub(super) fn open_swaps(&mut self, session: &Session) {
         self.stage = Stage::TakeOut;
-        let lacking = |place: &usize| self.without(self.best, *place).is_none();
-        let places = self.open_places(session).into_iter().filter(lacking);
-        let from = self.best;
-        let tasks: Vec<Task> = places.map(|place| Task::Without { from, place }).collect();
-        self.tasks.extend(tasks);
-        if self.tasks.is_empty() {
-            self.swap(session, screened);
-        }
+        self.take_out(self.open_places(session));
     }
 
     /// Has other effects tried in the place of each that was added.
@@ -185,33 +178,31 @@ impl Explain {
     }
 
     /// Takes what is better, or does as well with fewer values; else what is the same could stand in its place.
-    pub(super) fn judge_swaps(&mut self, session: &mut Session, screened: &Screened) {
+    pub(super) fn judge_swaps(&mut self, session: &mut Session) {
         self.best = self.best_of_its_kind(session);
         let rivals = self.swapped(session);
         // What the user added stays.
-        let is_added = |r: &&Rival| r.place >= self.held.len();
+        let may_change = self.size(self.best) > 0 && self.swaps < MOST_SWAPS;
         let is_simpler = |r: &Rival| {
             self.is_simpler(r.trial, self.best) && self.does_as_well(session, r.trial, self.best)
         };
         let better: Vec<usize> = rivals
             .iter()
-            .filter(is_added)
             .filter(|r| self.difference(session, self.best, r.trial).is_better())
             .map(|r| r.trial)
             .collect();
         let simpler: Vec<usize> = rivals
             .iter()
-            .filter(is_added)
             .filter(|r| is_simpler(r))
             .map(|r| r.trial)
             .collect();
         let other = self
             .lead(session, &better)
             .or_else(|| self.lead(session, &simpler));
-        if let Some(other) = other.filter(|_| self.swaps < MOST_SWAPS) {
+        if let Some(other) = other.filter(|_| may_change) {
             self.swaps += 1;
             self.best = other;
-            self.open_swaps(session, screened);
+            self.open_swaps(session);
             return;
         }
         let mut alike: Vec<usize> = vec![self.best];
@@ -221,12 +212,11 @@ impl Explain {
         // Of what does as well, the body on which most agree is the likeliest.
         let agreeing = |a: usize| alike.iter().filter(|b| agree(a, **b)).count();
         let most = alike.iter().copied().map(agreeing).max().unwrap_or(0);
-        let added = self.size(self.best) > 0;
-        if added && agreeing(self.best) < most && self.swaps < MOST_SWAPS {
+        if may_change && agreeing(self.best) < most {
             self.swaps += 1;
             let other = alike.iter().copied().find(|a| agreeing(*a) == most);
             self.best = other.unwrap_or(self.best);
-            self.open_swaps(session, screened);
+            self.open_swaps(session);
             return;
         }
         let best = self.best;

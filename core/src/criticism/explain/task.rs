@@ -1,7 +1,7 @@
 //! One model to be fitted.
 
 use super::heat::Heat;
-use super::tuning::{CROSSINGS, SAME_BODY, SETTLED, SETTLING};
+use super::tuning::{CROSSINGS, FITTED, SAME_BODY, SETTLED, SETTLING};
 use super::{Trial, hidden_inertia, is_hidden_body};
 use crate::criticism::data::Data;
 use crate::criticism::fit::Fit;
@@ -78,9 +78,13 @@ impl Sketch {
     /// The same with a body of its own.
     pub fn with_body(fit: &Fit, effect: &'static dyn Effect, body: [f64; 2], own: &[f64]) -> Self {
         let mut sketch = Self::with(fit, effect, own);
-        sketch.values[..2].copy_from_slice(&body);
-        sketch.structure.begin(&mut sketch.values, 0);
+        sketch.set_body(&body);
         sketch
+    }
+
+    fn set_body(&mut self, body: &[f64]) {
+        self.values[..body.len()].copy_from_slice(body);
+        self.structure.begin(&mut self.values, 0);
     }
 
     /// A fit with one more effect: with the values that the screen tells beside its effects and alone, and from where that finds
@@ -136,8 +140,7 @@ impl Sketch {
         }
         let with_body = |sketch: &Self| {
             let mut sketch = sketch.clone();
-            sketch.values[..body.len()].copy_from_slice(&body);
-            sketch.structure.begin(&mut sketch.values, 0);
+            sketch.set_body(&body);
             sketch
         };
         let others: Vec<Self> = sketches.iter().map(with_body).collect();
@@ -325,7 +328,7 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
         while heat.advance(session, 0.0, false) {}
-        let fits = heat.best(2, f64::INFINITY).into_iter();
+        let fits = heat.best(FITTED, f64::INFINITY).into_iter();
         let fits = fits.map(|sketch| sketch.fitted(session));
         fit = least(fits)?;
     }
