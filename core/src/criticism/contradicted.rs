@@ -19,7 +19,7 @@ const OVERRULED: f64 = 3.0;
 /// Values with a tolerance that the data have moved by more than three of it.
 pub(super) fn overruled(session: &Session, model: &Scored) -> Vec<Overruled> {
     let known = model.fit.structure.known();
-    let found = session.parameters(model);
+    let found = session.parameters(model, &[]);
     let pairs = known.into_iter().zip(found);
     pairs
         .filter_map(|(known, found)| {
@@ -69,7 +69,7 @@ pub(super) fn contradictions(session: &Session, model: &Trial) -> Vec<Contradict
     } else {
         return Vec::new();
     };
-    let wanted = session.parameters(released);
+    let wanted = session.parameters(released, &[]);
     held.known()
         .into_iter()
         .zip(wanted)

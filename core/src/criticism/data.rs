@@ -30,7 +30,7 @@ const PROCESS_BLOCK: usize = 50;
 const SCOUT_PART: usize = 5;
 
 /// ... and on at least this many samples.
-const SCOUT_SAMPLES: usize = 2500;
+const SCOUT_SAMPLES: usize = 1250;
 
 /// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;

@@ -444,10 +444,13 @@ impl Session {
             .collect()
     }
 
-    /// Every parameter with its standard error.
-    pub fn parameters(&self, scored: &Scored) -> Vec<Parameter> {
+    /// Every parameter with its standard error, which is no less than these `spreads` of the values.
+    pub fn parameters(&self, scored: &Scored, spreads: &[f64]) -> Vec<Parameter> {
         let fit = &scored.fit;
-        let errors = scored.standard_errors();
+        let mut errors = scored.standard_errors();
+        for (error, spread) in errors.iter_mut().zip(spreads) {
+            *error = error.max(*spread);
+        }
         let known = fit.structure.known();
         let status = |j: usize| known[j].map_or(Status::Free, |k| k.status);
         // One that the record itself holds is known as well as where the output rests at first.

@@ -13,7 +13,7 @@ use super::select::{delta_bic, outweighs};
 use super::session::{Rest, Scored, Session};
 use super::verdict::{
     Class, add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle,
-    add_imitations, add_input_check, add_integrating, add_limited, add_overruled, add_pauses,
+    add_input_check, add_integrating, add_limited, add_overruled, add_part_of_the_way, add_pauses,
     add_rest, verdict,
 };
 use crate::diagnosis::{
@@ -77,7 +77,7 @@ impl Tell {
             .copied()
             .filter(|_| self.contradicted.is_empty());
         let whole = session.completed(model);
-        let parameters = session.parameters(&whole);
+        let parameters = session.parameters(&whole, &trial.spreads());
         let rest = session.rest(&whole);
         let findings = match rest {
             Rest::More => session.findings(&whole),
@@ -99,6 +99,7 @@ impl Tell {
             let first = session.first(&whole).error;
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
             add_integrating(&mut verdict, &parameters);
+            add_part_of_the_way(&mut verdict, part_of_the_way(session, trial, &tried));
             add_hint(&mut verdict, hint(session, trial, &tried));
             add_idle(&mut verdict, &present, &[]);
             add_input_check(&mut verdict, &session.input_check);
@@ -179,7 +180,6 @@ impl Tell {
             rest,
             self.contradicted.clone(),
         );
-        add_imitations(&mut verdict, &[]);
         if is_joined {
             add_both_ways(&mut verdict);
         } else {
@@ -212,6 +212,22 @@ fn hint(
     let best = tried.first()?;
     let difference = between(session, model, best.1);
     is_promising(&difference).then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
+}
+
+/// The effects that lower the error most for certain though they leave more than they explain, and to what.
+fn part_of_the_way(
+    session: &Session,
+    model: &Trial,
+    tried: &[(&'static dyn Effect, &Trial)],
+) -> Option<(Vec<EffectId>, f64)> {
+    let better = |t: &&(&'static dyn Effect, &Trial)| between(session, model, t.1).is_better();
+    let (best, trial) = tried.iter().find(better)?;
+    let same = |t: &&(&'static dyn Effect, &Trial)| {
+        t.0.id() == best.id() || between(session, trial, t.1).is_same()
+    };
+    let class = tried.iter().filter(better).filter(same);
+    let error = session.completed(&trial.scored).score.error;
+    Some((class.map(|t| t.0.id()).collect(), error))
 }
 
 /// Every effect of the library, the best first; the suggested one leads.
@@ -252,7 +268,7 @@ fn candidates(
                 significant: difference.is_better() && most,
                 promising: is_promising(&difference),
                 parameters: session
-                    .parameters(&trial.scored)
+                    .parameters(&trial.scored, &trial.spreads())
                     .into_iter()
                     .filter(|p| p.effect == Some(effect.id()))
                     .collect(),

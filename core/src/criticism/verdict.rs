@@ -70,6 +70,7 @@ pub(super) fn verdict(
         complete,
         unknown: !complete,
         next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
+        part_of_the_way: Vec::new(),
         experiments: Vec::new(),
         contradicted,
         overruled: Vec::new(),
@@ -119,6 +120,7 @@ fn contradiction(
         complete: false,
         unknown: false,
         next_experiment: None,
+        part_of_the_way: Vec::new(),
         experiments: Vec::new(),
         contradicted,
         overruled: Vec::new(),
@@ -273,17 +275,18 @@ pub(super) fn add_limited(verdict: &mut Verdict, data: &Data) {
     }
 }
 
-/// Says which effects lower the error but may be imitations: they explain less than they leave, or their size is
-/// not known to differ from 0.
-pub(super) fn add_imitations(verdict: &mut Verdict, imitations: &[EffectId]) {
-    if imitations.is_empty() || verdict.complete {
-        return;
+/// Says what would explain a part for certain and leave more than that, and the error with it.
+pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<(Vec<EffectId>, f64)>) {
+    if let Some((class, error)) = part.filter(|_| verdict.unknown) {
+        let class = in_registry_order(class);
+        let _ = write!(
+            verdict.text,
+            " Part of the way, and not named since it leaves more than it explains: {}, with which the error is {error:.2} \
+             times the noise.",
+            names(&class, " or ")
+        );
+        verdict.part_of_the_way = class;
     }
-    let _ = write!(
-        verdict.text,
-        " Not named, since it explains too little for what is left and may only imitate what is missing: {}.",
-        names(imitations, ", ")
-    );
 }
 
 /// Says which effect would lower the error much, and to what, though chance is not ruled out.

@@ -85,6 +85,7 @@ impl Diagnosis {
                 complete: false,
                 unknown: true,
                 next_experiment: None,
+                part_of_the_way: Vec::new(),
                 experiments: Vec::new(),
                 contradicted: Vec::new(),
                 overruled: Vec::new(),

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use super::task::Sketch;
-use super::tuning::{FAR, HEATS, HOPE, ROUNDS_LEFT};
+use super::tuning::{FAR, HOPE, ROUNDS, ROUNDS_LEFT, Round};
 use crate::criticism::fit::{Fit, same_place};
 use crate::criticism::session::Session;
 use crate::effect::EffectId;
@@ -58,12 +58,18 @@ impl Heat {
     }
 
     /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another one costs.
-    /// A race that `gives_up` ends with its round, and nobody wins.
-    pub fn advance(&mut self, session: &Session, alike: f64, gives_up: bool) -> bool {
+    /// So many places of the model are open. A race that `gives_up` ends with its round, and nobody wins.
+    pub fn advance(
+        &mut self,
+        session: &Session,
+        alike: f64,
+        places: usize,
+        gives_up: bool,
+    ) -> bool {
         let crew = &session.data.crew;
         let width = crew.width().min(self.waiting.len());
         let mut batch: Vec<(f64, Fit)> = self.waiting.drain(..width).collect();
-        let (iterations, _) = HEATS[self.round];
+        let Round { iterations, .. } = ROUNDS[self.round];
         crew.for_each(
             batch.iter_mut().collect(),
             |(before, fit): &mut (f64, Fit)| {
@@ -75,11 +81,11 @@ impl Heat {
         );
         self.over.extend(batch);
         if self.waiting.is_empty() {
-            self.cull(alike);
+            self.cull(alike, places);
             self.round += 1;
             if gives_up {
                 *self = Self::default();
-            } else if self.round < HEATS.len() {
+            } else if self.round < ROUNDS.len() {
                 self.waiting = self.over.drain(..).collect();
             }
         }
@@ -87,9 +93,9 @@ impl Heat {
     }
 
     /// Leaves the best of each set of effects, and none that is far behind.
-    fn cull(&mut self, alike: f64) {
-        let (_, starts) = HEATS[self.round];
-        let last = self.round + 1 == HEATS.len();
+    fn cull(&mut self, alike: f64, places: usize) {
+        let Round { sets, starts, .. } = ROUNDS[self.round];
+        let last = self.round + 1 == ROUNDS.len();
         let key = |entry: &(f64, Fit)| if last { entry.1.cost } else { hoped(entry) };
         self.over.sort_by(|a, b| {
             key(a)
@@ -102,14 +108,22 @@ impl Heat {
             .map(|(_, fit)| fit.cost)
             .fold(f64::INFINITY, f64::min);
         let mut kept: Vec<(Vec<EffectId>, Vec<f64>)> = Vec::new();
+        let mut sets_left = sets * places;
         let far = FAR[self.round];
         self.over.retain(|entry| {
             let fit = &entry.1;
             let ids = sorted_ids(fit);
             let same = || kept.iter().filter(|(k, _)| *k == ids);
             let twin = same().any(|(_, values)| same_place(values, &fit.values));
-            let stays = hoped(entry) <= alike.max(far * least) && same().count() < starts && !twin;
+            let known = same().count();
+            let has_turn = if known == 0 {
+                sets_left > 0
+            } else {
+                known < starts
+            };
+            let stays = hoped(entry) <= alike.max(far * least) && has_turn && !twin;
             if stays {
+                sets_left -= usize::from(known == 0);
                 kept.push((ids, fit.values.clone()));
             }
             stays

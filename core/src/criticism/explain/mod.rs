@@ -24,7 +24,9 @@ use swap::Rival;
 pub(super) use swap::may_replace;
 use task::{Sketch, Task};
 pub(super) use trial::Trial;
-use tuning::{ALIKE, FITTED, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
+use tuning::{
+    ALIKE, FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS,
+};
 
 /// What is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +97,8 @@ pub(super) struct Explain {
     /// Sizes in a row that brought nothing; and of those with a hidden body.
     misses: [usize; 2],
     pub rivals: Vec<Rival>,
+    /// Sets of effects that were tried in the place of a best model, in order: another best one may come to the same.
+    replacements: Vec<Vec<EffectId>>,
     swaps: usize,
     done: usize,
 }
@@ -116,6 +120,7 @@ impl Explain {
             best: 0,
             misses: [0, 0],
             rivals: Vec::new(),
+            replacements: Vec::new(),
             swaps: 0,
             done: 0,
         }
@@ -135,13 +140,13 @@ impl Explain {
             self.trials.extend(found.into_iter().flatten());
         } else if !self
             .heat
-            .advance(session, self.alike(), self.gives_up(session))
+            .advance(session, self.alike(), self.places(), self.gives_up(session))
         {
-            let places = match self.stage {
-                Stage::Swap => self.size(self.best).max(1),
-                _ => 1,
+            let fitted = match self.stage {
+                Stage::Fit(Level { hidden: true, .. }) => FITTED_HIDDEN,
+                _ => FITTED,
             };
-            let best = self.heat.best(FITTED * places, self.limit);
+            let best = self.heat.best(fitted * self.places(), self.limit);
             self.tasks.extend(best.into_iter().map(Task::Fit));
         }
         self.done += 1;
@@ -155,6 +160,24 @@ impl Explain {
     fn gives_up(&self, session: &Session) -> bool {
         let hidden = matches!(self.stage, Stage::Fit(level) if level.hidden);
         hidden && session.data.tried_enough(true)
+    }
+
+    /// Whether too many sizes in a row brought nothing, of models with a hidden body or without.
+    fn gives_up_on(&self, hidden: bool) -> bool {
+        let most = if hidden {
+            MOST_HIDDEN_MISSES
+        } else {
+            MOST_MISSES
+        };
+        self.misses[usize::from(hidden)] > most
+    }
+
+    /// Places of the model for which effects race.
+    fn places(&self) -> usize {
+        match self.stage {
+            Stage::Swap => self.size(self.best).max(1),
+            _ => 1,
+        }
     }
 
     /// Cost on the scout of what may stand in the place of an effect of the best.
@@ -265,12 +288,12 @@ impl Explain {
             || explained
             || enough(false)
             || size > MOST_SIZE
-            || self.misses.iter().all(|m| *m > MOST_MISSES)
+            || [false, true].iter().all(|hidden| self.gives_up_on(*hidden))
         {
             self.open_swaps(session);
             return;
         }
-        if self.misses[usize::from(hidden)] > MOST_MISSES || hidden && enough(true) {
+        if self.gives_up_on(hidden) || hidden && enough(true) {
             self.open_level(session, screened, level.next());
             return;
         }

@@ -76,20 +76,44 @@ impl Explain {
         }
     }
 
+    /// Effects to be tried in the place of one of the best model, which is there `without` it. Another best model may have come
+    /// to the same set before.
+    fn open_replacements(
+        &mut self,
+        session: &Session,
+        place: usize,
+        without: usize,
+    ) -> Vec<&'static dyn Effect> {
+        let own = self.trials[self.best].effects()[place];
+        let ids = self.trials[without].ids();
+        let set = |effect: &dyn Effect| {
+            let mut set = ids.clone();
+            set.push(effect.id());
+            set.sort_unstable();
+            set
+        };
+        let is_new = |effect: &&'static dyn Effect| {
+            effect.id() != own.id()
+                && self.is_open(without, *effect)
+                && !effect.has_part(own.id())
+                && (is_hidden_body(own) || !is_hidden_body(*effect))
+                && !self.replacements.contains(&set(*effect))
+        };
+        let open: Vec<&'static dyn Effect> = session.library().filter(is_new).collect();
+        let tried = open.iter().map(|effect| set(*effect));
+        self.replacements.extend(tried.collect::<Vec<_>>());
+        open
+    }
+
     /// Has other effects raced in the place of one of the best model.
     fn replace(&mut self, session: &Session, screened: &Screened, place: usize, without: usize) {
+        let open = self.open_replacements(session, place, without);
         let fit = &self.trials[self.best].scored.fit;
         let rest = &self.trials[without];
         let (ids, own) = (rest.ids(), fit.structure.effects[place]);
         let own_values = &fit.values[fit.structure.range(place)];
         let (mut sketches, mut same) = (Vec::new(), Vec::new());
-        for effect in session
-            .library()
-            .filter(|e| self.is_open(without, *e) && e.id() != own.id())
-        {
-            if effect.has_part(own.id()) || is_hidden_body(effect) && !is_hidden_body(own) {
-                continue;
-            }
+        for effect in open {
             let told = screened
                 .values(&ids, effect.id())
                 .or_else(|| screened.values(&[], effect.id()));
@@ -103,18 +127,11 @@ impl Explain {
             if starts.is_empty() {
                 let probed = session.probed(&rest.scored.fit);
                 starts = probed.starts(effect, 1.0);
-                starts.extend(
-                    probed
-                        .starts_with_body(effect, 1.0)
-                        .into_iter()
-                        .map(|(_, own)| own),
-                );
+                let with_body = probed.starts_with_body(effect, 1.0).into_iter();
+                starts.extend(with_body.map(|(_, own)| own));
             }
-            sketches.extend(
-                starts
-                    .iter()
-                    .map(|start| Sketch::replacing(fit, place, effect, start)),
-            );
+            let starts = starts.iter();
+            sketches.extend(starts.map(|start| Sketch::replacing(fit, place, effect, start)));
         }
         self.take(session, sketches);
         self.tasks.extend(same.into_iter().map(Task::Fit));

@@ -233,10 +233,10 @@ impl Sketch {
         let (data, scales) = (&session.data, &session.scales);
         let mut fit = self.on(data, scales);
         for _ in 0..SETTLING {
-            let before = fit.cost;
             while !fit.done {
                 fit.iterate(data, scales);
             }
+            let before = fit.cost;
             fit.polish_starts(data, scales);
             let ordered = fit.put_in_order(data, scales);
             if !ordered && fit.cost > SETTLED * before {
@@ -327,7 +327,7 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
             .into_iter()
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
-        while heat.advance(session, 0.0, false) {}
+        while heat.advance(session, 0.0, 1, false) {}
         let fits = heat.best(FITTED, f64::INFINITY).into_iter();
         let fits = fits.map(|sketch| sketch.fitted(session));
         fit = least(fits)?;

@@ -4,8 +4,38 @@
 /// hardly shows in the weak form, where its velocity has no sign: beside the best of the others each has its turn.
 pub(super) const STARTS: usize = 24;
 
-/// Rounds on the scout: iterations, and starting points of a set of effects that go on to the next.
-pub(super) const HEATS: [(usize, usize); 4] = [(1, 4), (2, 3), (4, 2), (8, 2)];
+/// A round on the scout.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Round {
+    pub iterations: usize,
+    /// Sets of effects that go on to the next, for each place of the model that is open, and starting points of each.
+    pub sets: usize,
+    pub starts: usize,
+}
+
+/// Rounds on the scout: each leaves about half of the sets and doubles the iterations (Jamieson and Talwalkar 2016).
+pub(super) const ROUNDS: [Round; 4] = [
+    Round {
+        iterations: 1,
+        sets: 24,
+        starts: 4,
+    },
+    Round {
+        iterations: 2,
+        sets: 16,
+        starts: 3,
+    },
+    Round {
+        iterations: 4,
+        sets: 10,
+        starts: 2,
+    },
+    Round {
+        iterations: 8,
+        sets: 8,
+        starts: 2,
+    },
+];
 
 /// Times the least cost beyond which a model does not go on, after each round.
 pub(super) const FAR: [f64; 4] = [100.0, 20.0, 5.0, 3.0];
@@ -16,8 +46,9 @@ pub(super) const HOPE: f64 = 3.0;
 /// Rounds like the last one for which a fit to the record goes on.
 pub(super) const ROUNDS_LEFT: i32 = 3;
 
-/// Models that are fitted to the whole record after that.
+/// Models that are fitted to the whole record after that; and of those with a hidden body, whose fits take ten times as long.
 pub(super) const FITTED: usize = 6;
+pub(super) const FITTED_HIDDEN: usize = 3;
 
 /// Samples of the usual motion over which a dry contact builds up its force: hard, and seen.
 pub(super) const CROSSINGS: [f64; 3] = [0.003, 0.35, 0.8];
@@ -36,6 +67,9 @@ pub(super) const MOST_SIZE: usize = 4;
 /// Sizes in a row that may bring nothing: two effects, or three, may show only together. (A robot servo's gravity and its
 /// friction under load explain nothing one by one.)
 pub(super) const MOST_MISSES: usize = 2;
+
+/// The same of hidden bodies, which are tried alone and beside the best effect.
+pub(super) const MOST_HIDDEN_MISSES: usize = 1;
 
 /// Subsets of one size that are looked at, the best first.
 pub(super) const MOST_LEADS: usize = 5;

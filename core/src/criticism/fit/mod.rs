@@ -182,7 +182,9 @@ impl Fit {
             matrix[(*j, *j)] += weight;
             gradient[*j] += weight * (value - self.values[*j]);
         }
-        let (mut lowered, mut shortened, mut growth) = (false, false, DAMPING_GROWTH);
+        let began_with = self.damping;
+        let (mut moved, mut lowered, mut shortened, mut growth) =
+            (false, false, false, DAMPING_GROWTH);
         while self.damping < MAX_DAMPING {
             let Some((values, starts)) = self.step(data, &matrix, &gradient, &windows, scales)
             else {
@@ -203,6 +205,7 @@ impl Fit {
                 self.cost = self.objective(data, &motion, &values, ODD_MEAN_SQUARE);
                 (self.values, self.starts, self.motion) = (values, starts, motion);
                 self.damping = (self.damping * 0.2).max(1e-9);
+                moved = true;
                 lowered = fall > if shortened { CREEP } else { COST_TOLERANCE };
                 break;
             }
@@ -222,7 +225,13 @@ impl Fit {
                 || self.try_growing(data, scales)
                 || self.try_carrying(data, scales)
                 || self.try_other_valleys(data, scales);
-            self.stalls += usize::from(!found);
+            // With as little damping as it would go on with, it would only do the same again.
+            let repeats = !moved && began_with <= RESTART_DAMPING;
+            self.stalls += match (found, repeats) {
+                (true, _) => 0,
+                (false, true) => MAX_STALLS,
+                (false, false) => 1,
+            };
         }
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
     }

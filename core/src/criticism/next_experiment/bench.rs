@@ -43,7 +43,7 @@ impl Hypothesis {
             said: FittedModel {
                 effect,
                 effects: fit.structure.ids(),
-                parameters: session.parameters(scored),
+                parameters: session.parameters(scored, &[]),
             },
         }
     }
