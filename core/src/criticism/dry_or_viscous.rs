@@ -2,21 +2,17 @@
 //!
 //! A cycle of one amplitude tells the energy that friction takes in it: `pi d w A^2` of a viscous one, `4 c A` of a dry one
 //! (harmonic balance; Tsypkin 1984). Whichever of them is fitted makes the same period and amplitude, so that only the shape of the
-//! motion tells them apart. Where a model with viscous friction leaves more than noise of that shape, the loop has the last word.
+//! motion tells them apart. Where neither explains that shape, and neither is better, the loop has the last word.
 
-use super::explain::Trial;
+use super::explain::{Trial, difference};
 use super::fit::Fit;
 use super::relay_loop::makes_cycle;
-use super::select::outweighs;
-use super::session::{Rest, Session};
+use super::session::{Rest, Session, TELLING};
 use crate::diagnosis::{LoopError, Parameter};
 use crate::effect::{Effect, EffectId, VISCOUS_FRICTION};
 use crate::measurement::Kind;
 
 const DRY: EffectId = EffectId::new("coulomb_friction");
-
-/// Standard errors by which viscous friction must differ from 0 for something to be in its place.
-const TOLD: f64 = 1.96;
 
 /// Place of viscous friction among the values of a drive.
 const VISCOUS: usize = 1;
@@ -27,7 +23,7 @@ pub(super) struct InsteadOfViscous {
     pub class: Vec<EffectId>,
     /// The level of the dry friction.
     pub level: Parameter,
-    /// What it leaves, and what the one with viscous friction does, in noise units.
+    /// What it leaves of both halves of the record, and what the one with viscous friction does, in noise units.
     pub errors: [f64; 2],
     /// How far their cycles are off.
     pub in_loop: [LoopError; 2],
@@ -42,22 +38,25 @@ impl InsteadOfViscous {
         let with_viscous = best.in_loop?;
         let dry = with_dry_friction(session, best)?;
         let with_dry = dry.in_loop.filter(|error| makes_cycle(*error))?;
-        // What the windows tell of the difference is less than what neither of the models explains.
-        let told = outweighs(dry.error(), best.error());
-        if told || !dry.same_body(best) {
+        if difference(session, &dry, best).is_better() || !dry.same_body(best) {
             return None;
         }
         let mut parameters = session.parameters(&dry.scored).into_iter();
-        let mut class = vec![DRY];
-        if makes_cycle(with_viscous) {
-            class.insert(0, VISCOUS_FRICTION);
-        }
         Some(Self {
-            class,
+            class: class(with_viscous),
             level: parameters.find(|p| p.effect == Some(DRY))?,
             errors: [dry.error(), best.error()],
             in_loop: [with_dry, with_viscous],
         })
+    }
+}
+
+/// What is missing where dry friction makes the cycle: the viscous one stays beside it if it does, too.
+fn class(with_viscous: LoopError) -> Vec<EffectId> {
+    if makes_cycle(with_viscous) {
+        vec![VISCOUS_FRICTION, DRY]
+    } else {
+        vec![DRY]
     }
 }
 
@@ -66,12 +65,12 @@ impl InsteadOfViscous {
 fn with_dry_friction(session: &Session, best: &Trial) -> Option<Trial> {
     let own = &best.scored.fit;
     let effect = session.find(DRY)?;
-    let is_dry = |e: &&dyn Effect| e.id() == DRY || e.has_part(DRY);
+    let is_dry = |e: &&'static dyn Effect| e.id() == DRY || e.has_part(DRY);
     let symbol = own.structure.baseline.parameters()[VISCOUS].symbol;
     let viscous = own.values[VISCOUS];
-    let told = viscous > TOLD * best.scored.standard_errors()[VISCOUS];
+    let told = viscous > TELLING * best.scored.standard_errors()[VISCOUS];
     let known = session.knowledge.find(None, symbol).is_some();
-    if best.effects().iter().any(|e| is_dry(&&**e)) || !told || known {
+    if best.effects().iter().any(is_dry) || !told || known {
         return None;
     }
     let mut structure = own.structure.with(effect);
@@ -94,4 +93,20 @@ fn with_dry_friction(session: &Session, best: &Trial) -> Option<Trial> {
     let finite = fits.filter(|fit| fit.cost.is_finite());
     let least = finite.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
     Some(Trial::new(session, least))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn viscous_friction_stays_where_it_makes_the_cycle() {
+        let off = |period: f64, amplitude: f64| LoopError {
+            period: Some(period),
+            amplitude: Some(amplitude),
+        };
+        assert_eq!(class(off(0.03, -0.04)), [VISCOUS_FRICTION, DRY]);
+        assert_eq!(class(off(0.71, 1.18)), [DRY]);
+        assert_eq!(class(LoopError::default()), [DRY]);
+    }
 }

@@ -86,7 +86,7 @@ const MOST_REMEMBERED: f64 = 2.0;
 const MOST_PUSHED: f64 = 2.5;
 
 /// Standard errors by which a parameter that tells of an effect must differ from 0: its 95 % interval leaves it out.
-const TELLING: f64 = 1.96;
+pub(super) const TELLING: f64 = 1.96;
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;

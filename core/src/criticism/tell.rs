@@ -13,9 +13,9 @@ use super::score::share_left;
 use super::select::{delta_bic, outweighs};
 use super::session::{Rest, Scored, Session};
 use super::verdict::{
-    Class, add_both_ways, add_dry_friction, add_experiments, add_glitches, add_held, add_hint, add_idle,
-    add_imitations, add_input_check, add_integrating, add_limited, add_overruled, add_pauses,
-    add_relay_loop, add_rest, verdict,
+    Class, add_both_ways, add_dry_friction, add_experiments, add_glitches, add_held, add_hint,
+    add_idle, add_imitations, add_input_check, add_integrating, add_limited, add_overruled,
+    add_pauses, add_relay_loop, add_rest, verdict,
 };
 use crate::diagnosis::{
     Candidate, Contradiction, Limits, NextExperiment, Step, StepReport, Verdict,

@@ -9,7 +9,8 @@ use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{
-    Contradiction, Finding, InputCheck, InputVerdict, LoopError, NextExperiment, Overruled, Parameter, Verdict,
+    Contradiction, Finding, InputCheck, InputVerdict, LoopError, NextExperiment, Overruled,
+    Parameter, Verdict,
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
@@ -267,13 +268,18 @@ pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
             },
         )
     });
+    let lead = if dry.class.len() > 1 {
+        "The friction may be dry as well"
+    } else {
+        "The friction is dry"
+    };
     let level = with_error(dry.level.value, dry.level.std_error, &dry.level.unit);
     let [error, before] = dry.errors;
     let _ = write!(
         verdict.text,
-        " The friction may be dry as well: with {level} of Coulomb friction in the place of the viscous friction the error is \
-         {error:.2} times the noise instead of {before:.2}, less apart than what neither explains. Run free in its own relay loop, \
-         {with_dry}; with viscous friction, {with_viscous}."
+        " {lead}: with {level} of Coulomb friction in the place of the viscous friction, both halves of the record are left with \
+         {error:.2} times the noise instead of {before:.2}, too small a difference to count. Run free in its own relay loop, \
+         {with_dry}; with viscous friction {with_viscous}."
     );
     verdict.missing.push(dry.class.clone());
     if dry.class.len() > 1 {

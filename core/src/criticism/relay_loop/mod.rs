@@ -11,7 +11,7 @@ use super::data::Data;
 use crate::diagnosis::LoopError;
 use crate::model::{Model, Sensor};
 use rule::Rule;
-use run::{Begin, Cycle, run};
+use run::{Begin, Cycle, Sight, run};
 use tuning::{MAKES, MOST_SAMPLES};
 
 /// A relay loop that was measured.
@@ -43,6 +43,7 @@ impl RelayLoop {
                 velocity: start.velocity,
                 input: input[0],
                 sees_velocity: data.outputs[place].is_velocity,
+                sight: Sight::of(&data.outputs[place]),
                 sensor: if has_velocity {
                     Sensor::Velocity
                 } else {

@@ -116,7 +116,12 @@ fn usual_length(halves: impl Iterator<Item = Half>) -> usize {
 
 /// Half cycles that are as long as the others at their level.
 fn by_a_clock(halves: &[Half]) -> usize {
-    let at = |is_upper: bool| halves.iter().copied().filter(move |h| h.is_upper == is_upper);
+    let at = |is_upper: bool| {
+        halves
+            .iter()
+            .copied()
+            .filter(move |h| h.is_upper == is_upper)
+    };
     let timed = |is_upper: bool| {
         let usual = usual_length(at(is_upper));
         at(is_upper)

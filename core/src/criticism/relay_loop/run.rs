@@ -1,8 +1,10 @@
 //! The cycle of a loop: period and amplitude, of a record or of a model that runs in it.
 
 use super::rule::Rule;
-use super::tuning::FEWEST_CYCLES;
+use super::tuning::{FEWEST_CYCLES, SEED};
+use crate::criticism::output::Output;
 use crate::model::{Model, Sensor, run_controlled_from};
+use crate::random::Random;
 
 /// What a loop does in the second half of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +36,34 @@ impl Cycle {
     }
 }
 
-/// How a loop is run: its relay, and where it begins.
+/// How the signal of a relay shows what it is of.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Sight {
+    /// In steps.
+    Counted(f64),
+    /// With white noise of this standard deviation.
+    Noisy(f64),
+}
+
+impl Sight {
+    /// That of a measured output.
+    pub fn of(output: &Output) -> Self {
+        if output.counted && output.step > 0.0 {
+            Self::Counted(output.step)
+        } else {
+            Self::Noisy(output.noise)
+        }
+    }
+
+    fn shown(self, value: f64, random: &mut Random) -> f64 {
+        match self {
+            Self::Counted(step) => (value / step).round() * step,
+            Self::Noisy(noise) => value + noise * random.normal(),
+        }
+    }
+}
+
+/// How a loop is run, and where it begins.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Begin {
     /// Sampling time, s.
@@ -45,6 +74,7 @@ pub(super) struct Begin {
     pub input: f64,
     /// The relay sees the velocity, or the output of a process.
     pub sees_velocity: bool,
+    pub sight: Sight,
     pub sensor: Sensor,
 }
 
@@ -52,6 +82,7 @@ pub(super) struct Begin {
 pub(super) fn run(model: &Model, rule: &Rule, begin: &Begin) -> (Vec<f64>, Vec<f64>) {
     let mut upper = rule.is_upper(begin.input);
     let mut seen: Vec<f64> = Vec::with_capacity(begin.samples);
+    let mut random = Random::new(SEED);
     let run = run_controlled_from(
         model,
         begin.step,
@@ -59,7 +90,12 @@ pub(super) fn run(model: &Model, rule: &Rule, begin: &Begin) -> (Vec<f64>, Vec<f
         begin.sensor,
         [begin.position, begin.velocity],
         |_, position, velocity| {
-            seen.push(if begin.sees_velocity { velocity } else { position });
+            let value = if begin.sees_velocity {
+                velocity
+            } else {
+                position
+            };
+            seen.push(begin.sight.shown(value, &mut random));
             let told = (seen.len() - 1).checked_sub(rule.late).map(|k| seen[k]);
             upper = told.map_or(upper, |told| rule.is_upper_after(told, upper));
             rule.level(upper)
