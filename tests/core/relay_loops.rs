@@ -126,8 +126,24 @@ fn a_square_wave_is_no_relay_loop() {
     }
 }
 
-/// A cart of 6.28 kg whose owner knows dry friction of 2.8 to 3.2 N and no other. What is left of its windows is more than what
-/// dry and viscous friction differ by, and both make its cycle.
+/// A thermostat of two storages: with the second one the process makes its cycle, and without a far other one.
+#[test]
+fn a_process_makes_its_cycle_with_its_second_lag_only() {
+    let Some(csv) = shared("measurements-2/thermostat-lag.csv") else {
+        return;
+    };
+    let d = diagnose("thermostat-lag.csv", &csv);
+    check_cycle(&d, 0.03);
+    let first = d.steps[0].relay_loop.expect("a loop");
+    assert!(
+        first.period.is_some_and(|p| p.abs() > 0.4),
+        "{first:?}: {}",
+        d.verdict.text
+    );
+}
+
+/// A cart of 6.28 kg whose owner knows dry friction of 2.8 to 3.2 N and no other. Neither dry nor viscous friction explains the
+/// motion within a cycle, or does better, and both make the cycle.
 #[test]
 fn friction_of_a_real_cart_may_be_dry() {
     for file in [
