@@ -237,12 +237,13 @@ pub(super) fn add_relay_loop(
                 " Run free in its own relay loop, the model's period is off by {period} and its amplitude by {amplitude}"
             );
             if let Some(first) = first.filter(|_| !verdict.missing.is_empty()) {
-                verdict.text.push_str(&match cycle_words(first) {
-                    Some([period, amplitude]) => {
-                        format!(" (without what was found: {period} and {amplitude})")
-                    }
-                    None => " (without what was found there is no cycle)".to_owned(),
-                });
+                let _ = match cycle_words(first) {
+                    Some([period, amplitude]) => write!(
+                        verdict.text,
+                        " (without what was found: {period} and {amplitude})"
+                    ),
+                    None => write!(verdict.text, " (without what was found there is no cycle)"),
+                };
             }
             verdict.text.push('.');
         }
