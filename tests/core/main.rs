@@ -41,6 +41,7 @@ mod random_forces;
 mod real_drive;
 mod real_records;
 mod records;
+mod relay_loops;
 mod report;
 mod rests;
 mod scenario_text;

@@ -506,6 +506,13 @@ impl Data {
         velocity_estimate(&self.time, &self.outputs)
     }
 
+    /// Dry friction per viscous friction, m/s or rad/s, that takes the same energy from the measured motion.
+    pub fn rubbing_speed(&self) -> f64 {
+        let velocity = self.velocity_estimate();
+        let square: f64 = velocity.iter().map(|v| v * v).sum();
+        square / velocity.iter().map(|v| v.abs()).sum::<f64>()
+    }
+
     /// Measured position, or the integral of the measured velocity from 0.
     pub fn position_estimate(&self) -> Vec<f64> {
         position_estimate(&self.time, &self.outputs)

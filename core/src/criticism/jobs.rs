@@ -51,6 +51,7 @@ impl Search {
                 .trials
                 .get(self.explain.best)
                 .map_or_else(Vec::new, |best| contradictions(&self.session, best));
+            self.tell.compare_frictions(&self.session, &self.explain);
             self.tell.designs(&self.session, &self.explain)
         });
         let Some(design) = designs.first_mut() else {

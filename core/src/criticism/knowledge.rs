@@ -51,6 +51,22 @@ impl Knowledge {
         }
     }
 
+    /// The same where a parameter of the baseline is held at a value.
+    pub fn holding(&self, symbol: &str, value: f64) -> Self {
+        let held = Known {
+            symbol: symbol.to_owned(),
+            value,
+            status: Status::Fixed,
+            std_error: None,
+            unit: None,
+        };
+        let others = self.entries.iter().cloned();
+        Self {
+            entries: others.chain([(None, held)]).collect(),
+            ..self.clone()
+        }
+    }
+
     /// Whether the user's model has this effect.
     pub fn has(&self, id: EffectId) -> bool {
         self.present.contains(&id)

@@ -12,6 +12,7 @@ use super::locate::locate;
 use super::noise::{is_left_by_random_forces, is_noise_with_memory};
 use super::output::Output;
 use super::probes::{Probed, Probes};
+use super::relay_loop::RelayLoop;
 use super::score::{Score, motion_square, score};
 use super::screen::Screened;
 use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
@@ -85,7 +86,7 @@ const MOST_REMEMBERED: f64 = 2.0;
 const MOST_PUSHED: f64 = 2.5;
 
 /// Standard errors by which a parameter that tells of an effect must differ from 0: its 95 % interval leaves it out.
-const TELLING: f64 = 1.96;
+pub(super) const TELLING: f64 = 1.96;
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
@@ -152,6 +153,8 @@ pub(super) struct Session {
     pub input_check: InputCheck,
     /// The gap that a drifting test shows.
     gap: Option<SeenGap>,
+    /// The loop in which the record was made, if a relay closed it.
+    pub relay_loop: Option<RelayLoop>,
     pub input_unit: String,
     /// Quantity, name and unit of each output.
     pub outputs: Vec<(Quantity, String, String)>,
@@ -200,6 +203,7 @@ impl Session {
         let scales = data.scales(inertia, viscous);
         let knowledge = Knowledge::of(model).with_felt_gap(gap.map(felt_gap));
         hold_back(&mut data, &knowledge, guess, &scales);
+        let relay_loop = RelayLoop::of(&data);
         let compared = data.thinned(COMPARED);
         let session = Self {
             scales,
@@ -215,6 +219,7 @@ impl Session {
             data: compared,
             motion: measurement.motion(),
             gap,
+            relay_loop,
             input_unit: measurement.input.unit.clone(),
             outputs: measurement
                 .outputs

@@ -1,6 +1,7 @@
 //! What is told of a model: where it fails, what could be added, and the verdict where nothing should be.
 
 use super::contradicted::overruled;
+use super::dry_or_viscous::InsteadOfViscous;
 use super::explain::{Difference, Explain, Trial, difference as between, may_replace};
 use super::fingerprint::fingerprints;
 use super::missing::missing_parts;
@@ -12,9 +13,9 @@ use super::score::share_left;
 use super::select::{delta_bic, outweighs};
 use super::session::{Rest, Scored, Session};
 use super::verdict::{
-    Class, add_both_ways, add_experiments, add_glitches, add_held, add_hint, add_idle,
-    add_input_check, add_integrating, add_limited, add_overruled, add_part_of_the_way, add_pauses,
-    add_rest, verdict,
+    Class, add_both_ways, add_dry_friction, add_experiments, add_glitches, add_held, add_hint,
+    add_idle, add_input_check, add_integrating, add_limited, add_overruled, add_part_of_the_way,
+    add_pauses, add_relay_loop, add_rest, verdict,
 };
 use crate::diagnosis::{
     Candidate, Contradiction, Limits, NextExperiment, Step, StepReport, Verdict,
@@ -29,6 +30,7 @@ pub(super) struct Tell {
     limits: Limits,
     pub experiments: Vec<NextExperiment>,
     pub contradicted: Vec<Contradiction>,
+    dry: Option<InsteadOfViscous>,
 }
 
 impl Tell {
@@ -37,7 +39,17 @@ impl Tell {
             limits,
             experiments: Vec::new(),
             contradicted: Vec::new(),
+            dry: None,
         }
+    }
+
+    /// Looks whether dry friction does as well as the viscous friction of the best model.
+    pub fn compare_frictions(&mut self, session: &Session, explain: &Explain) {
+        let best = explain.trials.get(explain.best);
+        self.dry = best.and_then(|best| {
+            let rest = session.rest(&session.completed(&best.scored));
+            InsteadOfViscous::of(session, best, rest)
+        });
     }
 
     /// Searches for the experiments that tell apart what this one cannot: none where the model does not explain the record.
@@ -99,6 +111,11 @@ impl Tell {
             let first = session.first(&whole).error;
             add_rest(&mut verdict, rest, &whole.score, first, &findings);
             add_integrating(&mut verdict, &parameters);
+            let dry = self.dry.as_ref().filter(|_| place == explain.best);
+            match dry.filter(|_| verdict.contradicted.is_empty()) {
+                Some(dry) => add_dry_friction(&mut verdict, dry),
+                None => add_relay_loop(&mut verdict, trial.in_loop, explain.trials[0].in_loop),
+            }
             add_part_of_the_way(&mut verdict, part_of_the_way(session, trial, &tried));
             add_hint(&mut verdict, hint(session, trial, &tried));
             add_idle(&mut verdict, &present, &[]);
@@ -126,6 +143,7 @@ impl Tell {
                 error: whole.score.error,
                 error_fit: whole.score.error_fit,
                 left: share_left(session.whole(), &whole.score),
+                relay_loop: trial.in_loop,
                 parameters,
                 findings,
                 tests: residual_tests(session.whole(), &whole.fit.motion),

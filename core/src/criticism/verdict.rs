@@ -3,12 +3,14 @@
 use std::fmt::Write as _;
 
 use super::data::Data;
+use super::dry_or_viscous::InsteadOfViscous;
 use super::locate::signal_name;
 use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
 use crate::diagnosis::{
-    Contradiction, Finding, InputCheck, InputVerdict, NextExperiment, Overruled, Parameter, Verdict,
+    Contradiction, Finding, InputCheck, InputVerdict, LoopError, NextExperiment, Overruled,
+    Parameter, Verdict,
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
@@ -218,6 +220,75 @@ pub(super) fn add_integrating(verdict: &mut Verdict, parameters: &[Parameter]) {
             " The process integrates, so that its output stays where the input leaves it: K/T is {}.",
             with_error(rate.value, rate.std_error, &rate.unit)
         );
+    }
+}
+
+/// Says how far the cycle of a model in the measured relay loop is off, and how far without what was found.
+pub(super) fn add_relay_loop(
+    verdict: &mut Verdict,
+    model: Option<LoopError>,
+    first: Option<LoopError>,
+) {
+    let Some(model) = model else {
+        return;
+    };
+    match cycle_words(model) {
+        Some([period, amplitude]) => {
+            let _ = write!(
+                verdict.text,
+                " Run free in its own relay loop, the model's period is off by {period} and its amplitude by {amplitude}"
+            );
+            if let Some(first) = first.filter(|_| !verdict.missing.is_empty()) {
+                let _ = match cycle_words(first) {
+                    Some([period, amplitude]) => write!(
+                        verdict.text,
+                        " (without what was found: {period} and {amplitude})"
+                    ),
+                    None => write!(verdict.text, " (without what was found there is no cycle)"),
+                };
+            }
+            verdict.text.push('.');
+        }
+        None => verdict
+            .text
+            .push_str(" Run free in its own relay loop, the model comes to no cycle."),
+    }
+}
+
+/// Errors of period and amplitude in per cent.
+fn cycle_words(error: LoopError) -> Option<[String; 2]> {
+    let words = |share: f64| format!("{:.1} %", 100.0 * share.abs());
+    Some([words(error.period?), words(error.amplitude?)])
+}
+
+/// Says that dry friction may stand in the place of viscous friction, by the cycle in the relay loop.
+pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
+    let [with_dry, with_viscous] = dry.in_loop.map(|error| {
+        cycle_words(error).map_or_else(
+            || "there is no cycle".to_owned(),
+            |[period, amplitude]| {
+                format!("the period is off by {period} and the amplitude by {amplitude}")
+            },
+        )
+    });
+    let lead = if dry.class.len() > 1 {
+        "The friction may be dry as well"
+    } else {
+        "The friction is dry"
+    };
+    let level = with_error(dry.level.value, dry.level.std_error, &dry.level.unit);
+    let [error, before] = dry.errors;
+    let _ = write!(
+        verdict.text,
+        " {lead}: with {level} of Coulomb friction in the place of the viscous friction, both halves of the record are left with \
+         {error:.2} times the noise instead of {before:.2}, too small a difference to count. Run free in its own relay loop, \
+         {with_dry}; with viscous friction {with_viscous}."
+    );
+    verdict.missing.push(dry.class.clone());
+    if dry.class.len() > 1 {
+        verdict
+            .next_experiment
+            .get_or_insert_with(|| NEXT_EXPERIMENT.to_owned());
     }
 }
 

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::CriticismError;
 use super::parameter::Parameter;
+use super::relay_loop::LoopError;
 use super::residual_test::ResidualTest;
 use crate::effect::EffectId;
 
@@ -60,6 +61,9 @@ pub struct Step {
     /// that of the motion.
     #[serde(default)]
     pub left: f64,
+    /// How far its cycle in the relay loop of the record is off; `None` where the record is no relay loop.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relay_loop: Option<LoopError>,
     /// Every parameter of the model.
     pub parameters: Vec<Parameter>,
     /// Where it fails, strongest first.

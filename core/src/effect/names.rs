@@ -47,6 +47,9 @@ pub fn find(id: EffectId) -> Option<&'static dyn Effect> {
 
 /// The name of the effect with this id on screen; that of an unknown one, such as a user's own, is its id.
 pub fn name_of(id: EffectId) -> &'static str {
+    if id == VISCOUS_FRICTION {
+        return "Viscous friction";
+    }
     find(id).map_or(id.as_str(), Effect::name)
 }
 

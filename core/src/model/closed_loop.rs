@@ -23,6 +23,21 @@ pub fn run_controlled(
     slow_sensor: Sensor,
     mut command: impl FnMut(f64, f64) -> f64,
 ) -> Run {
+    let at_rest = [0.0, 0.0];
+    run_controlled_from(model, step, samples, slow_sensor, at_rest, |t, _, v| {
+        command(t, v)
+    })
+}
+
+/// The same from a position and a velocity (output of a process); `command` is told the position before the velocity too.
+pub fn run_controlled_from(
+    model: &Model,
+    step: f64,
+    samples: usize,
+    slow_sensor: Sensor,
+    [position, velocity]: [f64; 2],
+    mut command: impl FnMut(f64, f64, f64) -> f64,
+) -> Run {
     let before = model.map_input(0.0);
     let late = (model.delay.max(0.0) / step).min(samples as f64);
     let (whole, rest) = (late.floor() as usize, late.fract() * step);
@@ -30,7 +45,7 @@ pub fn run_controlled(
     for h in [step, rest, step - rest].into_iter().filter(|h| *h > 0.0) {
         engine.prepare(h);
     }
-    let mut state = State::at_rest(before);
+    let mut state = State::at_rest(before).restarted(position, velocity);
     let mut slow = Slow::new(model.sensor_lag, step);
     let mut mapped: Vec<f64> = Vec::with_capacity(samples);
     let mut run = Run::default();
@@ -41,7 +56,7 @@ pub fn run_controlled(
             Sensor::Velocity => v = slow.follow(v),
             Sensor::Position => x = slow.follow(x),
         }
-        let u = command(time, v);
+        let u = command(time, x, v);
         run.input.push(u);
         run.position.push(x);
         run.velocity.push(v);

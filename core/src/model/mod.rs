@@ -31,7 +31,7 @@ mod smoothed;
 mod state;
 mod swing;
 
-pub use closed_loop::{Run, run_controlled};
+pub use closed_loop::{Run, run_controlled, run_controlled_from};
 pub(crate) use contact::dahl;
 pub use engine::Engine;
 pub use excitation::{Excitation, Sensor};

@@ -5,6 +5,7 @@ use crate::criticism::fit::Fit;
 use crate::criticism::score::score;
 use crate::criticism::session::{Scored, Session};
 use crate::criticism::structure::Structure;
+use crate::diagnosis::LoopError;
 use crate::effect::{Effect, EffectId};
 
 /// A model fitted to either half of the blocks.
@@ -16,6 +17,8 @@ pub(in crate::criticism) struct Trial {
     other: Scored,
     /// Mean squared residual of every block by the fit that did not see it, in units of the noise.
     pub held: Vec<f64>,
+    /// Its error in the relay loop that was measured; `None` where there is none.
+    pub in_loop: Option<LoopError>,
 }
 
 impl Trial {
@@ -53,10 +56,15 @@ impl Trial {
         let held = held
             .map(|m| if m.is_finite() { m } else { f64::MAX.sqrt() })
             .collect();
+        let in_loop = session.relay_loop.as_ref().map(|relay_loop| {
+            let fit = &scored.fit;
+            relay_loop.error_of(&fit.structure.model(&fit.values))
+        });
         Self {
             scored,
             other,
             held,
+            in_loop,
         }
     }
 
