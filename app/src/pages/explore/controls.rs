@@ -14,18 +14,15 @@ const NOISE_INTERVAL: f64 = 0.02;
 impl Explore {
     pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui) {
         ui.add_space(4.0);
+        self.message_ui(ui);
         self.controller.ui(ui);
         match self.about() {
             About::Relay => {}
             About::OnOff => {
                 let (set, controls) = (&mut self.on_off.set, &mut self.on_off.controls);
-                controls.ui(ui, set, self.controller, &mut self.editor, &mut self.input);
-                return self.open_ui(ui);
+                return controls.ui(ui, set, self.controller, &mut self.editor, &mut self.input);
             }
-            About::Servo => {
-                self.servo.controls_ui(ui);
-                return self.open_ui(ui);
-            }
+            About::Servo => return self.servo.controls_ui(ui),
         }
         self.figures_ui(ui);
         if self.editor.ui(ui, &mut self.input.plant) {
@@ -36,7 +33,6 @@ impl Explore {
         let (set, controls) = (&mut self.on_off.set, &mut self.on_off.controls);
         controls.more_ui(ui, set, self.controller, &self.input);
         self.playback_ui(ui);
-        self.open_ui(ui);
     }
 
     /// The paper's figures, one click each.

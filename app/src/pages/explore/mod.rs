@@ -362,18 +362,20 @@ impl Explore {
         }
     }
 
-    fn numbers_ui(&self, ui: &mut egui::Ui) {
+    fn numbers_ui(&mut self, ui: &mut egui::Ui) {
         match self.about() {
-            About::Relay => {}
-            About::OnOff => return self.on_off.numbers_ui(ui),
-            About::Servo => return self.servo.numbers_ui(ui),
+            About::Relay => {
+                if let Some((data, _)) = self.data() {
+                    ui.separator();
+                    table::predictions_ui(ui, &self.input, data);
+                    table::harmonics_ui(ui, data);
+                }
+                table::equations_ui(ui);
+            }
+            About::OnOff => self.on_off.numbers_ui(ui),
+            About::Servo => self.servo.numbers_ui(ui),
         }
-        if let Some((data, _)) = self.data() {
-            ui.separator();
-            table::predictions_ui(ui, &self.input, data);
-            table::harmonics_ui(ui, data);
-        }
-        table::equations_ui(ui);
+        self.open_ui(ui);
     }
 
     fn nyquist_ui(&mut self, ui: &mut egui::Ui, height: f32) {

@@ -64,15 +64,21 @@ impl Explore {
         }
     }
 
-    /// Asks for a file, and says what was wrong with one.
+    /// Asks for a file.
     pub(super) fn open_ui(&mut self, ui: &mut egui::Ui) {
         if ui
             .button(tr("Open a scenario ..."))
-            .on_hover_text(tr("Or drop it on this window: plant, relay or servo as a TOML file, as the command line takes it"))
+            .on_hover_text(tr(
+                "Or drop it on this window: plant, relay or servo as a TOML file, as the command line takes it",
+            ))
             .clicked()
         {
             self.files.entrance.open_dialog(ui.ctx(), SCENARIO);
         }
+    }
+
+    /// What was wrong with a file.
+    pub(super) fn message_ui(&mut self, ui: &mut egui::Ui) {
         if let Some(message) = self.files.refused() {
             self.message = Some(message);
         }

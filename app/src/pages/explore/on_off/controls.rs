@@ -4,7 +4,7 @@ use hysteron_core::explore::ExploreInput;
 use hysteron_core::limit_cycle::typical_frequency;
 
 use super::settings::{Discrete, Settings};
-use crate::language::tr;
+use crate::language::{Language, spoken, tr, tr_number};
 use crate::pages::explore::controller::Controller;
 use crate::pages::explore::plant_editor::PlantEditor;
 use crate::theme;
@@ -30,7 +30,7 @@ pub struct Controls {
     samples: bool,
     /// Coefficients in `z` as they are typed, and those that the texts stand for.
     typed: [String; 2],
-    read: Option<Discrete>,
+    read: Option<(Discrete, Language)>,
     reach: Reach,
 }
 
@@ -195,20 +195,8 @@ impl Controls {
         shared: &ExploreInput,
     ) {
         let time = round_up(1.0 / typical_frequency(&shared.plant) + shared.plant.dead_time);
-        let mut holds = self.holds || set.min_on.max(set.min_off) > 0.0;
-        let mut samples = self.samples || set.sampling.max(set.z.sampling) > 0.0;
-        if ui
-            .checkbox(&mut holds, tr("minimum times on and off"))
-            .on_hover_text(tr(
-                "As compressors and pumps need them: after a switch it waits before the next",
-            ))
-            .changed()
-        {
-            let first = if holds { FIRST_HOLD * time } else { 0.0 };
-            (set.min_on, set.min_off) = (first, first);
-        }
-        self.holds = holds;
-        if holds {
+        self.choices_ui(ui, set, time);
+        if self.holds {
             let names = if controller == Controller::TwoLevels {
                 ["minimum time up [s]", "minimum time down [s]"]
             } else {
@@ -218,27 +206,45 @@ impl Controls {
             slider(ui, &mut set.min_on, 0.0, 1.0, 0.0..=longest, names[0]);
             slider(ui, &mut set.min_off, 0.0, 1.0, 0.0..=longest, names[1]);
         }
-        if ui
-            .checkbox(&mut samples, tr("sampled"))
-            .on_hover_text(tr(
-                "It looks at the output at regular instants only, as a controller in software does",
-            ))
-            .changed()
-        {
-            set.sampling = if samples { FIRST_SAMPLING * time } else { 0.0 };
-            set.z.sampling = 0.0;
-        }
-        self.samples = samples;
-        if samples {
+        if self.samples {
             sampling_ui(ui, set, time);
         }
     }
 
+    /// What may be asked for.
+    fn choices_ui(&mut self, ui: &mut egui::Ui, set: &mut Settings, time: f64) {
+        self.holds |= set.min_on.max(set.min_off) > 0.0;
+        self.samples |= set.sampling.max(set.z.sampling) > 0.0;
+        ui.horizontal_wrapped(|ui| {
+            if ui
+                .checkbox(&mut self.holds, tr("minimum times on and off"))
+                .on_hover_text(tr(
+                    "As compressors and pumps need them: after a switch it waits before the next",
+                ))
+                .changed()
+            {
+                let first = if self.holds { FIRST_HOLD * time } else { 0.0 };
+                (set.min_on, set.min_off) = (first, first);
+            }
+            if ui
+                .checkbox(&mut self.samples, tr("sampled"))
+                .on_hover_text(tr(
+                    "It looks at the output at regular instants only, as a controller in software does",
+                ))
+                .changed()
+            {
+                let first = if self.samples { FIRST_SAMPLING * time } else { 0.0 };
+                (set.sampling, set.z.sampling) = (first, 0.0);
+            }
+        });
+    }
+
     /// The coefficients of a plant in `z`.
     fn discrete_ui(&mut self, ui: &mut egui::Ui, z: &mut Discrete) {
-        if self.read.as_ref() != Some(z) {
+        let shown = (z.clone(), spoken());
+        if self.read.as_ref() != Some(&shown) {
             self.typed = [&z.numerator, &z.denominator].map(|p| list(p));
-            self.read = Some(z.clone());
+            self.read = Some(shown);
         }
         ui.strong(tr("Plant in discrete time"));
         let names = ["numerator in z", "denominator in z"];
@@ -256,7 +262,7 @@ impl Controls {
         if let [Some(numerator), Some(denominator)] = read {
             if changed {
                 (z.numerator, z.denominator) = (numerator, denominator);
-                self.read = Some(z.clone());
+                self.read = Some((z.clone(), spoken()));
             }
         } else {
             let color = ui.visuals().warn_fg_color;
@@ -309,14 +315,19 @@ fn sampling_ui(ui: &mut egui::Ui, set: &mut Settings, time: f64) {
 
 fn list(coefficients: &[f64]) -> String {
     let all: Vec<String> = coefficients.iter().map(f64::to_string).collect();
-    all.join(" ")
+    tr_number(all.join(" "))
 }
 
 fn numbers(text: &str) -> Option<Vec<f64>> {
     let all: Option<Vec<f64>> = text
         .split([' ', ';'])
         .filter(|part| !part.is_empty())
-        .map(|part| part.parse().ok().filter(|v: &f64| v.is_finite()))
+        .map(|part| {
+            part.replace(',', ".")
+                .parse()
+                .ok()
+                .filter(|v: &f64| v.is_finite())
+        })
         .collect();
     all.filter(|list| !list.is_empty())
 }

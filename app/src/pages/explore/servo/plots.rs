@@ -32,7 +32,7 @@ pub fn position_ui(ui: &mut egui::Ui, servo: &Servo, data: &HuntingData, height:
     if play {
         keys.push(("motor, before the play", theme::RESIDUAL, Shape::Line));
     }
-    caption_ui(ui, "Position", &keys);
+    caption_ui(ui, "Time", &keys);
     let measured = over_time(data, &data.run.measured, DEGREES);
     let motor = over_time(data, &data.run.position, DEGREES);
     let chart = still("position", "time [s]", "position [°]", height - CAPTION);
