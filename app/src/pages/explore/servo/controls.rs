@@ -187,7 +187,7 @@ impl Controls {
             usual.per_turn,
             1.0,
             LEAST * most..=most,
-            "cogging per turn",
+            "cogging periods [1/rev]",
         );
     }
 }
