@@ -128,7 +128,7 @@ impl HysteronApp {
 
     /// Opens the bytes of a file on the page in front, or on the first one that takes files.
     pub fn open(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
-        if let Some((page, door)) = self.go_to_files() {
+        if let Some((page, door)) = self.go_to_files(Some(name)) {
             door.entrance.open(name, bytes);
             page.update(ctx);
         }
@@ -139,7 +139,7 @@ impl HysteronApp {
     pub fn open_path(&mut self, ctx: &egui::Context, path: &std::path::Path) {
         let file: egui::DroppedFileHandle = std::sync::Arc::new(crate::files::Given::new(path));
         self.go("compare");
-        if let Some((_, door)) = self.go_to_files() {
+        if let Some((_, door)) = self.go_to_files(None) {
             door.entrance.open_dropped(ctx, &file);
         }
     }
@@ -372,7 +372,8 @@ impl HysteronApp {
         let Some(file) = first else {
             return;
         };
-        if let Some((_, door)) = self.go_to_files() {
+        let name = file.path().to_string_lossy();
+        if let Some((_, door)) = self.go_to_files(Some(&name)) {
             door.entrance.open_dropped(ctx, &file);
         }
         if count > 1 {
@@ -399,9 +400,9 @@ impl HysteronApp {
         }
     }
 
-    /// Brings a page that takes files to the front, unless one is there.
-    fn go_to_files(&mut self) -> Option<(&mut Box<dyn View>, &Door)> {
-        let has_door = |page: &Page| page.door.is_some();
+    /// Brings a page that takes a file of this name to the front, unless one is there.
+    fn go_to_files(&mut self, name: Option<&str>) -> Option<(&mut Box<dyn View>, &Door)> {
+        let has_door = |page: &Page| page.door.as_ref().is_some_and(|d| d.takes(name));
         if !self.pages.get(self.front).is_some_and(has_door) {
             self.front = self.pages.iter().position(Page::takes_files)?;
         }

@@ -48,6 +48,12 @@ pub const MODEL: Filter = Filter {
     endings: &["toml"],
 };
 
+/// A loop in a file.
+pub const SCENARIO: Filter = Filter {
+    words: "Scenario",
+    endings: &["toml"],
+};
+
 /// What to do where no dialog can be shown.
 #[cfg(not(target_arch = "wasm32"))]
 const NO_DIALOG: &str = "No dialog can be shown here: drop the file on this window.";
@@ -138,10 +144,27 @@ pub struct Door {
     pub entrance: Entrance,
     /// What the page does with a file that is held over the window.
     pub drop_hint: &'static str,
+    /// How names of files end that it takes; `None`: it takes any.
+    only: Option<&'static str>,
     opened: Receiver<Recent>,
 }
 
 impl Door {
+    /// A door for files alone whose names end so.
+    #[must_use]
+    pub fn only(self, ending: &'static str) -> Self {
+        Self {
+            only: Some(ending),
+            ..self
+        }
+    }
+
+    /// Whether it takes a file of this name; `None` where one is asked for, whatever it is called.
+    pub fn takes(&self, name: Option<&str>) -> bool {
+        let fits = |ending: &str| name.is_some_and(|n| n.to_ascii_lowercase().ends_with(ending));
+        self.only.is_none_or(fits)
+    }
+
     /// Files that the page has taken since the last call.
     pub fn opened(&self) -> Vec<Recent> {
         self.opened.try_iter().collect()
@@ -187,6 +210,7 @@ impl Files {
         Door {
             entrance: self.entrance.clone(),
             drop_hint,
+            only: None,
             opened,
         }
     }

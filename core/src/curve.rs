@@ -46,6 +46,21 @@ pub fn sparse(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     kept
 }
 
+/// Corners of a step curve that changes to `[t, value]`, up to its end at `end`.
+pub fn corners(changes: &[[f64; 2]], end: f64) -> Vec<[f64; 2]> {
+    let mut points = Vec::with_capacity(2 * changes.len() + 1);
+    for (i, [t, u]) in changes.iter().enumerate() {
+        if let Some([_, before]) = i.checked_sub(1).map(|j| changes[j]) {
+            points.push([*t, before]);
+        }
+        points.push([*t, *u]);
+    }
+    if let Some([_, u]) = changes.last() {
+        points.push([end, *u]);
+    }
+    points
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -224,7 +224,7 @@ pub fn compute(input: &ExploreInput) -> Result<ExploreData, ExploreError> {
         swing: swing(&run.time, &run.output),
         trust,
         intersections: prediction.describing_function,
-        input: corners(&run.input, end),
+        input: crate::curve::corners(&run.input, end),
         time: run.time,
         output: run.output,
         phase,
@@ -323,7 +323,8 @@ fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> String {
     }
 }
 
-fn percent(share: f64) -> String {
+/// A share in per cent, with as many digits as are read.
+pub fn percent(share: f64) -> String {
     let value = 100.0 * share;
     if value < 0.01 {
         "less than 0.01 %".to_owned()
@@ -370,19 +371,4 @@ fn inverse_df(relay: &Relay, dominant: Option<&Intersection>) -> Vec<[f64; 2]> {
     [relay.hysteresis, largest]
         .map(|a| relay.inverse_describing_function(a))
         .to_vec()
-}
-
-/// Corners of a step curve.
-fn corners(changes: &[[f64; 2]], end: f64) -> Vec<[f64; 2]> {
-    let mut points = Vec::with_capacity(2 * changes.len() + 1);
-    for (i, [t, u]) in changes.iter().enumerate() {
-        if let Some([_, before]) = i.checked_sub(1).map(|j| changes[j]) {
-            points.push([*t, before]);
-        }
-        points.push([*t, *u]);
-    }
-    if let Some([_, u]) = changes.last() {
-        points.push([end, *u]);
-    }
-    points
 }

@@ -11,7 +11,7 @@ use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
 use hysteron::GivenFile;
 
 /// Numbers that have no unit: the loop of Explore is in units of its own signals, the rest are ratios.
-const PLAIN: [&str; 20] = [
+const PLAIN: [&str; 24] = [
     // As they were read off a test, in the units of its controller.
     "amplitude",
     "hysteresis",
@@ -22,6 +22,10 @@ const PLAIN: [&str; 20] = [
     "gain k",
     "hysteresis ε",
     "asymmetry a",
+    "full power",
+    "reference r",
+    "dead zone d",
+    "output at the start",
     "noise σ",
     "restitution",
     "gain before",

@@ -204,6 +204,47 @@ fn inside_the_gap() {
 }
 
 #[test]
+fn why_does_a_servo_hunt() {
+    let mut harness = open("hunting");
+    let verdict = |h: &App| state(h)["explore"]["verdict"].clone();
+    assert_eq!(verdict(&harness), "hunts");
+    for (button, expected) in [
+        ("Without the integral", "stops_short"),
+        ("The same friction at rest", "settles"),
+        ("A servo with play", "hunts"),
+    ] {
+        follow(&mut harness, button);
+        assert_eq!(verdict(&harness), expected, "{button}");
+        check(&mut harness);
+        assert!(!solved(&harness, "hunting"), "{button}");
+    }
+    // What the text says of the describing function.
+    let off = |of: &str| {
+        let found = shown(&harness, &format!("explore.describing_function.{of}"));
+        found / shown(&harness, &format!("explore.exact.{of}")) - 1.0
+    };
+    assert!(
+        (off("amplitude") - 0.15).abs() < 0.005,
+        "{}",
+        off("amplitude")
+    );
+    assert!(off("period").abs() < 0.01, "{}", off("period"));
+    follow(&mut harness, "Back to the servo that hunts");
+    assert_eq!(
+        state(&harness)["explore"]["describing_function"],
+        serde_json::Value::Null
+    );
+    check(&mut harness);
+    assert!(!solved(&harness, "hunting"));
+    show(
+        &mut harness,
+        "v1;explore;explore.controller=servo;explore.servo.proportional=6;lesson=hunting",
+    );
+    check(&mut harness);
+    assert!(solved(&harness, "hunting"), "{}", state(&harness));
+}
+
+#[test]
 fn why_does_it_drift() {
     let mut harness = open("drift");
     assert_eq!(state(&harness)["direction"], "against");

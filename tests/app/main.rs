@@ -11,6 +11,7 @@ mod access;
 mod backlash;
 mod care;
 mod compare;
+mod explore;
 mod german;
 mod habits;
 mod lessons;

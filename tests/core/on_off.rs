@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use hysteron_core::limit_cycle::exact_cycles;
 use hysteron_core::on_off::{
-    DiscretePlant, OnOffLoop, OnOffPlant, OnOffRelay, Position, Settled, describing_function, run,
-    settled,
+    DiscretePlant, GivenPlant, OnOffInput, OnOffLoop, OnOffPlant, OnOffRelay, Position, Settled,
+    describing_function, run, settled, view,
 };
 use hysteron_core::plant::TransferFunction;
 use hysteron_core::relay::Relay;
@@ -360,7 +360,7 @@ fn a_wide_dead_zone_brings_rest() {
     let mut controller = relay(1.0, 0.02);
     controller.dead_zone = 0.6;
     let loop_ = from_below(controller, 0.1);
-    assert!(settled(&loop_).unwrap().rests);
+    assert!(settled(&loop_).unwrap().rests.is_some());
     assert_eq!(describing_function(&loop_).unwrap(), Vec::new());
 }
 
@@ -393,4 +393,35 @@ fn odd_loops_end() {
     wrong.min_off = f64::NAN;
     assert!(settled(&from_below(wrong, 0.0)).is_err());
     assert!(DiscretePlant::new(&[1.0], &[1.0, -0.5], 0.0).is_err());
+}
+
+#[test]
+fn a_view_begins_where_it_should_and_its_curves_meet_on_both() {
+    let input = OnOffInput {
+        plant: GivenPlant::Continuous(three_lags(0.0)),
+        relay: OnOffRelay {
+            relay: Relay::default(),
+            dead_zone: 0.1,
+            ..OnOffRelay::default()
+        },
+        start: 1.0,
+    };
+    let data = view(&input).expect("a loop");
+    assert!((data.output[0] - 1.0).abs() < 1e-12);
+    // It stands still there: the second sample is as far away as a push of the third derivative takes it.
+    assert!((data.output[1] - 1.0).abs() < 1e-4);
+    let [meeting] = data.meetings[..] else {
+        panic!("{:?}", data.meetings)
+    };
+    let near = |curve: &[[f64; 2]]| {
+        let distance = |p: &[f64; 2]| (p[0] - meeting[0]).hypot(p[1] - meeting[1]);
+        curve.iter().map(distance).fold(f64::INFINITY, f64::min)
+    };
+    let size = meeting[0].hypot(meeting[1]);
+    assert!(near(&data.nyquist) < 0.02 * size && near(&data.inverse_df) < 0.02 * size);
+    let exact = data.exact.expect("a cycle");
+    assert!((exact.period - 4.901_668_676).abs() < 1e-8);
+    let again = OnOffInput::of(&input.on_off_loop().expect("a loop")).expect("a loop");
+    assert_eq!(again.plant, input.plant);
+    assert!((again.start - 1.0).abs() < 1e-12);
 }

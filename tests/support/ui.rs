@@ -23,7 +23,7 @@ pub const NARROW: [f32; 2] = [420.0, 800.0];
 pub const TALL: [f32; 2] = [1600.0, 2400.0];
 
 /// Where the app can be, so that all its pages, their steps, and what they say in several cases are seen.
-pub const PLACES: [&str; 39] = [
+pub const PLACES: [&str; 50] = [
     "v1;mystery",
     "v1;mystery;mystery.by_hand=true;mystery.experiment=relay",
     "v1;start",
@@ -38,6 +38,18 @@ pub const PLACES: [&str; 39] = [
     "v1;explore;loop.relay.hysteresis=0;loop.plant.denominator=1,1",
     "v1;explore;loop.plant.denominator=1,1;loop.relay.hysteresis=2",
     "v1;explore;loop.plant.numerator=-1,-1,4;loop.plant.denominator=1,6,11,6;loop.relay.hysteresis=0.5",
+    "v1;explore;explore.controller=three_positions",
+    "v1;explore;explore.controller=three_positions;explore.on_off.dead_zone=0.8",
+    "v1;explore;explore.controller=one_sided;explore.on_off.reference=0.7;explore.on_off.min_on=3;explore.on_off.min_off=3",
+    "v1;explore;explore.controller=one_sided;explore.on_off.reference=5",
+    "v1;explore;explore.on_off.sampling=0.5",
+    "v1;explore;explore.on_off.z.sampling=0.2",
+    "v1;explore;explore.controller=servo",
+    "v1;explore;explore.controller=servo;explore.servo.integral=0",
+    "v1;explore;explore.controller=servo;explore.servo.excess=0",
+    "v1;explore;explore.controller=servo;explore.servo.integral=80",
+    "v1;explore;explore.controller=servo;explore.servo.half_gap=0.02;explore.servo.excess=0;explore.servo.coulomb=4e-4;\
+     explore.servo.proportional=0.4;explore.servo.integral=4.8;explore.servo.derivative=0.02;explore.servo.limit=0",
     "v1;maps",
     "v1;maps;maps.quantity=stability",
     "v1;maps;maps.quantity=amplitude_error;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",

@@ -68,7 +68,7 @@ impl OnOffReport {
             })
             .collect();
         let exact: Vec<Value> = self.settled.exact.iter().map(cycle).collect();
-        let outcome = if self.settled.rests {
+        let outcome = if self.settled.rests.is_some() {
             "rest"
         } else if self.settled.simulated.is_some() {
             "limit_cycle"
@@ -82,7 +82,7 @@ impl OnOffReport {
             "exact": exact,
             "simulated": self.settled.simulated.as_ref().map(cycle),
             "ultimate": null,
-            "exists": !self.settled.rests,
+            "exists": self.settled.rests.is_none(),
             "text": self.sentences(),
         })
     }

@@ -14,7 +14,7 @@ impl HysteronApp {
         match command {
             Command::Undo | Command::Redo => self.travel(ctx, command == Command::Undo),
             Command::AskForFile => {
-                if let Some((_, door)) = self.go_to_files() {
+                if let Some((_, door)) = self.go_to_files(None) {
                     door.entrance.open_dialog(ctx, MEASUREMENT);
                 }
             }

@@ -25,10 +25,11 @@ pub enum Language {
 }
 
 /// The German texts, by the parts of the app.
-const GERMAN: [&str; 8] = [
+const GERMAN: [&str; 9] = [
     include_str!("../../../assets/german/app.txt"),
     include_str!("../../../assets/german/backlash.txt"),
     include_str!("../../../assets/german/compare.txt"),
+    include_str!("../../../assets/german/controllers.txt"),
     include_str!("../../../assets/german/effects.txt"),
     include_str!("../../../assets/german/errors.txt"),
     include_str!("../../../assets/german/loops.txt"),

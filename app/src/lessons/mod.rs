@@ -38,7 +38,7 @@ macro_rules! texts {
 }
 
 /// The texts, in the order of the course, by their ids.
-const SOURCES: [(&str, Texts); 8] = [
+const SOURCES: [(&str, Texts); 9] = [
     texts!("relay"),
     texts!("oscillation"),
     texts!("exact"),
@@ -46,6 +46,7 @@ const SOURCES: [(&str, Texts); 8] = [
     texts!("tuning"),
     texts!("gap"),
     texts!("drift"),
+    texts!("hunting"),
     texts!("mystery"),
 ];
 

@@ -5,6 +5,7 @@ pub mod content;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cores;
 pub mod enclosed;
+mod loops;
 mod measured;
 pub mod packed;
 pub mod reading;

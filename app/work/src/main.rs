@@ -18,8 +18,8 @@ mod web {
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
     use hysteron_work::tasks::{
-        ExperimentTask, GapTask, HandTask, MapTask, MeasuredTask, MysteryTask, News, READY,
-        ReadTask, RevealTask, StepTask, Task as _, TuneTask,
+        ExperimentTask, GapTask, HandTask, MapTask, MeasuredTask, MysteryTask, News, OnOffTask,
+        READY, ReadTask, RevealTask, ScenarioTask, ServoTask, StepTask, Task as _, TuneTask,
     };
     use hysteron_work::wire::{pack, unpack};
     use hysteron_work::work::Work;
@@ -71,6 +71,9 @@ mod web {
             MysteryTask::NAME => run::<MysteryTask>(scope, &task),
             RevealTask::NAME => run::<RevealTask>(scope, &task),
             TuneTask::NAME => run::<TuneTask>(scope, &task),
+            OnOffTask::NAME => run::<OnOffTask>(scope, &task),
+            ServoTask::NAME => run::<ServoTask>(scope, &task),
+            ScenarioTask::NAME => run::<ScenarioTask>(scope, &task),
             MeasuredTask::NAME => run::<MeasuredTask>(scope, &task),
             _ => Err(format!("no task is called {name}")),
         }

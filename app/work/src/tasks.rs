@@ -6,9 +6,12 @@ use hysteron_core::by_hand::HandReplay;
 use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, StepReport};
 use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
+use hysteron_core::explore::ExploreInput;
+use hysteron_core::hunting::{HuntingData, Servo};
 use hysteron_core::maps::{MapInput, Tile};
 use hysteron_core::measurement::{FoundColumn, Measurement};
 use hysteron_core::mystery::{Answer, Mystery, Request, Reveal};
+use hysteron_core::on_off::{OnOffData, OnOffInput};
 use hysteron_core::tuning::measured::{MeasuredTuning, Readings, Record, Wishes};
 use hysteron_core::tuning::{Response, TuningInput, TuningReport};
 use hysteron_core::user_model::UserModel;
@@ -156,6 +159,44 @@ pub struct TuneTask(pub TuningInput);
 impl Task for TuneTask {
     const NAME: &'static str = "tune";
     type Report = TuningReport;
+}
+
+/// Follows a loop with an on-off controller as it is built.
+#[derive(Serialize, Deserialize)]
+pub struct OnOffTask(pub OnOffInput);
+
+impl Task for OnOffTask {
+    const NAME: &'static str = "on-off";
+    type Report = OnOffData;
+}
+
+/// Follows a drive with a controller of its position.
+#[derive(Serialize, Deserialize)]
+pub struct ServoTask(pub Servo);
+
+impl Task for ServoTask {
+    const NAME: &'static str = "servo";
+    type Report = HuntingData;
+}
+
+/// Reads a scenario.
+#[derive(Serialize, Deserialize)]
+pub struct ScenarioTask(pub String);
+
+/// What is in a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ScenarioReport {
+    /// A relay with two levels around a plant.
+    Loop(Box<ExploreInput>),
+    /// An on-off controller as it is built.
+    OnOff(Box<OnOffInput>),
+    /// A drive with a controller of its position.
+    Servo(Box<Servo>),
+}
+
+impl Task for ScenarioTask {
+    const NAME: &'static str = "scenario";
+    type Report = ScenarioReport;
 }
 
 /// Tells what a measured relay test tells.

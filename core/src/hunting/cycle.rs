@@ -5,13 +5,14 @@
 //! the map from one period to the next says what becomes of small disturbances.
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use super::course::{Course, End, Place};
 use super::run::at_rest;
 use super::servo::{Servo, ServoError};
 
 /// A hunting cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HuntingCycle {
     /// Period, s.
     pub period: f64,

@@ -10,13 +10,14 @@
 use std::f64::consts::PI;
 
 use num_complex::Complex;
+use serde::{Deserialize, Serialize};
 
 use super::servo::{Friction, Servo};
 use crate::drive::play_describing_function;
 use crate::root::illinois;
 
 /// A solution of the harmonic balance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HuntingBalance {
     /// Angular frequency, rad/s.
     pub omega: f64,

@@ -1,10 +1,12 @@
 //! A simulated run.
 
+use serde::{Deserialize, Serialize};
+
 use super::course::{Course, End, Place};
 use super::servo::{Servo, ServoError};
 
 /// A run from rest at 0, sampled.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HuntingRun {
     /// Times, s.
     pub time: Vec<f64>,

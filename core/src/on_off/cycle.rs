@@ -5,6 +5,7 @@
 //! known. A replay checks that the controller switches then and only then.
 
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use super::course::Course;
 use super::pattern::Pattern;
@@ -16,7 +17,7 @@ use crate::plant::MAX_ORDER;
 use crate::simulate::{SimulateError, State};
 
 /// A limit cycle of an on-off loop.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OnOffCycle {
     /// Period, s.
     pub period: f64,
@@ -40,8 +41,8 @@ pub struct Settled {
     pub simulated: Option<OnOffCycle>,
     /// The same to round-off, with its stability.
     pub exact: Option<OnOffCycle>,
-    /// The controller no longer switches.
-    pub rests: bool,
+    /// The position in which the controller stays for ever, where it does.
+    pub rests: Option<Position>,
     /// The answer in a sentence.
     pub text: String,
 }
@@ -114,7 +115,7 @@ pub fn settled(loop_: &OnOffLoop) -> Result<Settled, SimulateError> {
     Ok(Settled {
         simulated: pattern,
         exact,
-        rests: false,
+        rests: None,
         text,
     })
 }
@@ -124,7 +125,7 @@ fn rest(course: &Course<'_>) -> Settled {
     Settled {
         simulated: None,
         exact: None,
-        rests: true,
+        rests: Some(course.position),
         text: format!("The controller stays {last} and no longer switches: no oscillation."),
     }
 }

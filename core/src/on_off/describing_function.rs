@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use num_complex::Complex;
+use serde::{Deserialize, Serialize};
 
 use super::plant::OnOffPlant;
 use super::relay::OnOffRelay;
@@ -13,7 +14,7 @@ use crate::relay::Relay;
 use crate::root::{SECTIONS, golden_section, illinois};
 
 /// A solution of the harmonic balance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
     /// Angular frequency, rad/s.
     pub omega: f64,
@@ -74,6 +75,72 @@ pub fn describing_function(loop_: &OnOffLoop) -> Option<Vec<Balance>> {
     found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     found.truncate(MOST);
     Some(found)
+}
+
+/// The two curves whose meetings are the balances.
+#[derive(Default)]
+pub(super) struct Curves {
+    /// `P(jw)` with all delays, by rising frequency.
+    pub nyquist: Vec<Complex<f64>>,
+    /// `-1/N(A)`, by rising amplitude.
+    pub inverse: Vec<Complex<f64>>,
+    /// Where they meet.
+    pub meetings: Vec<Complex<f64>>,
+}
+
+/// Points of each curve.
+const DRAWN: i32 = 600;
+
+/// What is drawn of `-1/N(A)`: amplitudes from this share above the least, up to so many times the largest that balances.
+const JUST_ABOVE: f64 = 1e-3;
+const FURTHER: f64 = 2.5;
+
+/// How far the Nyquist curve goes on both sides of the balance, or of the plant's typical frequency, in decades.
+const BELOW: f64 = 2.0;
+const ABOVE: f64 = 1.5;
+
+/// The curves where the first harmonic of a symmetric loop tells; empty for any other.
+pub(super) fn curves(loop_: &OnOffLoop, balances: &[Balance]) -> Curves {
+    let relay = &loop_.relay;
+    let symmetric = relay.relay.is_symmetric() && relay.relay.bias == 0.0;
+    if loop_.validate().is_err() || !symmetric || relay.reference != 0.0 {
+        return Curves::default();
+    }
+    let scan = Scan::new(loop_);
+    let centre = balances
+        .first()
+        .map_or(1.0 / (loop_.plant.typical_time() + loop_.lag()), |b| {
+            b.omega
+        });
+    let highest = scan.range[1];
+    let share = |i: i32| f64::from(i) / f64::from(DRAWN);
+    let nyquist = (0..=DRAWN)
+        .map(|i| centre * libm::pow(10_f64, (ABOVE + BELOW) * share(i) - BELOW))
+        .take_while(|omega| *omega <= highest)
+        .filter_map(|omega| scan.response(omega))
+        .collect();
+    let reach = balances.iter().map(|b| b.amplitude).fold(0.0, f64::max);
+    let least = scan.least * (1.0 + JUST_ABOVE);
+    let least = if least > 0.0 {
+        least
+    } else {
+        JUST_ABOVE * reach.max(relay.relay.gain)
+    };
+    let most = FURTHER * reach.max(2.0 * scan.peak).max(least);
+    let inverse = (0..=DRAWN)
+        .map(|i| least * libm::pow(most / least, share(i)))
+        .map(|amplitude| -gain(loop_, amplitude).inv())
+        .filter(|v| v.re.is_finite() && v.im.is_finite())
+        .collect();
+    let meetings = balances
+        .iter()
+        .filter_map(|b| scan.response(b.omega))
+        .collect();
+    Curves {
+        nyquist,
+        inverse,
+        meetings,
+    }
 }
 
 /// Two positions with a reference: that of a relay with a bias that puts the output there in the mean. `None` where no

@@ -2,7 +2,8 @@
 //! sampling time; around a plant in continuous time, or in discrete time.
 //!
 //! [`run`] simulates it, from event to event by exact flows; [`settled`] finds the cycle in which it ends, its switches to
-//! round-off, and whether it is stable; [`describing_function`] predicts it by the first harmonic.
+//! round-off, and whether it is stable; [`describing_function`] predicts it by the first harmonic; [`view`] gives all of it for
+//! drawing.
 
 mod course;
 mod cycle;
@@ -14,6 +15,7 @@ mod relay;
 mod run;
 mod simulation;
 mod stability;
+mod view;
 
 pub use cycle::{OnOffCycle, Settled, settled};
 pub use describing_function::{Balance, describing_function};
@@ -22,3 +24,4 @@ pub use plant::OnOffPlant;
 pub use relay::{OnOffRelay, Position};
 pub use run::{Cause, OnOffLoop, OnOffRun, Switch};
 pub use simulation::run;
+pub use view::{GivenPlant, OnOffData, OnOffInput, view};

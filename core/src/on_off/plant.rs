@@ -75,6 +75,27 @@ impl OnOffPlant {
         }
     }
 
+    /// The state from which the output begins at a value and stands still at first, without an input; `None` where its
+    /// states are more than its output shows.
+    pub fn standing_at(&self, output: f64) -> Option<DVector<f64>> {
+        let n = self.order();
+        let (a, c, later) = match self {
+            // Its derivatives are 0.
+            Self::Continuous(_, space) => (&space.a, &space.c, 0.0),
+            // Its next samples are the same.
+            Self::Discrete(plant) => (&plant.a, &plant.c, output),
+        };
+        let mut rows = DMatrix::zeros(n, n);
+        let mut row = c.transpose();
+        for i in 0..n {
+            rows.row_mut(i).copy_from(&row);
+            row = &row * a;
+        }
+        let wanted = DVector::from_fn(n, |i, _| if i == 0 { output } else { later });
+        let state = rows.lu().solve(&wanted)?;
+        state.iter().all(|v| v.is_finite()).then_some(state)
+    }
+
     /// A time in which it moves, s.
     pub(super) fn typical_time(&self) -> f64 {
         match self {

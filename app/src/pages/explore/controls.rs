@@ -4,7 +4,7 @@ use hysteron_core::figures::figures;
 use hysteron_core::relay::Relay;
 use hysteron_core::simulate::Noise;
 
-use super::Explore;
+use super::{About, Explore};
 use crate::language::tr;
 use crate::widgets::controls::slider;
 
@@ -14,12 +14,24 @@ const NOISE_INTERVAL: f64 = 0.02;
 impl Explore {
     pub(super) fn controls_ui(&mut self, ui: &mut egui::Ui) {
         ui.add_space(4.0);
+        self.message_ui(ui);
+        self.controller.ui(ui);
+        match self.about() {
+            About::Relay => {}
+            About::OnOff => {
+                let (set, controls) = (&mut self.on_off.set, &mut self.on_off.controls);
+                return controls.ui(ui, set, self.controller, &mut self.editor, &mut self.input);
+            }
+            About::Servo => return self.servo.controls_ui(ui),
+        }
         self.figures_ui(ui);
         if self.editor.ui(ui, &mut self.input.plant) {
             self.figure = None;
         }
         ui.separator();
         self.relay_ui(ui);
+        let (set, controls) = (&mut self.on_off.set, &mut self.on_off.controls);
+        controls.more_ui(ui, set, self.controller, &self.input);
         self.playback_ui(ui);
     }
 

@@ -1,9 +1,14 @@
 //! A relay loop, live: what is predicted beside what happens.
 
+mod controller;
 mod controls;
+mod cycle_table;
 mod hint;
 mod nyquist;
+mod on_off;
+mod open;
 mod plant_editor;
+mod servo;
 mod settings;
 mod table;
 
@@ -14,6 +19,8 @@ use hysteron_core::figures::{Check, checks, figures};
 
 use crate::desk::Desk;
 use crate::export::Table;
+use crate::files::Files;
+use crate::jobs::Job;
 use crate::language::tr;
 use crate::layout;
 use crate::page::{Hint, Offer, Page, View};
@@ -21,8 +28,12 @@ use crate::theme;
 use crate::widgets::controls::claim_ui;
 use crate::widgets::playback::Playback;
 use crate::widgets::relay_loop::{self, TABLES, tables};
+use controller::Controller;
+use hysteron_work::tasks::{ScenarioReport, ScenarioTask};
 use nyquist::Nyquist;
+use on_off::OnOff;
 use plant_editor::PlantEditor;
+use servo::Hunting;
 
 /// Simulated periods that are played back in a second.
 const PERIODS_PER_SECOND: f64 = 0.6;
@@ -44,6 +55,26 @@ pub struct Explore {
     finished: Option<Finished>,
     /// How long the last computations took, s.
     took: VecDeque<f64>,
+    controller: Controller,
+    /// What a relay has as it is built, and a drive with a controller, where the page is about them.
+    on_off: OnOff,
+    servo: Hunting,
+    files: Files,
+    /// A scenario that is being read, what was read, and why nothing was.
+    reading: Option<Job<ScenarioTask>>,
+    opened: Option<ScenarioReport>,
+    message: Option<String>,
+}
+
+/// What the page is about.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum About {
+    /// The relay of the textbook.
+    Relay,
+    /// One as it is built.
+    OnOff,
+    /// A drive with a controller.
+    Servo,
 }
 
 /// What was computed, and for what.
@@ -55,17 +86,35 @@ struct Finished {
 
 /// The page as the registry has it.
 pub fn page() -> Page {
-    Page::new("explore", "Explore", Explore::default())
+    let mut view = Explore::default();
+    let door = view
+        .files
+        .door("Drop a scenario to open it here, or a measurement to compare it with models")
+        .only(".toml");
+    Page::new("explore", "Explore", view).with_own_door(door)
 }
 
 impl View for Explore {
+    fn update(&mut self, ctx: &egui::Context) {
+        self.take_files(ctx);
+        self.on_off.update();
+        self.servo.update();
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.input.clone_from(&desk.relay_loop);
-        self.compute();
+        self.take_scenario();
+        match self.about() {
+            About::Relay => self.compute(),
+            About::OnOff => self.on_off.ask(ui.ctx(), self.controller, &self.input),
+            About::Servo => self.servo.ask(ui.ctx()),
+        }
         if std::mem::take(&mut desk.play) {
             self.playback.toggle(ui.ctx());
         }
-        self.play(ui);
+        if self.about() == About::Relay {
+            self.play(ui);
+        }
         if ui.available_width() < layout::NARROW {
             self.narrow_ui(ui);
         } else {
@@ -81,12 +130,54 @@ impl View for Explore {
     }
 
     fn hook_state(&self) -> serde_json::Value {
+        let mut state = match self.about() {
+            About::Relay => self.relay_state(),
+            About::OnOff => self.on_off.state(),
+            About::Servo => self.servo.state(),
+        };
+        state["controller"] = serde_json::json!(self.controller);
+        state["loop"] = serde_json::json!(self.input);
+        if self.reading.is_some() || self.opened.is_some() {
+            state["busy"] = true.into();
+        }
+        if let Some(message) = &self.message {
+            state["message"] = message.as_str().into();
+        }
+        state
+    }
+
+    fn offer(&self) -> Offer<'_> {
+        match self.about() {
+            About::Relay => Offer::new(self.hint(), self.table_names(), || self.tables()),
+            About::OnOff => Offer::new(
+                self.on_off.hint(self.controller),
+                self.on_off.table_names(),
+                || self.on_off.tables(),
+            ),
+            About::Servo => Offer::new(self.servo.hint(), self.servo.table_names(), || {
+                self.servo.tables()
+            }),
+        }
+    }
+}
+
+impl Explore {
+    fn about(&self) -> About {
+        if self.controller == Controller::Servo {
+            About::Servo
+        } else if self.on_off.set.is_more(self.controller) {
+            About::OnOff
+        } else {
+            About::Relay
+        }
+    }
+
+    fn relay_state(&self) -> serde_json::Value {
         let data = self.data();
         let cycle = |c: hysteron_core::limit_cycle::Cycle| serde_json::json!({"period": c.period, "amplitude": c.amplitude});
         serde_json::json!({
             "busy": false,
             "compute_ms": self.usual_time().map(|t| 1e3 * t),
-            "loop": self.input,
             "answer": data.map(|(d, _)| d.text.clone()),
             "stability": data.map(|(d, _)| d.stability.clone()),
             "trust": data.map(|(d, _)| d.trust.text.clone()),
@@ -99,12 +190,6 @@ impl View for Explore {
         })
     }
 
-    fn offer(&self) -> Offer<'_> {
-        Offer::new(self.hint(), self.table_names(), || self.tables())
-    }
-}
-
-impl Explore {
     /// What to try next.
     fn hint(&self) -> Option<Hint> {
         self.data().map(|(data, _)| hint::hint(&self.input, data))
@@ -187,6 +272,17 @@ impl Explore {
             theme::scroll("explore").show(ui, |ui| {
                 self.answer_ui(ui);
                 self.reasons_ui(ui);
+                match self.about() {
+                    About::Relay => {}
+                    About::OnOff => {
+                        let height = (ui.available_height() - 10.0).max(340.0);
+                        return self.on_off.plots_ui(ui, height);
+                    }
+                    About::Servo => {
+                        let height = (ui.available_height() - 10.0).max(400.0);
+                        return self.servo.plots_ui(ui, height);
+                    }
+                }
                 let height = (0.5 * ui.available_height() - 34.0).max(150.0);
                 if layout::room_for_two(ui) {
                     ui.columns(2, |columns| {
@@ -209,6 +305,16 @@ impl Explore {
         egui::CentralPanel::default().show(ui, |ui| {
             theme::scroll("explore").show(ui, |ui| {
                 self.reasons_ui(ui);
+                match self.about() {
+                    About::Relay => {}
+                    About::OnOff => self.on_off.plots_ui(ui, 320.0),
+                    About::Servo => self.servo.plots_ui(ui, 480.0),
+                }
+                if self.about() != About::Relay {
+                    self.controls_ui(ui);
+                    self.numbers_ui(ui);
+                    return;
+                }
                 self.nyquist_ui(ui, 260.0);
                 self.time_ui(ui, 220.0);
                 self.controls_ui(ui);
@@ -219,6 +325,11 @@ impl Explore {
     }
 
     fn answer_ui(&self, ui: &mut egui::Ui) {
+        match self.about() {
+            About::Relay => {}
+            About::OnOff => return self.on_off.answer_ui(ui),
+            About::Servo => return self.servo.answer_ui(ui),
+        }
         match self.finished.as_ref().map(|f| &f.data) {
             Some(Ok((data, _))) => theme::answer_ui(ui, &data.text),
             Some(Err(error)) => {
@@ -230,6 +341,11 @@ impl Explore {
 
     /// What the answer rests on.
     fn reasons_ui(&self, ui: &mut egui::Ui) {
+        match self.about() {
+            About::Relay => {}
+            About::OnOff => return self.on_off.reasons_ui(ui),
+            About::Servo => return self.servo.reasons_ui(ui),
+        }
         let Some((data, claims)) = self.data() else {
             return;
         };
@@ -246,13 +362,20 @@ impl Explore {
         }
     }
 
-    fn numbers_ui(&self, ui: &mut egui::Ui) {
-        if let Some((data, _)) = self.data() {
-            ui.separator();
-            table::predictions_ui(ui, &self.input, data);
-            table::harmonics_ui(ui, data);
+    fn numbers_ui(&mut self, ui: &mut egui::Ui) {
+        match self.about() {
+            About::Relay => {
+                if let Some((data, _)) = self.data() {
+                    ui.separator();
+                    table::predictions_ui(ui, &self.input, data);
+                    table::harmonics_ui(ui, data);
+                }
+                table::equations_ui(ui);
+            }
+            About::OnOff => self.on_off.numbers_ui(ui),
+            About::Servo => self.servo.numbers_ui(ui),
         }
-        table::equations_ui(ui);
+        self.open_ui(ui);
     }
 
     fn nyquist_ui(&mut self, ui: &mut egui::Ui, height: f32) {

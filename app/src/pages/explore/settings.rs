@@ -4,6 +4,8 @@ use hysteron_core::figures::figures;
 use serde::{Deserialize, Serialize};
 
 use super::Explore;
+use super::controller::Controller;
+use super::{on_off, servo};
 use crate::desk::Desk;
 use crate::page::Settable;
 
@@ -16,6 +18,12 @@ pub struct Settings {
     margin: bool,
     /// Where the playback stands still, s.
     paused: Option<f64>,
+    /// What switches or steers.
+    controller: Controller,
+    /// What a relay has as it is built.
+    on_off: on_off::Settings,
+    /// A drive with a controller.
+    servo: servo::Settings,
 }
 
 impl Settable for Explore {
@@ -26,6 +34,9 @@ impl Settable for Explore {
             figure: self.figure,
             margin: self.nyquist.margin,
             paused: self.playback.paused(),
+            controller: self.controller,
+            on_off: self.on_off.set.clone(),
+            servo: self.servo.set.clone(),
         }
     }
 
@@ -33,13 +44,18 @@ impl Settable for Explore {
         &mut self,
         _ctx: &egui::Context,
         settings: Settings,
-        _desk: &Desk,
+        desk: &Desk,
     ) -> Result<(), String> {
         if let Some(number) = settings.figure
             && figures().iter().all(|f| f.number != number)
         {
             return Err(format!("There is no figure {number} on this page."));
         }
+        (settings.on_off).check(settings.controller, &desk.relay_loop)?;
+        settings.servo.check()?;
+        self.controller = settings.controller;
+        self.on_off.put(settings.on_off);
+        self.servo.put(settings.servo);
         self.figure = settings.figure;
         self.nyquist.margin = settings.margin;
         self.playback.set(settings.paused);

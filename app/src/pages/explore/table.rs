@@ -81,7 +81,7 @@ fn row_ui(
 }
 
 /// A value with four decimals, or with four digits that count: a fast loop has a short period.
-fn four_digits(value: f64) -> String {
+pub fn four_digits(value: f64) -> String {
     if value.abs() < 0.1 {
         significant(value, 4)
     } else {
@@ -89,7 +89,7 @@ fn four_digits(value: f64) -> String {
     }
 }
 
-fn difference(value: f64, exact: f64) -> String {
+pub fn difference(value: f64, exact: f64) -> String {
     /// Below this many per cent two results are the same but for rounding.
     const ROUNDING: f64 = 1e-8;
     let percent = 100.0 * (value / exact - 1.0);

@@ -33,7 +33,7 @@ impl View for Lessons {
                     return;
                 }
                 for (number, row) in all.chunks(2).enumerate() {
-                    layout::row(ui, ("lessons", number), 2, |ui, place| {
+                    layout::row(ui, ("lessons", number), row.len(), |ui, place| {
                         if let Some((index, lesson)) = row.get(place) {
                             lesson_ui(ui, desk, *index, lesson);
                         }

@@ -1,0 +1,217 @@
+//! A relay as it is built: a dead zone, minimum times, sampling, one direction; around a plant in continuous or discrete time.
+
+mod controls;
+mod plots;
+mod settings;
+mod words;
+
+use hysteron_core::explore::ExploreInput;
+use hysteron_core::on_off::{OnOffCycle, OnOffData, OnOffInput};
+use hysteron_work::tasks::OnOffTask;
+use serde_json::{Value, json};
+
+use super::controller::Controller;
+use super::cycle_table::{self, Row};
+use crate::command::Command;
+use crate::export::Table;
+use crate::jobs::{Job, ended};
+use crate::language::tr;
+use crate::layout;
+use crate::page::Hint;
+use crate::theme;
+use controls::Controls;
+pub use settings::Settings;
+
+/// Names of [`OnOff::tables`].
+const TABLES: [&str; 2] = ["time series", "relay input"];
+
+/// What is set, and what follows from it.
+#[derive(Default)]
+pub struct OnOff {
+    pub set: Settings,
+    pub controls: Controls,
+    asked: Option<OnOffInput>,
+    job: Option<Job<OnOffTask>>,
+    /// The last result; it stays while the next is computed.
+    shown: Option<(OnOffInput, Box<OnOffData>)>,
+    message: Option<String>,
+}
+
+impl OnOff {
+    /// Sets what comes from elsewhere than the controls, of which none is unfolded then.
+    pub fn put(&mut self, set: Settings) {
+        self.controls = Controls::default();
+        self.set = set;
+    }
+
+    /// Takes what the job has brought.
+    pub fn update(&mut self) {
+        match (ended(&mut self.job, |_, _| ()), &self.asked) {
+            (Some(Ok(data)), Some(asked)) => {
+                self.shown = Some((asked.clone(), Box::new(data)));
+                self.message = None;
+            }
+            (Some(Err(text)), _) => self.message = Some(text),
+            _ => {}
+        }
+    }
+
+    /// Computes anew where something was changed and nothing is computed.
+    pub fn ask(&mut self, ctx: &egui::Context, controller: Controller, shared: &ExploreInput) {
+        let input = self.set.input(controller, shared);
+        if self.job.is_none() && self.asked.as_ref() != Some(&input) {
+            self.asked = Some(input.clone());
+            self.job = Some(Job::run(ctx, OnOffTask(input)));
+        }
+    }
+
+    pub fn answer_ui(&self, ui: &mut egui::Ui) {
+        if let Some(message) = &self.message {
+            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+            return;
+        }
+        match &self.shown {
+            None => theme::answer_ui(ui, "Computing ..."),
+            Some((input, data)) if self.is_of_before(input) => {
+                theme::answer_of_before_ui(ui, &words::answer(input, data));
+            }
+            Some((input, data)) => theme::answer_ui(ui, &words::answer(input, data)),
+        }
+    }
+
+    fn is_of_before(&self, shown: &OnOffInput) -> bool {
+        self.job.is_some() && self.asked.as_ref() != Some(shown)
+    }
+
+    pub fn reasons_ui(&self, ui: &mut egui::Ui) {
+        let Some((input, data)) = &self.shown else {
+            return;
+        };
+        for sentence in words::reasons(input, data) {
+            ui.label(tr(sentence));
+        }
+        if let Some(text) = data.exact.as_ref().and_then(lasting) {
+            ui.label(tr(text));
+        }
+    }
+
+    pub fn plots_ui(&self, ui: &mut egui::Ui, height: f32) {
+        let Some((input, data)) = &self.shown else {
+            return;
+        };
+        let curves = !data.nyquist.is_empty();
+        if curves && layout::room_for_two(ui) {
+            ui.columns(2, |columns| {
+                plots::time_ui(&mut columns[0], input, data, height);
+                plots::curves_ui(&mut columns[1], data, height);
+            });
+            return;
+        }
+        plots::time_ui(ui, input, data, height);
+        if curves {
+            plots::curves_ui(ui, data, height);
+        }
+    }
+
+    pub fn numbers_ui(&self, ui: &mut egui::Ui) {
+        let Some((_, data)) = &self.shown else {
+            return;
+        };
+        let row = |cycle: &OnOffCycle| Row {
+            values: Some([cycle.period, cycle.amplitude]),
+            stable: cycle.stable,
+        };
+        let none = Row {
+            values: None,
+            stable: None,
+        };
+        let [exact, simulated] = [&data.exact, &data.simulated].map(|c| c.as_ref().map(row));
+        let balance = words::balance(data).map(|b| Row {
+            values: Some([b.period, b.amplitude]),
+            stable: b.stable,
+        });
+        ui.separator();
+        let rows = [balance, exact, simulated].map(|r| r.unwrap_or(Row { ..none }));
+        cycle_table::ui(ui, ["period [s]", "amplitude"], &rows);
+    }
+
+    pub fn state(&self) -> Value {
+        let data = self.shown.as_ref();
+        let cycle = |c: &OnOffCycle| json!({"period": c.period, "amplitude": c.amplitude});
+        json!({
+            "busy": self.job.is_some(),
+            "message": self.message,
+            "answer": data.map(|(input, data)| words::answer(input, data)),
+            "rests": data.map(|(_, d)| d.rests.is_some()),
+            "exact": data.and_then(|(_, d)| d.exact.as_ref().map(cycle)),
+            "simulated": data.and_then(|(_, d)| d.simulated.as_ref().map(cycle)),
+            "describing_function": data.and_then(|(_, d)| {
+                words::balance(d).map(|b| json!({"period": b.period, "amplitude": b.amplitude}))
+            }),
+        })
+    }
+
+    /// What to try next.
+    pub fn hint(&self, controller: Controller) -> Option<Hint> {
+        let (_, data) = self.shown.as_ref()?;
+        let mut next = self.set.clone();
+        let sentence = if next.min_on.max(next.min_off) > 0.0 {
+            (next.min_on, next.min_off) = (0.0, 0.0);
+            "Take the minimum times away: how fast does it switch then?"
+        } else if controller == Controller::ThreePositions && data.rests.is_some() {
+            next.dead_zone *= 0.125;
+            "Narrow the dead zone: does it oscillate then?"
+        } else if controller == Controller::ThreePositions {
+            next.dead_zone *= 2.0;
+            "Widen the dead zone: where does the oscillation end?"
+        } else if next.sampling > 0.0 {
+            next.sampling *= 0.25;
+            "Look more often: how much of the oscillation was the sampling?"
+        } else {
+            let period = words::cycle(data)?.period;
+            (next.min_on, next.min_off) = (period, period);
+            "Give it minimum times, as a compressor needs them: how far does the output swing then?"
+        };
+        Some(Hint {
+            sentence: sentence.to_owned(),
+            commands: vec![Command::Set("explore", "on_off", json!(next))],
+        })
+    }
+
+    /// Names of the tables that can be given now.
+    pub fn table_names(&self) -> Vec<&'static str> {
+        self.shown.iter().flat_map(|_| TABLES).collect()
+    }
+
+    /// The numbers behind what is shown.
+    pub fn tables(&self) -> Vec<Table> {
+        let Some((_, data)) = &self.shown else {
+            return Vec::new();
+        };
+        vec![
+            Table::new(TABLES[0])
+                .with("time [s]", data.time.iter().copied())
+                .with("output y", data.output.iter().copied()),
+            Table::curve(TABLES[1], ["time [s]", "input u"], &data.input),
+        ]
+    }
+}
+
+/// Whether the cycle lasts.
+fn lasting(cycle: &OnOffCycle) -> Option<String> {
+    let Some(stable) = cycle.stable else {
+        return cycle
+            .multiplier
+            .map(|_| "Another start leads to another cycle beside this one.".to_owned());
+    };
+    let rate = cycle.multiplier?;
+    let (verdict, way) = if stable {
+        ("Stable", "shrinks")
+    } else {
+        ("Unstable", "grows")
+    };
+    let percent = hysteron_core::explore::percent(rate);
+    Some(format!(
+        "{verdict}: a small disturbance {way} to {percent} in one period."
+    ))
+}

@@ -1,0 +1,89 @@
+//! Scenarios from files: they set the page.
+
+use hysteron_work::tasks::{ScenarioReport, ScenarioTask};
+
+use super::Explore;
+use super::controller::Controller;
+use super::{on_off, servo};
+use crate::files::SCENARIO;
+use crate::jobs::{Job, ended};
+use crate::language::tr;
+
+/// Longest file that is read, bytes.
+const LONGEST: usize = 100_000;
+
+impl Explore {
+    /// Takes what files and their reading have brought.
+    pub(super) fn take_files(&mut self, ctx: &egui::Context) {
+        while let Some(arrival) = self.files.arrived() {
+            let text = arrival.bytes.and_then(|bytes| {
+                if bytes.len() > LONGEST {
+                    return Err("it is too long for a scenario".to_owned());
+                }
+                String::from_utf8(bytes).map_err(|_| "it is no text".to_owned())
+            });
+            match text {
+                Ok(text) => self.reading = Some(Job::run(ctx, ScenarioTask(text))),
+                Err(error) => {
+                    self.message = Some(format!("{}: cannot be read ({error})", arrival.name));
+                }
+            }
+        }
+        match ended(&mut self.reading, |_, _| ()) {
+            Some(Ok(report)) => {
+                self.message = None;
+                self.opened = Some(report);
+            }
+            Some(Err(error)) => self.message = Some(error),
+            None => {}
+        }
+    }
+
+    /// Sets the page as a scenario has it that was opened.
+    pub(super) fn take_scenario(&mut self) {
+        let Some(report) = self.opened.take() else {
+            return;
+        };
+        self.figure = None;
+        match report {
+            ScenarioReport::Loop(input) => {
+                self.controller = Controller::TwoLevels;
+                self.on_off.put(on_off::Settings::default());
+                self.input = *input;
+            }
+            ScenarioReport::OnOff(input) => {
+                let (controller, set, shared) = on_off::Settings::of(&input, &self.input);
+                self.controller = controller;
+                self.on_off.put(set);
+                self.input = shared;
+            }
+            ScenarioReport::Servo(servo) => {
+                self.controller = Controller::Servo;
+                self.servo.put(servo::Settings::of(&servo));
+            }
+        }
+    }
+
+    /// Asks for a file.
+    pub(super) fn open_ui(&mut self, ui: &mut egui::Ui) {
+        if ui
+            .button(tr("Open a scenario ..."))
+            .on_hover_text(tr(
+                "Or drop it on this window: plant, relay or servo as a TOML file, as the command line takes it",
+            ))
+            .clicked()
+        {
+            self.files.entrance.open_dialog(ui.ctx(), SCENARIO);
+        }
+    }
+
+    /// What was wrong with a file.
+    pub(super) fn message_ui(&mut self, ui: &mut egui::Ui) {
+        if let Some(message) = self.files.refused() {
+            self.message = Some(message);
+        }
+        if let Some(message) = &self.message {
+            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Loops other than the plain relay: on-off controllers as they are built, drives with a controller, and files of them.
+
+use hysteron_core::explore::ExploreInput;
+use hysteron_core::hunting::{self, HuntingData};
+use hysteron_core::on_off::{self, OnOffData, OnOffInput};
+use hysteron_core::scenario::AnyScenario;
+
+use crate::tasks::{News, OnOffTask, ScenarioReport, ScenarioTask, ServoTask};
+use crate::work::{Say, Work};
+
+impl Work for OnOffTask {
+    fn run(self, say: Say<'_, OnOffData>) {
+        tell(on_off::view(&self.0).map_err(|e| e.to_string()), say);
+    }
+}
+
+impl Work for ServoTask {
+    fn run(self, say: Say<'_, HuntingData>) {
+        tell(hunting::view(&self.0).map_err(|e| e.to_string()), say);
+    }
+}
+
+impl Work for ScenarioTask {
+    fn run(self, say: Say<'_, ScenarioReport>) {
+        tell(read(&self.0), say);
+    }
+}
+
+/// What a scenario without a place in these loops is met with.
+const ELSEWHERE: &str =
+    "This scenario is a drive with play under a relay: simulate it with the command line.";
+
+fn read(text: &str) -> Result<ScenarioReport, String> {
+    match AnyScenario::from_toml(text).map_err(|e| e.to_string())? {
+        AnyScenario::Loop(scenario) => {
+            let input = ExploreInput {
+                plant: scenario.plant,
+                relay: scenario.relay,
+                noise: scenario.options.noise,
+            };
+            input.validate().map_err(|e| e.to_string())?;
+            Ok(ScenarioReport::Loop(Box::new(input)))
+        }
+        AnyScenario::OnOff(scenario) => {
+            let input = OnOffInput::of(&scenario.on_off).map_err(|e| e.to_string())?;
+            Ok(ScenarioReport::OnOff(Box::new(input)))
+        }
+        AnyScenario::Servo(scenario) => Ok(ScenarioReport::Servo(Box::new(scenario.servo))),
+        AnyScenario::Drive(_) => Err(ELSEWHERE.to_owned()),
+    }
+}
+
+/// Hands over what a computation came to.
+fn tell<R>(result: Result<R, String>, say: Say<'_, R>) {
+    say(match result {
+        Ok(report) => News::Report(Box::new(report)),
+        Err(error) => News::Failed(error),
+    });
+}
