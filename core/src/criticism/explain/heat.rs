@@ -92,9 +92,10 @@ impl Heat {
         !self.waiting.is_empty()
     }
 
-    /// Leaves the best of each set of effects, and none that is far behind.
+    /// Leaves the best of each set of effects, of the sets that have a turn, and none that is far behind.
     fn cull(&mut self, alike: f64, places: usize) {
         let Round { sets, starts, .. } = ROUNDS[self.round];
+        let in_turn = self.sets_in_turn(sets * places);
         let last = self.round + 1 == ROUNDS.len();
         let key = |entry: &(f64, Fit)| if last { entry.1.cost } else { hoped(entry) };
         self.over.sort_by(|a, b| {
@@ -108,26 +109,38 @@ impl Heat {
             .map(|(_, fit)| fit.cost)
             .fold(f64::INFINITY, f64::min);
         let mut kept: Vec<(Vec<EffectId>, Vec<f64>)> = Vec::new();
-        let mut sets_left = sets * places;
         let far = FAR[self.round];
         self.over.retain(|entry| {
             let fit = &entry.1;
             let ids = sorted_ids(fit);
             let same = || kept.iter().filter(|(k, _)| *k == ids);
             let twin = same().any(|(_, values)| same_place(values, &fit.values));
-            let known = same().count();
-            let has_turn = if known == 0 {
-                sets_left > 0
-            } else {
-                known < starts
-            };
+            let has_turn = in_turn.contains(&ids) && same().count() < starts;
             let stays = hoped(entry) <= alike.max(far * least) && has_turn && !twin;
             if stays {
-                sets_left -= usize::from(known == 0);
                 kept.push((ids, fit.values.clone()));
             }
             stays
         });
+    }
+
+    /// So many sets of effects that cost least, and half as many more that may come to least: what began where it ends falls no
+    /// further, and what began far off says little by its cost.
+    fn sets_in_turn(&self, count: usize) -> Vec<Vec<EffectId>> {
+        let mut sets: Vec<Vec<EffectId>> = Vec::new();
+        let mut take = |key: &dyn Fn(&(f64, Fit)) -> f64, most: usize| {
+            let mut order: Vec<&(f64, Fit)> = self.over.iter().collect();
+            order.sort_by(|a, b| key(a).total_cmp(&key(b)));
+            for (_, fit) in order {
+                let ids = sorted_ids(fit);
+                if sets.len() < most && !sets.contains(&ids) {
+                    sets.push(ids);
+                }
+            }
+        };
+        take(&|entry| entry.1.cost, count);
+        take(&hoped, count + count / 2);
+        sets
     }
 
     /// The best of each of so many sets of effects, of those that cost no more than a limit, and a second of the first; and

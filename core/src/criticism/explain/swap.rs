@@ -5,7 +5,7 @@ use super::tuning::{ALIKE, MOST_SWAPS};
 use super::{Explain, Stage, Trial, difference, is_hidden_body};
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
-use crate::effect::{Effect, ParameterSpec};
+use crate::effect::{Effect, EffectId, ParameterSpec};
 
 /// An effect that could stand in the place of one in the best model.
 #[derive(Clone)]
@@ -76,14 +76,14 @@ impl Explain {
         }
     }
 
-    /// Effects to be tried in the place of one of the best model, which is there `without` it. Another best model may have come
-    /// to the same set before.
+    /// Effects to be tried in the place of one of the best model, which is there `without` it; and whether for the first time,
+    /// since another best model may have come to the same set before.
     fn open_replacements(
         &mut self,
         session: &Session,
         place: usize,
         without: usize,
-    ) -> Vec<&'static dyn Effect> {
+    ) -> Vec<(&'static dyn Effect, bool)> {
         let own = self.trials[self.best].effects()[place];
         let ids = self.trials[without].ids();
         let set = |effect: &dyn Effect| {
@@ -92,16 +92,20 @@ impl Explain {
             set.sort_unstable();
             set
         };
-        let is_new = |effect: &&'static dyn Effect| {
+        let is_open = |effect: &&'static dyn Effect| {
             effect.id() != own.id()
                 && self.is_open(without, *effect)
                 && !effect.has_part(own.id())
                 && (is_hidden_body(own) || !is_hidden_body(*effect))
-                && !self.replacements.contains(&set(*effect))
         };
-        let open: Vec<&'static dyn Effect> = session.library().filter(is_new).collect();
-        let tried = open.iter().map(|effect| set(*effect));
-        self.replacements.extend(tried.collect::<Vec<_>>());
+        let open = session.library().filter(is_open).map(|effect| {
+            let is_new = !self.replacements.contains(&set(effect));
+            (effect, is_new)
+        });
+        let open: Vec<(&'static dyn Effect, bool)> = open.collect();
+        let new = open.iter().filter(|(_, is_new)| *is_new);
+        let sets: Vec<Vec<EffectId>> = new.map(|(effect, _)| set(*effect)).collect();
+        self.replacements.extend(sets);
         open
     }
 
@@ -113,18 +117,19 @@ impl Explain {
         let (ids, own) = (rest.ids(), fit.structure.effects[place]);
         let own_values = &fit.values[fit.structure.range(place)];
         let (mut sketches, mut same) = (Vec::new(), Vec::new());
-        for effect in open {
-            let told = screened
-                .values(&ids, effect.id())
-                .or_else(|| screened.values(&[], effect.id()));
-            let mut starts: Vec<Vec<f64>> = told.into_iter().collect();
+        for (effect, is_new) in open {
+            let told = || {
+                let beside = screened.values(&ids, effect.id());
+                beside.or_else(|| screened.values(&[], effect.id()))
+            };
+            let mut starts: Vec<Vec<f64>> = is_new.then(told).flatten().into_iter().collect();
             if same_dimensions(own, effect) {
                 starts.push(own_values.to_vec());
             }
             // What says the same with the same values needs no race.
             let carried = carried(own, own_values, effect);
             same.extend(carried.map(|values| Sketch::replacing(fit, place, effect, &values)));
-            if starts.is_empty() {
+            if starts.is_empty() && is_new {
                 let probed = session.probed(&rest.scored.fit);
                 starts = probed.starts(effect, 1.0);
                 let with_body = probed.starts_with_body(effect, 1.0).into_iter();

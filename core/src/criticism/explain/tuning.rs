@@ -8,7 +8,8 @@ pub(super) const STARTS: usize = 24;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
     pub iterations: usize,
-    /// Sets of effects that go on to the next, for each place of the model that is open, and starting points of each.
+    /// Sets of effects that go on to the next by their cost, for each place of the model that is open, half as many more by what
+    /// they may come to, and starting points of each.
     pub sets: usize,
     pub starts: usize,
 }
@@ -17,22 +18,22 @@ pub(super) struct Round {
 pub(super) const ROUNDS: [Round; 4] = [
     Round {
         iterations: 1,
-        sets: 24,
+        sets: 20,
         starts: 4,
     },
     Round {
         iterations: 2,
-        sets: 16,
+        sets: 12,
         starts: 3,
     },
     Round {
         iterations: 4,
-        sets: 10,
+        sets: 8,
         starts: 2,
     },
     Round {
         iterations: 8,
-        sets: 8,
+        sets: 6,
         starts: 2,
     },
 ];
