@@ -5,7 +5,7 @@
 //! motion tells them apart. Where neither explains that shape, and neither is better, the loop has the last word.
 
 use super::explain::{Trial, difference};
-use super::fit::Fit;
+use super::fit::{Fit, least};
 use super::relay_loop::makes_cycle;
 use super::session::{Rest, Session, TELLING};
 use crate::diagnosis::{LoopError, Parameter};
@@ -31,11 +31,12 @@ pub(super) struct InsteadOfViscous {
 
 impl InsteadOfViscous {
     /// None where the record is no relay loop, the best model explains it, or one with dry friction does not do as well.
-    pub fn of(session: &Session, best: &Trial, rest: Rest) -> Option<Self> {
-        if session.kind() != Kind::Drive || rest != Rest::More {
+    pub fn of(session: &Session, best: &Trial) -> Option<Self> {
+        let with_viscous = best.in_loop?;
+        let is_drive = session.kind() == Kind::Drive;
+        if !is_drive || session.rest(&session.completed(&best.scored)) != Rest::More {
             return None;
         }
-        let with_viscous = best.in_loop?;
         let dry = with_dry_friction(session, best)?;
         let with_dry = dry.in_loop.filter(|error| makes_cycle(*error))?;
         if difference(session, &dry, best).is_better() || !dry.same_body(best) {
@@ -84,14 +85,11 @@ fn with_dry_friction(session: &Session, best: &Trial) -> Option<Trial> {
         values.extend(&start[1..]);
         let (structure, starts) = (structure.clone(), own.starts.clone());
         let mut fit = Fit::new(&session.data, structure, values, starts, &session.scales);
-        while !fit.done {
-            fit.iterate(&session.data, &session.scales);
-        }
+        fit.finish(&session.data, &session.scales);
         fit.polish_starts(&session.data, &session.scales);
         fit
     });
-    let finite = fits.filter(|fit| fit.cost.is_finite());
-    let least = finite.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let least = least(fits).filter(|fit| fit.cost.is_finite())?;
     Some(Trial::new(session, least))
 }
 

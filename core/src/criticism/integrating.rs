@@ -36,9 +36,7 @@ impl Session {
         let structure = Structure::new(Baseline::Integrator, effects, self.knowledge.clone());
         let starts = data.guessed_starts();
         let mut fit = Fit::new(&data, structure, values, starts, &self.scales);
-        while !fit.done {
-            fit.iterate(&data, &self.scales);
-        }
+        fit.finish(&data, &self.scales);
         Some(fit)
     }
 }

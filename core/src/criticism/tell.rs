@@ -46,10 +46,7 @@ impl Tell {
     /// Looks whether dry friction does as well as the viscous friction of the best model.
     pub fn compare_frictions(&mut self, session: &Session, explain: &Explain) {
         let best = explain.trials.get(explain.best);
-        self.dry = best.and_then(|best| {
-            let rest = session.rest(&session.completed(&best.scored));
-            InsteadOfViscous::of(session, best, rest)
-        });
+        self.dry = best.and_then(|best| InsteadOfViscous::of(session, best));
     }
 
     /// Searches for the experiments that tell apart what this one cannot: none where the model does not explain the record.
@@ -116,8 +113,10 @@ impl Tell {
                 Some(dry) => add_dry_friction(&mut verdict, dry),
                 None => add_relay_loop(&mut verdict, trial.in_loop, explain.trials[0].in_loop),
             }
-            add_part_of_the_way(&mut verdict, part_of_the_way(session, trial, &tried));
-            add_hint(&mut verdict, hint(session, trial, &tried));
+            if verdict.unknown {
+                add_part_of_the_way(&mut verdict, part_of_the_way(session, trial, &tried));
+                add_hint(&mut verdict, hint(session, trial, &tried));
+            }
             add_idle(&mut verdict, &present, &[]);
             add_input_check(&mut verdict, &session.input_check);
             let whole = session.whole();

@@ -348,7 +348,7 @@ pub(super) fn add_limited(verdict: &mut Verdict, data: &Data) {
 
 /// Says what would explain a part for certain and leave more than that, and the error with it.
 pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<(Vec<EffectId>, f64)>) {
-    if let Some((class, error)) = part.filter(|_| verdict.unknown) {
+    if let Some((class, error)) = part {
         let class = in_registry_order(class);
         let _ = write!(
             verdict.text,
@@ -362,7 +362,7 @@ pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<(Vec<Effec
 
 /// Says which effect would lower the error much, and to what, though chance is not ruled out.
 pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
-    if let Some((id, error)) = hint.filter(|_| verdict.unknown) {
+    if let Some((id, error)) = hint {
         let _ = write!(
             verdict.text,
             " Perhaps {}: it would lower the error to {error:.2} times the noise, but not in enough independent stretches of \

@@ -166,7 +166,11 @@ impl Heat {
 
 /// The effects of a model in an order that does not hang on how it came about.
 fn sorted_ids(fit: &Fit) -> Vec<EffectId> {
-    let mut ids = fit.structure.ids();
+    as_set(fit.structure.ids())
+}
+
+/// Effects in that order.
+pub(super) fn as_set(mut ids: Vec<EffectId>) -> Vec<EffectId> {
     ids.sort_unstable();
     ids
 }

@@ -1,5 +1,6 @@
 //! Other effects in the place of those of the best model.
 
+use super::heat::as_set;
 use super::task::{Sketch, Task};
 use super::tuning::{ALIKE, MOST_SWAPS};
 use super::{Explain, Stage, Trial, difference, is_hidden_body};
@@ -86,12 +87,7 @@ impl Explain {
     ) -> Vec<(&'static dyn Effect, bool)> {
         let own = self.trials[self.best].effects()[place];
         let ids = self.trials[without].ids();
-        let set = |effect: &dyn Effect| {
-            let mut set = ids.clone();
-            set.push(effect.id());
-            set.sort_unstable();
-            set
-        };
+        let set = |effect: &dyn Effect| as_set([ids.as_slice(), &[effect.id()]].concat());
         let is_open = |effect: &&'static dyn Effect| {
             effect.id() != own.id()
                 && self.is_open(without, *effect)

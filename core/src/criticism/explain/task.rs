@@ -4,7 +4,7 @@ use super::heat::Heat;
 use super::tuning::{CROSSINGS, FITTED, SAME_BODY, SETTLED, SETTLING};
 use super::{Trial, hidden_inertia, is_hidden_body};
 use crate::criticism::data::Data;
-use crate::criticism::fit::Fit;
+use crate::criticism::fit::{Fit, least};
 use crate::criticism::guess::guess;
 use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
@@ -233,9 +233,7 @@ impl Sketch {
         let (data, scales) = (&session.data, &session.scales);
         let mut fit = self.on(data, scales);
         for _ in 0..SETTLING {
-            while !fit.done {
-                fit.iterate(data, scales);
-            }
+            fit.finish(data, scales);
             let before = fit.cost;
             fit.polish_starts(data, scales);
             let ordered = fit.put_in_order(data, scales);
@@ -334,16 +332,4 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
     }
     let complete = |fit: &Fit| fit.structure.effects.len() == held.len();
     least(told.into_iter().chain([fit]).filter(complete))
-}
-
-/// The fit that costs least; one whose cost is not finite only where there is no other.
-fn least(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
-    let cost = |fit: &Fit| {
-        if fit.cost.is_finite() {
-            fit.cost
-        } else {
-            f64::INFINITY
-        }
-    };
-    fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }

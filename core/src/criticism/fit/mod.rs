@@ -236,6 +236,13 @@ impl Fit {
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
     }
 
+    /// Iterates until it is done.
+    pub fn finish(&mut self, data: &Data, scales: &Scales) {
+        while !self.done {
+            self.iterate(data, scales);
+        }
+    }
+
     /// Looks where an effect says that a lower valley may be, if the load behind a gap is hidden; true if one is.
     fn try_other_valleys(&mut self, data: &Data, scales: &Scales) -> bool {
         let model = self.structure.model(&self.values);
@@ -368,6 +375,18 @@ fn simulate(
     };
     motion.priors = starts.iter().map(prior).collect();
     motion
+}
+
+/// The fit that costs least; one whose cost is not finite only where there is no other.
+pub(super) fn least(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
+    let cost = |fit: &Fit| {
+        if fit.cost.is_finite() {
+            fit.cost
+        } else {
+            f64::INFINITY
+        }
+    };
+    fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
 
 /// Whether the values of two fits of one structure say the same, but for a hundredth of each.
