@@ -8,11 +8,12 @@ use hysteron_core::user_model::UserModel;
 
 pub use hysteron_work::tasks::News;
 use hysteron_work::tasks::{StepTask, Task};
+pub use platform::Runs;
 
 /// A running task; dropping it cancels it.
 pub struct Job<T: Task = StepTask>(platform::Job<T::Report>);
 
-impl<T: platform::Runs> Job<T> {
+impl<T: Runs> Job<T> {
     /// Runs a task; the window is redrawn whenever it says something.
     pub fn run(ctx: &egui::Context, task: T) -> Self {
         Self(platform::start(ctx.clone(), task))
@@ -40,7 +41,7 @@ impl<T: platform::Runs> Job<T> {
 }
 
 /// [`Job::end`] of the job in a place, which is free then.
-pub fn ended<T: platform::Runs>(
+pub fn ended<T: Runs>(
     place: &mut Option<Job<T>>,
     progress: impl FnMut(f64, String),
 ) -> Option<Result<T::Report, String>> {

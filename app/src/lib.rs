@@ -18,6 +18,7 @@ pub mod language;
 mod layout;
 pub mod lessons;
 pub mod link;
+mod live;
 mod motion;
 mod notice;
 mod page;

@@ -34,6 +34,18 @@ pub fn slider(
     response
 }
 
+/// The slider of how much stronger a relay pushes up than down.
+pub fn asymmetry_slider(ui: &mut egui::Ui, value: &mut f64, normal: f64) {
+    slider(ui, value, normal, 1.0, -0.6..=0.6, "asymmetry a")
+        .on_hover_text(tr("How much stronger it pushes up than down"));
+}
+
+/// The slider of the delay of a relay in a loop, up to so many s.
+pub fn delay_slider(ui: &mut egui::Ui, value: &mut f64, normal: f64, longest: f64) {
+    slider(ui, value, normal, 1.0, 0.0..=longest, "delay [s]")
+        .on_hover_text(tr("How long after the switch the relay's output changes"));
+}
+
 /// Whether a slider is to be set back: by a double click, or by Delete.
 pub fn reset_asked(ui: &egui::Ui, response: &egui::Response) -> bool {
     track_double_clicked(ui, response) || reset_by_key(ui, response)

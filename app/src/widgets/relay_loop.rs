@@ -7,7 +7,7 @@ use hysteron_core::relay::Relay;
 use crate::export::Table;
 use crate::language::tr;
 use crate::theme;
-use crate::widgets::chart::{Shape, caption_ui, curve, dot, still};
+use crate::widgets::chart::{Pen, Shape, caption_ui, curve, dot, still};
 use crate::widgets::chart_cursor::{mark_ui, point, pointed};
 
 /// Index of the sample at a time.
@@ -28,30 +28,45 @@ pub fn swing_at(data: &ExploreData, clock: f64) -> Option<f64> {
     }
 }
 
-pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) {
-    let start = theme::SIMULATED.gamma_multiply(0.6);
+/// Colour of the way to the cycle.
+fn on_the_way() -> egui::Color32 {
+    theme::SIMULATED.gamma_multiply(0.6)
+}
+
+/// The caption of a phase portrait.
+pub fn phase_caption_ui(ui: &mut egui::Ui) {
     caption_ui(
         ui,
         "Phase portrait",
         &[
-            ("from the start", start, Shape::Line),
+            ("from the start", on_the_way(), Shape::Line),
             ("limit cycle", theme::EXACT, Shape::Line),
         ],
     );
+}
+
+/// Its lines: all that was passed, and the cycle where there is one.
+pub fn phase_lines(plot: &mut Pen<'_, '_>, passed: &[[f64; 2]], cycle: Option<&[[f64; 2]]>) {
+    plot.line(
+        Line::new(tr("from the start"), curve(passed))
+            .color(on_the_way())
+            .width(1.2),
+    );
+    if let Some(cycle) = cycle {
+        plot.line(
+            Line::new(tr("limit cycle"), curve(cycle))
+                .color(theme::EXACT)
+                .width(3.0),
+        );
+    }
+}
+
+pub fn phase_ui(ui: &mut egui::Ui, data: &ExploreData, clock: f64, height: f32) {
+    phase_caption_ui(ui);
     let now = data.phase.get(index_at(data, clock)).copied();
     let shown = still("phase", "output y", "its rate of change [1/s]", height).show(ui, |plot| {
-        plot.line(
-            Line::new(tr("from the start"), curve(&data.phase))
-                .color(start)
-                .width(1.2),
-        );
-        if data.simulated.is_some() {
-            plot.line(
-                Line::new(tr("limit cycle"), curve(&data.cycle))
-                    .color(theme::EXACT)
-                    .width(3.0),
-            );
-        }
+        let cycle = data.simulated.map(|_| &*data.cycle);
+        phase_lines(plot, &data.phase, cycle);
         if let Some(now) = now {
             plot.points(dot("now", now));
         }

@@ -7,7 +7,7 @@ use super::{Backlash, SPEED};
 use crate::hook::Targets;
 use crate::language::{tr, tr_number};
 use crate::recent::Recents;
-use crate::widgets::controls::{reset_asked, slider};
+use crate::widgets::controls::{asymmetry_slider, reset_asked, slider};
 use crate::widgets::typed::{DECIMALS, Typed};
 
 /// Width below which the playback stands in two rows, points.
@@ -83,15 +83,7 @@ impl Backlash {
             "gain k [N m]",
         )
         .on_hover_text(tr("How strongly the relay pushes"));
-        slider(
-            ui,
-            &mut r.asymmetry,
-            usual.relay.asymmetry,
-            1.0,
-            -0.6..=0.6,
-            "asymmetry a",
-        )
-        .on_hover_text(tr("How much stronger it pushes up than down"));
+        asymmetry_slider(ui, &mut r.asymmetry, usual.relay.asymmetry);
         slider(
             ui,
             &mut r.hysteresis,

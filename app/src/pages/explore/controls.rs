@@ -6,7 +6,7 @@ use hysteron_core::simulate::Noise;
 
 use super::{About, Explore};
 use crate::language::tr;
-use crate::widgets::controls::slider;
+use crate::widgets::controls::{asymmetry_slider, delay_slider, slider};
 
 /// Time between the values of the noise, as a share of a second.
 const NOISE_INTERVAL: f64 = 0.02;
@@ -66,24 +66,8 @@ impl Explore {
         slider(ui, &mut relay.gain, normal.gain, 1.0, 0.1..=5.0, "gain k")
             .on_hover_text(tr("How strongly the relay pushes"));
         slider(ui, &mut relay.hysteresis, normal.hysteresis, 1.0, 0.0..=1.0, "hysteresis ε").on_hover_text(tr("How far past zero the output must go before the relay switches; also by dragging the dashed line in the Nyquist plot"));
-        slider(
-            ui,
-            &mut relay.asymmetry,
-            normal.asymmetry,
-            1.0,
-            -0.6..=0.6,
-            "asymmetry a",
-        )
-        .on_hover_text(tr("How much stronger it pushes up than down"));
-        slider(
-            ui,
-            &mut relay.delay,
-            normal.delay,
-            1.0,
-            0.0..=2.0,
-            "delay [s]",
-        )
-        .on_hover_text(tr("How long after the switch the relay's output changes"));
+        asymmetry_slider(ui, &mut relay.asymmetry, normal.asymmetry);
+        delay_slider(ui, &mut relay.delay, normal.delay, 2.0);
         let noise = &mut self.input.noise;
         let mut size = noise.map_or(0.0, |n| n.std_dev);
         let before = size;

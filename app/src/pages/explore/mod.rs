@@ -4,6 +4,7 @@ mod controller;
 mod controls;
 mod cycle_table;
 mod hint;
+mod live_answer;
 mod nyquist;
 mod on_off;
 mod open;

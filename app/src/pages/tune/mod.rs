@@ -13,14 +13,14 @@ mod stage;
 mod ultimate;
 
 use hysteron_core::relay::Relay;
-use hysteron_core::tuning::{TuningInput, TuningReport};
+use hysteron_core::tuning::TuningInput;
 
 use crate::command::Command;
 use crate::desk::Desk;
 use crate::export::Table;
-use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::layout;
+use crate::live::Live;
 use crate::motion;
 use crate::page::{Hint, Offer, Page, View};
 use crate::theme;
@@ -44,12 +44,7 @@ pub struct Tune {
     /// Asymmetry of the asymmetric test; the loop of the other pages may have none.
     asymmetry: f64,
     stage: usize,
-    /// Last finished experiment; it stays on screen while the next one runs.
-    shown: Option<(TuningInput, Box<TuningReport>)>,
-    /// Input of the job that runs or ran last.
-    asked: Option<TuningInput>,
-    job: Option<Job<TuneTask>>,
-    message: Option<String>,
+    live: Live<TuningInput, TuneTask>,
     /// A test that was measured, where that is wanted.
     measured: Measured,
 }
@@ -61,10 +56,7 @@ impl Default for Tune {
             asymmetry: input.relay.asymmetry,
             input,
             stage: 0,
-            shown: None,
-            asked: None,
-            job: None,
-            message: None,
+            live: Live::default(),
             measured: Measured::default(),
         }
     }
@@ -81,14 +73,7 @@ pub fn page() -> Page {
 impl View for Tune {
     fn update(&mut self, _ctx: &egui::Context) {
         self.measured.update();
-        match (ended(&mut self.job, |_, _| ()), &self.asked) {
-            (Some(Ok(report)), Some(asked)) => {
-                self.shown = Some((asked.clone(), Box::new(report)));
-                self.message = None;
-            }
-            (Some(Err(text)), _) => self.message = Some(text),
-            _ => {}
-        }
+        self.live.update();
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -132,11 +117,11 @@ impl View for Tune {
         }
         let stage = STAGES.get(self.stage);
         serde_json::json!({
-            "busy": self.job.is_some(),
+            "busy": self.live.is_busy(),
             "step": stage.map(|s| s.id),
             "rule": self.input.rule,
             "answer": self.answer(),
-            "message": self.message,
+            "message": self.live.message(),
         })
     }
 
@@ -235,14 +220,11 @@ impl Tune {
             asymmetry: self.asymmetry,
             ..desk.relay_loop.relay
         };
-        if self.job.is_none() && self.asked.as_ref() != Some(&self.input) {
-            self.asked = Some(self.input.clone());
-            self.job = Some(Job::run(ctx, TuneTask(self.input.clone())));
-        }
+        self.live.ask(ctx, &self.input, TuneTask);
     }
 
     fn seen(&self) -> Option<Seen<'_>> {
-        let (input, report) = self.shown.as_ref()?;
+        let (input, report) = self.live.shown()?;
         Some(Seen { input, report })
     }
 
@@ -265,22 +247,22 @@ impl Tune {
             if self.stage + 1 < STAGES.len() && ui.button(tr("Next step")).clicked() {
                 self.stage += 1;
             }
-            if self.job.is_some() {
+            if self.live.is_busy() {
                 motion::busy_ui(ui);
             }
         });
     }
 
     fn stage_ui(&mut self, ui: &mut egui::Ui, height: f32) {
-        if let Some(message) = &self.message {
+        if let Some(message) = self.live.message() {
             ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
         let Some(stage) = STAGES.get(self.stage) else {
             return;
         };
         ui.label(tr(stage.question));
-        let Some((input, report)) = &self.shown else {
-            let waits = self.message.is_none();
+        let Some((input, report)) = self.live.shown() else {
+            let waits = self.live.message().is_none();
             let text = if waits {
                 "The experiment runs ..."
             } else {
@@ -291,7 +273,7 @@ impl Tune {
         };
         let seen = Seen { input, report };
         let answer = (stage.answer)(seen);
-        if self.job.is_some() && *input != self.input {
+        if self.live.is_busy() && *input != self.input {
             theme::answer_of_before_ui(ui, &answer);
         } else {
             theme::answer_ui(ui, &answer);

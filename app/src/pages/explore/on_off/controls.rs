@@ -8,7 +8,7 @@ use crate::language::{Language, spoken, tr, tr_number};
 use crate::pages::explore::controller::Controller;
 use crate::pages::explore::plant_editor::PlantEditor;
 use crate::theme;
-use crate::widgets::controls::slider;
+use crate::widgets::controls::{asymmetry_slider, delay_slider, slider};
 
 /// Minimum times when they are first asked for, and the longest on the slider, in typical times of the plant.
 const FIRST_HOLD: f64 = 3.0;
@@ -165,25 +165,9 @@ impl Controls {
             .on_hover_text(tr("Where the output stands when the relay is switched on"));
         }
         if controller != Controller::OneSided {
-            slider(
-                ui,
-                &mut relay.asymmetry,
-                0.0,
-                1.0,
-                -0.6..=0.6,
-                "asymmetry a",
-            )
-            .on_hover_text(tr("How much stronger it pushes up than down"));
+            asymmetry_slider(ui, &mut relay.asymmetry, 0.0);
         }
-        slider(
-            ui,
-            &mut relay.delay,
-            0.0,
-            1.0,
-            0.0..=2.0 * time,
-            "delay [s]",
-        )
-        .on_hover_text(tr("How long after the switch the relay's output changes"));
+        delay_slider(ui, &mut relay.delay, 0.0, 2.0 * time);
     }
 
     /// What a textbook's relay has not; also drawn beside that one, where all of it is absent.

@@ -6,19 +6,19 @@ mod settings;
 mod words;
 
 use hysteron_core::explore::ExploreInput;
-use hysteron_core::on_off::{OnOffCycle, OnOffData, OnOffInput};
+use hysteron_core::on_off::{OnOffCycle, OnOffInput};
 use hysteron_work::tasks::OnOffTask;
 use serde_json::{Value, json};
 
 use super::controller::Controller;
-use super::cycle_table::{self, Row};
+use super::cycle_table::{self, APART};
+use super::live_answer;
 use crate::command::Command;
 use crate::export::Table;
-use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::layout;
+use crate::live::Live;
 use crate::page::Hint;
-use crate::theme;
 use controls::Controls;
 pub use settings::Settings;
 
@@ -30,11 +30,7 @@ const TABLES: [&str; 2] = ["time series", "relay input"];
 pub struct OnOff {
     pub set: Settings,
     pub controls: Controls,
-    asked: Option<OnOffInput>,
-    job: Option<Job<OnOffTask>>,
-    /// The last result; it stays while the next is computed.
-    shown: Option<(OnOffInput, Box<OnOffData>)>,
-    message: Option<String>,
+    live: Live<OnOffInput, OnOffTask>,
 }
 
 impl OnOff {
@@ -46,45 +42,21 @@ impl OnOff {
 
     /// Takes what the job has brought.
     pub fn update(&mut self) {
-        match (ended(&mut self.job, |_, _| ()), &self.asked) {
-            (Some(Ok(data)), Some(asked)) => {
-                self.shown = Some((asked.clone(), Box::new(data)));
-                self.message = None;
-            }
-            (Some(Err(text)), _) => self.message = Some(text),
-            _ => {}
-        }
+        self.live.update();
     }
 
     /// Computes anew where something was changed and nothing is computed.
     pub fn ask(&mut self, ctx: &egui::Context, controller: Controller, shared: &ExploreInput) {
         let input = self.set.input(controller, shared);
-        if self.job.is_none() && self.asked.as_ref() != Some(&input) {
-            self.asked = Some(input.clone());
-            self.job = Some(Job::run(ctx, OnOffTask(input)));
-        }
+        self.live.ask(ctx, &input, OnOffTask);
     }
 
     pub fn answer_ui(&self, ui: &mut egui::Ui) {
-        if let Some(message) = &self.message {
-            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
-            return;
-        }
-        match &self.shown {
-            None => theme::answer_ui(ui, "Computing ..."),
-            Some((input, data)) if self.is_of_before(input) => {
-                theme::answer_of_before_ui(ui, &words::answer(input, data));
-            }
-            Some((input, data)) => theme::answer_ui(ui, &words::answer(input, data)),
-        }
-    }
-
-    fn is_of_before(&self, shown: &OnOffInput) -> bool {
-        self.job.is_some() && self.asked.as_ref() != Some(shown)
+        live_answer::ui(ui, &self.live, words::answer);
     }
 
     pub fn reasons_ui(&self, ui: &mut egui::Ui) {
-        let Some((input, data)) = &self.shown else {
+        let Some((input, data)) = self.live.shown() else {
             return;
         };
         for sentence in words::reasons(input, data) {
@@ -96,7 +68,7 @@ impl OnOff {
     }
 
     pub fn plots_ui(&self, ui: &mut egui::Ui, height: f32) {
-        let Some((input, data)) = &self.shown else {
+        let Some((input, data)) = self.live.shown() else {
             return;
         };
         let curves = !data.nyquist.is_empty();
@@ -114,33 +86,25 @@ impl OnOff {
     }
 
     pub fn numbers_ui(&self, ui: &mut egui::Ui) {
-        let Some((_, data)) = &self.shown else {
+        let Some((_, data)) = self.live.shown() else {
             return;
         };
-        let row = |cycle: &OnOffCycle| Row {
-            values: Some([cycle.period, cycle.amplitude]),
-            stable: cycle.stable,
-        };
-        let none = Row {
-            values: None,
-            stable: None,
-        };
-        let [exact, simulated] = [&data.exact, &data.simulated].map(|c| c.as_ref().map(row));
-        let balance = words::balance(data).map(|b| Row {
-            values: Some([b.period, b.amplitude]),
-            stable: b.stable,
-        });
+        let row = |c: &OnOffCycle| ([c.period, c.amplitude], c.stable);
+        let rows = [
+            words::balance(data).map(|b| ([b.period, b.amplitude], b.stable)),
+            data.exact.as_ref().map(row),
+            data.simulated.as_ref().map(row),
+        ];
         ui.separator();
-        let rows = [balance, exact, simulated].map(|r| r.unwrap_or(Row { ..none }));
-        cycle_table::ui(ui, ["period [s]", "amplitude"], &rows);
+        cycle_table::ui(ui, ["period [s]", "amplitude"], APART, &rows);
     }
 
     pub fn state(&self) -> Value {
-        let data = self.shown.as_ref();
+        let data = self.live.shown();
         let cycle = |c: &OnOffCycle| json!({"period": c.period, "amplitude": c.amplitude});
         json!({
-            "busy": self.job.is_some(),
-            "message": self.message,
+            "busy": self.live.is_busy(),
+            "message": self.live.message(),
             "answer": data.map(|(input, data)| words::answer(input, data)),
             "rests": data.map(|(_, d)| d.rests.is_some()),
             "exact": data.and_then(|(_, d)| d.exact.as_ref().map(cycle)),
@@ -153,7 +117,7 @@ impl OnOff {
 
     /// What to try next.
     pub fn hint(&self, controller: Controller) -> Option<Hint> {
-        let (_, data) = self.shown.as_ref()?;
+        let (_, data) = self.live.shown()?;
         let mut next = self.set.clone();
         let sentence = if next.min_on.max(next.min_off) > 0.0 {
             (next.min_on, next.min_off) = (0.0, 0.0);
@@ -180,12 +144,12 @@ impl OnOff {
 
     /// Names of the tables that can be given now.
     pub fn table_names(&self) -> Vec<&'static str> {
-        self.shown.iter().flat_map(|_| TABLES).collect()
+        self.live.shown().into_iter().flat_map(|_| TABLES).collect()
     }
 
     /// The numbers behind what is shown.
     pub fn tables(&self) -> Vec<Table> {
-        let Some((_, data)) = &self.shown else {
+        let Some((_, data)) = self.live.shown() else {
             return Vec::new();
         };
         vec![

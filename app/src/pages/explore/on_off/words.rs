@@ -3,7 +3,7 @@
 use hysteron_core::on_off::{Balance, OnOffCycle, OnOffData, OnOffInput, Position};
 use hysteron_core::uncertain::{brief, digits, quantity};
 
-use super::super::table::difference;
+use super::super::cycle_table::difference;
 
 /// Positions of a cycle that are told one by one.
 const TOLD: usize = 6;

@@ -1,16 +1,18 @@
 //! What can be set of a servo.
 
-use super::settings::Settings;
+use super::settings::{DEGREES, Settings};
 use crate::language::tr;
 use crate::widgets::controls::slider;
 
 /// Values that are shown in other units than they are kept in.
 const MILLI: f64 = 1e3;
-const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 const SQUARE_MM: f64 = 1e6;
 
 /// Part of its range below which no value comes that must be above 0.
 const LEAST: f64 = 1e-3;
+
+/// Where a value stands among those that are set.
+type Place = fn(&mut Settings) -> &mut f64;
 
 /// How far the sliders go.
 #[derive(Default)]
@@ -36,163 +38,133 @@ impl Controls {
     }
 
     fn controller_ui(&self, ui: &mut egui::Ui, set: &mut Settings) {
-        let (usual, put) = (Settings::default(), &self.put);
         ui.strong(tr("Controller"));
-        let most = reach(10.0, put.proportional);
-        slider(
-            ui,
-            &mut set.proportional,
-            usual.proportional,
-            1.0,
-            LEAST * most..=most,
-            "P [N m/rad]",
-        )
-        .on_hover_text(tr("Torque for each rad of error"));
-        let most = reach(40.0, put.integral);
-        slider(
-            ui,
-            &mut set.integral,
-            usual.integral,
-            1.0,
-            0.0..=most,
-            "I [N m/(rad s)]",
-        )
-        .on_hover_text(tr("Torque that grows for as long as there is an error"));
-        let most = reach(0.1, put.derivative);
-        slider(
-            ui,
-            &mut set.derivative,
-            usual.derivative,
-            1.0,
-            0.0..=most,
-            "D [N m s/rad]",
-        )
-        .on_hover_text(tr("Torque against the velocity of the motor"));
+        self.above_zero(ui, set, |s| &mut s.proportional, 1.0, 10.0, "P [N m/rad]")
+            .on_hover_text(tr("Torque for each rad of error"));
+        self.down_to_zero(ui, set, |s| &mut s.integral, 1.0, 40.0, "I [N m/(rad s)]")
+            .on_hover_text(tr("Torque that grows for as long as there is an error"));
+        self.down_to_zero(ui, set, |s| &mut s.derivative, 1.0, 0.1, "D [N m s/rad]")
+            .on_hover_text(tr("Torque against the velocity of the motor"));
     }
 
     fn friction_ui(&self, ui: &mut egui::Ui, set: &mut Settings) {
-        let (usual, put) = (Settings::default(), &self.put);
         ui.strong(tr("Dry friction"));
-        let most = reach(200.0, MILLI * put.coulomb);
-        slider(
+        self.down_to_zero(
             ui,
-            &mut set.coulomb,
-            usual.coulomb,
+            set,
+            |s| &mut s.coulomb,
             MILLI,
-            0.0..=most,
+            200.0,
             "in motion [mN m]",
         )
         .on_hover_text(tr("Coulomb friction: the level while it moves fast"));
-        let most = reach(200.0, MILLI * put.excess);
-        slider(
+        self.down_to_zero(
             ui,
-            &mut set.excess,
-            usual.excess,
+            set,
+            |s| &mut s.excess,
             MILLI,
-            0.0..=most,
+            200.0,
             "more at rest [mN m]",
         )
         .on_hover_text(tr("Stiction: by how much more it takes to break away"));
-        let most = reach(120.0, DEGREES * put.stribeck_speed);
-        slider(
+        self.down_to_zero(
             ui,
-            &mut set.stribeck_speed,
-            usual.stribeck_speed,
+            set,
+            |s| &mut s.stribeck_speed,
             DEGREES,
-            0.0..=most,
+            120.0,
             "Stribeck speed [°/s]",
         )
         .on_hover_text(tr("Speed at which most of the stiction is gone"));
     }
 
     fn play_ui(&self, ui: &mut egui::Ui, set: &mut Settings) {
-        let put = &self.put;
         ui.strong(tr("Play in the gear"));
-        let most = reach(5.0, 2.0 * DEGREES * put.half_gap);
-        slider(
-            ui,
-            &mut set.half_gap,
-            0.0,
-            2.0 * DEGREES,
-            0.0..=most,
-            "play [°]",
-        )
-        .on_hover_text(tr("Between the motor and what is measured"));
+        self.down_to_zero(ui, set, |s| &mut s.half_gap, 2.0 * DEGREES, 5.0, "play [°]")
+            .on_hover_text(tr("Between the motor and what is measured"));
     }
 
     fn drive_ui(&self, ui: &mut egui::Ui, set: &mut Settings) {
-        let (usual, put) = (Settings::default(), &self.put);
-        let most = reach(5000.0, SQUARE_MM * put.inertia);
-        slider(
+        self.above_zero(
             ui,
-            &mut set.inertia,
-            usual.inertia,
+            set,
+            |s| &mut s.inertia,
             SQUARE_MM,
-            LEAST * most..=most,
+            5000.0,
             "inertia [kg mm²]",
         );
-        let most = reach(0.05, put.viscous);
-        slider(
+        self.down_to_zero(
             ui,
-            &mut set.viscous,
-            usual.viscous,
+            set,
+            |s| &mut s.viscous,
             1.0,
-            0.0..=most,
+            0.05,
             "viscous friction [N m s/rad]",
         );
-        let most = reach(90.0, DEGREES * put.reference);
+        let (usual, most) = self.usual_and_most(|s| &mut s.reference, DEGREES, 90.0);
         slider(
             ui,
             &mut set.reference,
-            usual.reference,
+            usual,
             DEGREES,
             -most..=most,
             "where it should be [°]",
         );
-        let most = reach(5.0, put.limit);
-        slider(
+        self.down_to_zero(ui, set, |s| &mut s.limit, 1.0, 5.0, "torque limit [N m]")
+            .on_hover_text(tr("0: there is none"));
+        self.down_to_zero(
             ui,
-            &mut set.limit,
-            usual.limit,
+            set,
+            |s| &mut s.tracking_time,
             1.0,
-            0.0..=most,
-            "torque limit [N m]",
-        )
-        .on_hover_text(tr("0: there is none"));
-        let most = reach(2.0, put.tracking_time);
-        slider(
-            ui,
-            &mut set.tracking_time,
-            usual.tracking_time,
-            1.0,
-            0.0..=most,
+            2.0,
             "anti-windup time [s]",
         )
         .on_hover_text(tr(
             "How fast the integral is led back at the limit; 0: it winds up",
         ));
-        let most = reach(100.0, MILLI * put.cogging);
-        slider(
+        self.down_to_zero(ui, set, |s| &mut s.cogging, MILLI, 100.0, "cogging [mN m]");
+        self.above_zero(
             ui,
-            &mut set.cogging,
-            usual.cogging,
-            MILLI,
-            0.0..=most,
-            "cogging [mN m]",
-        );
-        let most = reach(48.0, put.per_turn);
-        slider(
-            ui,
-            &mut set.per_turn,
-            usual.per_turn,
+            set,
+            |s| &mut s.per_turn,
             1.0,
-            LEAST * most..=most,
+            48.0,
             "cogging periods [1/rev]",
         );
     }
-}
 
-/// The usual end of a slider, or a farther one that has room for a value.
-fn reach(usual: f64, value: f64) -> f64 {
-    usual.max(2.0 * value.abs())
+    /// The usual value in a place, and the end of its slider: as `far` as usual, or farther where what was put there needs room.
+    fn usual_and_most(&self, place: Place, factor: f64, far: f64) -> (f64, f64) {
+        let [usual, put] = [Settings::default(), self.put.clone()].map(|mut set| *place(&mut set));
+        (usual, far.max(2.0 * (factor * put).abs()))
+    }
+
+    /// A slider from 0.
+    fn down_to_zero(
+        &self,
+        ui: &mut egui::Ui,
+        set: &mut Settings,
+        place: Place,
+        factor: f64,
+        far: f64,
+        name: &str,
+    ) -> egui::Response {
+        let (usual, most) = self.usual_and_most(place, factor, far);
+        slider(ui, place(set), usual, factor, 0.0..=most, name)
+    }
+
+    /// The same of a value that must be above 0.
+    fn above_zero(
+        &self,
+        ui: &mut egui::Ui,
+        set: &mut Settings,
+        place: Place,
+        factor: f64,
+        far: f64,
+        name: &str,
+    ) -> egui::Response {
+        let (usual, most) = self.usual_and_most(place, factor, far);
+        slider(ui, place(set), usual, factor, LEAST * most..=most, name)
+    }
 }

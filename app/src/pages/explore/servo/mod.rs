@@ -5,18 +5,18 @@ mod plots;
 mod settings;
 mod words;
 
-use hysteron_core::hunting::{HuntingCycle, HuntingData, Servo};
+use hysteron_core::hunting::{HuntingCycle, Servo};
 use hysteron_work::tasks::ServoTask;
 use serde_json::{Value, json};
 
-use super::cycle_table::{self, Row};
+use super::cycle_table::{self, APART};
+use super::live_answer;
 use crate::command::Command;
 use crate::export::Table;
-use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::layout;
+use crate::live::Live;
 use crate::page::Hint;
-use crate::theme;
 use controls::Controls;
 pub use settings::Settings;
 use words::Verdict;
@@ -29,11 +29,7 @@ const TABLE: &str = "servo";
 pub struct Hunting {
     pub set: Settings,
     controls: Controls,
-    asked: Option<Servo>,
-    job: Option<Job<ServoTask>>,
-    /// The last result; it stays while the next is computed.
-    shown: Option<(Servo, Box<HuntingData>)>,
-    message: Option<String>,
+    live: Live<Servo, ServoTask>,
 }
 
 impl Hunting {
@@ -45,23 +41,12 @@ impl Hunting {
 
     /// Takes what the job has brought.
     pub fn update(&mut self) {
-        match (ended(&mut self.job, |_, _| ()), &self.asked) {
-            (Some(Ok(data)), Some(asked)) => {
-                self.shown = Some((*asked, Box::new(data)));
-                self.message = None;
-            }
-            (Some(Err(text)), _) => self.message = Some(text),
-            _ => {}
-        }
+        self.live.update();
     }
 
     /// Computes anew where something was changed and nothing is computed.
     pub fn ask(&mut self, ctx: &egui::Context) {
-        let servo = self.set.servo();
-        if self.job.is_none() && self.asked != Some(servo) {
-            self.asked = Some(servo);
-            self.job = Some(Job::run(ctx, ServoTask(servo)));
-        }
+        self.live.ask(ctx, &self.set.servo(), ServoTask);
     }
 
     pub fn controls_ui(&mut self, ui: &mut egui::Ui) {
@@ -70,21 +55,11 @@ impl Hunting {
 
     pub fn answer_ui(&self, ui: &mut egui::Ui) {
         ui.label(tr("Does it hunt?"));
-        if let Some(message) = &self.message {
-            ui.colored_label(ui.visuals().warn_fg_color, tr(message));
-            return;
-        }
-        match &self.shown {
-            None => theme::answer_ui(ui, "Computing ..."),
-            Some((servo, data)) if self.job.is_some() && self.asked.as_ref() != Some(servo) => {
-                theme::answer_of_before_ui(ui, &words::answer(servo, data));
-            }
-            Some((servo, data)) => theme::answer_ui(ui, &words::answer(servo, data)),
-        }
+        live_answer::ui(ui, &self.live, words::answer);
     }
 
     pub fn reasons_ui(&self, ui: &mut egui::Ui) {
-        if let Some((servo, data)) = &self.shown {
+        if let Some((servo, data)) = self.live.shown() {
             for sentence in words::reasons(servo, data) {
                 ui.label(tr(sentence));
             }
@@ -92,7 +67,7 @@ impl Hunting {
     }
 
     pub fn plots_ui(&self, ui: &mut egui::Ui, height: f32) {
-        let Some((servo, data)) = &self.shown else {
+        let Some((servo, data)) = self.live.shown() else {
             return;
         };
         let half = 0.5 * height;
@@ -109,32 +84,29 @@ impl Hunting {
     }
 
     pub fn numbers_ui(&self, ui: &mut egui::Ui) {
-        let Some((_, data)) = &self.shown else {
+        let Some((_, data)) = self.live.shown() else {
             return;
         };
-        let row = |values: Option<([f64; 2], Option<bool>)>| Row {
-            values: values.map(|([period, amplitude], _)| [1.0 / period, amplitude.to_degrees()]),
-            stable: values.and_then(|v| v.1),
-        };
-        let cycle = |c: &HuntingCycle| ([c.period, c.amplitude], c.stable);
+        let row = |period: f64, amplitude: f64| [1.0 / period, amplitude.to_degrees()];
+        let cycle = |c: &HuntingCycle| (row(c.period, c.amplitude), c.stable);
         let rows = [
-            row(words::balance(data).map(|b| ([b.period, b.amplitude], b.stable))),
-            row(data.exact.as_ref().map(cycle)),
-            row(data.simulated.as_ref().map(cycle)),
+            words::balance(data).map(|b| (row(b.period, b.amplitude), b.stable)),
+            data.exact.as_ref().map(cycle),
+            data.simulated.as_ref().map(cycle),
         ];
         ui.separator();
-        cycle_table::ui(ui, ["frequency [Hz]", "amplitude [°]"], &rows);
+        cycle_table::ui(ui, ["frequency [Hz]", "amplitude [°]"], APART, &rows);
         ui.small(tr(
             "Amplitude: half of peak to peak of the measured position.",
         ));
     }
 
     pub fn state(&self) -> Value {
-        let data = self.shown.as_ref();
+        let data = self.live.shown();
         let cycle = |c: &HuntingCycle| json!({"period": c.period, "frequency": 1.0 / c.period, "amplitude": c.amplitude, "stuck": c.stuck});
         json!({
-            "busy": self.job.is_some(),
-            "message": self.message,
+            "busy": self.live.is_busy(),
+            "message": self.live.message(),
             "answer": data.map(|(servo, data)| words::answer(servo, data)),
             "verdict": data.map(|(servo, data)| words::verdict(servo, data).id()),
             "servo": self.set,
@@ -148,7 +120,7 @@ impl Hunting {
 
     /// What to try next.
     pub fn hint(&self) -> Option<Hint> {
-        let (servo, data) = self.shown.as_ref()?;
+        let (servo, data) = self.live.shown()?;
         let mut next = self.set.clone();
         let usual = Settings::default();
         let sentence = match words::verdict(servo, data) {
@@ -181,12 +153,12 @@ impl Hunting {
 
     /// Names of the tables that can be given now.
     pub fn table_names(&self) -> Vec<&'static str> {
-        self.shown.iter().map(|_| TABLE).collect()
+        self.live.shown().into_iter().map(|_| TABLE).collect()
     }
 
     /// The numbers behind what is shown.
     pub fn tables(&self) -> Vec<Table> {
-        let Some((_, data)) = &self.shown else {
+        let Some((_, data)) = self.live.shown() else {
             return Vec::new();
         };
         let run = &data.run;

@@ -3,10 +3,12 @@
 use egui_plot::{HLine, Line, LineStyle};
 use hysteron_core::hunting::{HuntingData, Servo};
 
+use super::settings::DEGREES;
 use super::words::cycle;
 use crate::language::tr;
 use crate::theme;
 use crate::widgets::chart::{Shape, caption_ui, curve, still};
+use crate::widgets::relay_loop::{phase_caption_ui, phase_lines};
 
 /// Space for the caption, points.
 const CAPTION: f32 = 34.0;
@@ -20,8 +22,6 @@ fn over_time(data: &HuntingData, values: &[f64], factor: f64) -> Vec<[f64; 2]> {
     let pairs = data.run.time.iter().zip(values);
     pairs.map(|(t, v)| [*t, factor * v]).collect()
 }
-
-const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 pub fn position_ui(ui: &mut egui::Ui, servo: &Servo, data: &HuntingData, height: f32) {
     let play = servo.half_gap > 0.0;
@@ -87,15 +87,7 @@ pub fn torque_ui(ui: &mut egui::Ui, servo: &Servo, data: &HuntingData, height: f
 
 /// Velocity over position, with the last period.
 pub fn phase_ui(ui: &mut egui::Ui, data: &HuntingData, height: f32) {
-    let start = theme::SIMULATED.gamma_multiply(0.6);
-    caption_ui(
-        ui,
-        "Phase portrait",
-        &[
-            ("from the start", start, Shape::Line),
-            ("limit cycle", theme::EXACT, Shape::Line),
-        ],
-    );
+    phase_caption_ui(ui);
     let run = &data.run;
     let places: Vec<[f64; 2]> = (run.position.iter().zip(&run.velocity))
         .map(|(x, v)| [DEGREES * x, DEGREES * v])
@@ -109,17 +101,6 @@ pub fn phase_ui(ui: &mut egui::Ui, data: &HuntingData, height: f32) {
         height - CAPTION,
     );
     chart.show(ui, |plot| {
-        plot.line(
-            Line::new(tr("from the start"), curve(&places))
-                .color(start)
-                .width(1.2),
-        );
-        if let Some(last) = last.and_then(|from| places.get(from..)) {
-            plot.line(
-                Line::new(tr("limit cycle"), curve(last))
-                    .color(theme::EXACT)
-                    .width(3.0),
-            );
-        }
+        phase_lines(plot, &places, last.and_then(|from| places.get(from..)));
     });
 }

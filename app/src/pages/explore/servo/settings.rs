@@ -3,6 +3,9 @@
 use hysteron_core::hunting::{Cogging, Controller, Friction, Servo};
 use serde::{Deserialize, Serialize};
 
+/// Degrees in a radian: values are kept in rad, and shown so.
+pub const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
 /// What is set, in SI units; 0 where there is none. See [`Servo`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -3,7 +3,7 @@
 use hysteron_core::hunting::{HuntingBalance, HuntingCycle, HuntingData, Servo};
 use hysteron_core::uncertain::brief;
 
-use super::super::table::difference;
+use super::super::cycle_table::difference;
 
 /// An error at rest below this share of the way is none.
 const NO_ERROR: f64 = 1e-4;
