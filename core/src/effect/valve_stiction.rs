@@ -27,7 +27,7 @@ impl Effect for ValveStiction {
     }
 
     fn equation(&self) -> &'static str {
-        "the stem rests until the command is b + J ahead, and slips until it is b behind"
+        "x rests until |u - x| > b + J, and slips to u -+ b; u_acting = x"
     }
 
     fn source(&self) -> &'static str {
