@@ -163,6 +163,24 @@ fn a_servo_that_hunts_in_its_play_opens_from_a_scenario() {
 }
 
 #[test]
+fn a_drive_with_a_gap_opens_on_its_own_page() {
+    for name in ["drive-drifting", "drive-late-compliant"] {
+        let mut harness = app("explore", WIDE);
+        let before = explored(&harness)["loop"].clone();
+        let text = open_scenario(&mut harness, name);
+        assert_eq!(state(&harness)["page"], "backlash", "{name}");
+        let Ok(AnyScenario::Drive(drive)) = AnyScenario::from_toml(&text) else {
+            panic!("{name} is a drive");
+        };
+        let shown = &state(&harness)["backlash"];
+        assert_eq!(shown["gap"], 2.0 * drive.drive.half_gap, "{name}");
+        assert_eq!(shown["motor_coulomb"], drive.drive.motor.coulomb, "{name}");
+        show(&mut harness, "v1;explore");
+        assert_eq!(explored(&harness)["loop"], before, "{name}");
+    }
+}
+
+#[test]
 fn what_is_no_scenario_is_said_and_loses_nothing() {
     let mut harness = app("explore", WIDE);
     let ctx = harness.ctx.clone();

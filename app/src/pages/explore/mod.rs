@@ -104,7 +104,7 @@ impl View for Explore {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.input.clone_from(&desk.relay_loop);
-        self.take_scenario();
+        self.take_scenario(&mut desk.commands);
         match self.about() {
             About::Relay => self.compute(),
             About::OnOff => self.on_off.ask(ui.ctx(), self.controller, &self.input),
