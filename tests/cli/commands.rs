@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use hysteron_cli::render;
-use hysteron_core::diagnosis::Diagnosis;
+use hysteron_core::diagnosis::{Diagnosis, Discovery};
+use hysteron_core::rig::{DriveRig, Excitation, Stranger};
 
 fn hysteron() -> Command {
     Command::new(env!("CARGO_BIN_EXE_hysteron-cli"))
@@ -473,4 +474,38 @@ fn bad_input_for_a_gap_is_one_line_and_code_2() {
         &hysteron().arg("gap").output().unwrap(),
         &["FILE.csv", "--help"],
     );
+}
+
+#[test]
+fn a_formula_is_looked_for_where_that_is_asked() {
+    // A drive that a place holds back: no effect of the library.
+    let rig = DriveRig {
+        excitation: Excitation::Multisine { amplitude: 0.08 },
+        samples: 5000,
+        stranger: Some(Stranger::PositionBump {
+            torque: 0.06,
+            at: 0.5,
+            width: 0.1,
+        }),
+        ..DriveRig::default()
+    };
+    let file = written("bump.csv", rig.measure().to_csv().as_bytes());
+    let run = |format: &str| {
+        let mut command = hysteron();
+        command
+            .arg("diagnose")
+            .arg(&file)
+            .args(["--discover", "--format", format]);
+        String::from_utf8(command.output().unwrap().stdout).unwrap()
+    };
+    let text = run("text");
+    assert!(text.contains("Formula of the unknown"), "{text}");
+    assert!(text.contains("--effect \"formula_"), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&run("json")).unwrap();
+    let discovery: Discovery = serde_json::from_value(json["discovery"].clone()).unwrap();
+    let found = discovery.found().unwrap();
+    assert_eq!(found.formula, "-a*exp(-((x-c)/w)^2)");
+    // Without it nothing is looked for.
+    let plain = diagnose(&data("drive-01.csv"));
+    assert!(!String::from_utf8_lossy(&plain.stdout).contains("Formula"));
 }

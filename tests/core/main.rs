@@ -7,6 +7,7 @@ mod at_rest;
 mod blind_bench;
 mod by_hand;
 mod describing_function;
+mod discovery;
 mod doors;
 mod drifting_records;
 mod drive;

@@ -15,6 +15,7 @@ pub mod case;
 pub mod diagnosis;
 pub mod drive_cases;
 pub mod file;
+pub mod hidden_force;
 pub mod mat;
 pub mod parameter;
 pub mod process_cases;

@@ -38,6 +38,10 @@ pub struct Arguments {
     /// to fit, and where they start if you like: "bump: -a*exp(-((x-b)/c)^2); b = 0.5"
     #[arg(long, value_name = "NAME: FORMULA", allow_hyphen_values = true)]
     pub effect: Vec<String>,
+    /// Look for a formula of what the effects leave: an expression of x, v, u, t (a process: y, u, t) with its parameters,
+    /// up to three terms
+    #[arg(long)]
+    pub discover: bool,
     /// How far the next experiment may go where effects cannot be told apart: the largest input, the longest record
     /// (s), the sampling time (s), the largest speed (of a process: output) and travel, in SI units, such as
     /// "input=0.5,duration=10,travel=3"; what is not named is as in the file, or twice as fast
@@ -69,6 +73,7 @@ impl Arguments {
             format: Format::Text,
             model: None,
             effect: Vec::new(),
+            discover: false,
             limits: None,
             save_model: None,
             report: None,

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::time::Instant;
 
-use hysteron_core::criticism::DiagnosisJob;
-use hysteron_core::diagnosis::{Diagnosis, Limits};
+use hysteron_core::criticism::{DiagnosisJob, DiscoveryJob};
+use hysteron_core::diagnosis::{Diagnosis, Discovery, Limits};
+use hysteron_core::effect::{EffectId, VISCOUS_FRICTION};
 use hysteron_core::measurement::{ImportOptions, Mapping, Measurement};
 use hysteron_core::progress::Progress;
 use hysteron_core::report::{self, Provenance, ReportInput};
@@ -13,7 +14,7 @@ use hysteron_work::cores;
 
 use crate::arguments::{Arguments, Kind};
 use crate::read::read;
-use crate::text::render;
+use crate::text::{formulas, render};
 
 /// What is asked, and the model that it begins with.
 pub struct Setup<'a> {
@@ -27,6 +28,8 @@ pub struct Report {
     /// What the import had to assume or leave out.
     notes: Vec<String>,
     diagnosis: Diagnosis,
+    /// The formula of what is left, if that is wanted.
+    discovery: Option<Discovery>,
     /// As an HTML page, if that is wanted.
     pub page: Option<String>,
     /// The last model as a file, if that is wanted.
@@ -40,6 +43,8 @@ struct Line<'a> {
     file: Option<&'a str>,
     #[serde(flatten)]
     diagnosis: &'a Diagnosis,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    discovery: Option<&'a Discovery>,
     #[serde(skip_serializing_if = "<[String]>::is_empty")]
     notes: &'a [String],
 }
@@ -47,7 +52,11 @@ struct Line<'a> {
 impl Report {
     /// For a person, under this title.
     pub fn text(&self, title: &str) -> String {
-        render(&self.diagnosis, title, &self.notes)
+        let mut text = render(&self.diagnosis, title, &self.notes);
+        if let Some(discovery) = &self.discovery {
+            text.push_str(&formulas(discovery));
+        }
+        text
     }
 
     /// One object on many lines, as a single file prints it.
@@ -64,6 +73,7 @@ impl Report {
         Line {
             file,
             diagnosis: &self.diagnosis,
+            discovery: self.discovery.as_ref(),
             notes: &self.notes,
         }
     }
@@ -141,6 +151,17 @@ pub fn of(
                 for step in &diagnosis.steps {
                     step.checked().map_err(|e| format!("{name}: {e}"))?;
                 }
+                let discovery = if arguments.discover {
+                    Some(discover(
+                        measurement,
+                        &diagnosis,
+                        &given,
+                        limits,
+                        &mut show,
+                    )?)
+                } else {
+                    None
+                };
                 diagnosis.seconds = started.elapsed().as_secs_f64();
                 let page = arguments.report.as_ref().and_then(|_| {
                     let (first, last) = job.evidence()?;
@@ -162,10 +183,36 @@ pub fn of(
                     name,
                     notes: measurement.warnings.clone(),
                     diagnosis,
+                    discovery,
                     page,
                     model,
                 });
             }
+        }
+    }
+}
+
+/// Looks for a formula beside the effects that were found, or in their place where they explain the record.
+fn discover(
+    measurement: &Measurement,
+    diagnosis: &Diagnosis,
+    given: &UserModel,
+    limits: Limits,
+    show: &mut impl FnMut(f64, &str),
+) -> Result<Discovery, String> {
+    let last = diagnosis.steps.last().filter(|_| diagnosis.verdict.unknown);
+    let found: Vec<EffectId> = last.map_or_else(Vec::new, |step| {
+        let effects = step.effects.iter().copied();
+        effects.filter(|id| *id != VISCOUS_FRICTION).collect()
+    });
+    let mut job = DiscoveryJob::new(measurement, &found, given)
+        .map_err(|e| format!("{}: {e}", measurement.name))?
+        .within(limits)
+        .with_crew(&cores::all());
+    loop {
+        match job.advance() {
+            Progress::Running { fraction, text } => show(fraction, &text),
+            Progress::Done(discovery) => return Ok(discovery),
         }
     }
 }
@@ -199,6 +246,9 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
         if let Some(value) = value {
             command.extend([" ", option, " ", &report::shell_word(value)]);
         }
+    }
+    if arguments.discover {
+        command.push_str(" --discover");
     }
     for effect in &arguments.effect {
         command.extend([" --effect ", &report::shell_word(effect)]);

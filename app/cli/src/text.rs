@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hysteron_core::diagnosis::{
-    Candidate, Diagnosis, InputCheck, InputVerdict, NextExperiment, Parameter, Step,
+    Candidate, Diagnosis, Discovery, InputCheck, InputVerdict, NextExperiment, Parameter, Step,
 };
 use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
@@ -67,6 +67,34 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     }
     let _ = writeln!(out, "\nTook {:.2} s.", diagnosis.seconds);
     out
+}
+
+/// The formula of what is left, and those that were tried by their length; ends with a newline.
+pub fn formulas(discovery: &Discovery) -> String {
+    let mut text = String::new();
+    let out = &mut text;
+    heading(out, "Formula of the unknown");
+    paragraph(out, "  ", &discovery.text);
+    if !discovery.formulas.is_empty() {
+        let _ = writeln!(out, "  length  error  formula");
+    }
+    let listed = discovery
+        .formulas
+        .iter()
+        .filter(|f| f.on_front || f.in_class);
+    for formula in listed {
+        let mark = if formula.in_class { '*' } else { ' ' };
+        let (length, error) = (formula.length, brief(formula.error));
+        let _ = writeln!(out, "{mark} {length:6}  {error:>5}  {}", formula.formula);
+    }
+    if let Some(found) = discovery.found() {
+        let _ = writeln!(out, "  Again with: --effect \"{}\"", found.typed);
+    }
+    if let Some(experiment) = &discovery.experiment {
+        paragraph(out, "  ", &format!("Next experiment: {}", experiment.text));
+        other_experiments(out, experiment);
+    }
+    text
 }
 
 /// What the other kinds of experiment would do.

@@ -8,6 +8,7 @@ mod correlation;
 mod cost;
 mod cut;
 mod data;
+mod discover;
 mod dry_or_viscous;
 mod explain;
 mod fingerprint;
@@ -42,6 +43,7 @@ mod verdict;
 mod window;
 mod window_sums;
 
+pub use discover::DiscoveryJob;
 pub use jobs::{DiagnosisJob, StepJob};
 pub use next_experiment::{Controller, ExperimentJob};
 pub use noise::noise_level;

@@ -3,6 +3,7 @@
 //! Nothing is computed here: the jobs of [`criticism`](crate::criticism) fill these values, everything else reads them.
 
 mod answer;
+mod discovery;
 mod error;
 mod experiment;
 mod fingerprint;
@@ -22,6 +23,7 @@ mod step;
 mod verdict;
 
 pub use answer::Reach;
+pub use discovery::{Discovery, DiscoveryEnd, FoundFormula};
 pub use error::CriticismError;
 pub use experiment::{FittedModel, NextExperiment, Trial};
 pub use fingerprint::Fingerprint;

@@ -28,6 +28,28 @@ use tuning::{
     ALIKE, FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS,
 };
 
+/// The model with these effects, to which others are added.
+pub(super) fn begun(
+    session: &Session,
+    screened: &Screened,
+    held: &[&'static dyn Effect],
+) -> Option<Trial> {
+    Task::Base(held.to_vec()).run(session, screened, &[])
+}
+
+/// A trial with one more effect, from these values of the effect and of the body.
+pub(super) fn with_one(
+    session: &Session,
+    trial: &Trial,
+    effect: &'static dyn Effect,
+    body: &[f64],
+    own: &[f64],
+) -> Option<Trial> {
+    let sketch = Sketch::with_values(&trial.scored.fit, effect, body, own);
+    let fit = sketch.fitted(session);
+    fit.cost.is_finite().then(|| Trial::new(session, fit))
+}
+
 /// What is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {

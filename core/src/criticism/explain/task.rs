@@ -82,6 +82,13 @@ impl Sketch {
         sketch
     }
 
+    /// A fit with one more effect, and these first values of the baseline.
+    pub fn with_values(fit: &Fit, effect: &'static dyn Effect, body: &[f64], own: &[f64]) -> Self {
+        let mut sketch = Self::with(fit, effect, own);
+        sketch.set_body(body);
+        sketch
+    }
+
     fn set_body(&mut self, body: &[f64]) {
         self.values[..body.len()].copy_from_slice(body);
         self.structure.begin(&mut self.values, 0);

@@ -14,6 +14,7 @@ mod limits;
 mod program;
 mod words;
 
+pub(super) use bench::Hypothesis;
 pub(super) use design::{Design, Rival, designs};
 pub use job::ExperimentJob;
 pub use program::Controller;

@@ -6,7 +6,7 @@ use super::window::Width;
 use crate::effect::{Atom, Part, Series, Shape};
 
 /// Integrals of what may stand in the equation: one value for each window of all widths.
-pub(super) struct Rows<'a> {
+pub(in crate::criticism) struct Rows<'a> {
     pub signals: &'a Signals,
     pub widths: &'a [Width],
     /// Block of each window, by its middle.
@@ -16,7 +16,7 @@ pub(super) struct Rows<'a> {
 }
 
 /// The columns of an atom with one shape.
-pub(super) struct AtomColumns {
+pub(in crate::criticism) struct AtomColumns {
     /// What it adds to the input, if it takes its place.
     pub tied: Option<Vec<f64>>,
     /// The rest, each with a coefficient.
@@ -54,7 +54,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Integrals of a force; at rest it is balanced by what holds.
-    fn force(&self, mut values: Vec<f64>) -> Vec<f64> {
+    pub fn force(&self, mut values: Vec<f64>) -> Vec<f64> {
         for (value, moving) in values.iter_mut().zip(&self.signals.moving) {
             *value *= moving;
         }

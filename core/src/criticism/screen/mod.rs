@@ -20,6 +20,10 @@ use crate::effect::{Effect, EffectId};
 use crate::measurement::Measurement;
 use subsets::Tried;
 
+pub(super) use gram::{AtomColumns, Rows};
+pub(super) use signals::Signals;
+pub(super) use window::{Width, widths};
+
 /// Screens a record. Linear in its samples.
 pub fn screen(measurement: &Measurement) -> Screening {
     Screened::new(measurement, &[]).screening
@@ -93,6 +97,22 @@ impl Screened {
                 values,
             })
         })
+    }
+
+    /// What the atoms of just these effects add to the equation of motion, with the shapes that suit the record best; none where
+    /// an effect has no atom.
+    pub fn columns(&self, held: &[EffectId], rows: &Rows) -> Option<Vec<AtomColumns>> {
+        let bench = self.prepared.bench();
+        let id = |(c, _): &(usize, usize)| bench.choices[*c].effect.id();
+        let is_held = |tried: &&Tried| {
+            tried.members.len() == held.len() && tried.members.iter().all(|m| held.contains(&id(m)))
+        };
+        let tried = self.tried.iter().find(is_held)?;
+        let columns = tried.members.iter().map(|(c, s)| {
+            let choice = &bench.choices[*c];
+            rows.atom(&choice.atom, &choice.shapes[*s].shape)
+        });
+        Some(columns.collect())
     }
 
     /// Values of an effect beside these, as the best subset has them.

@@ -8,14 +8,14 @@ use crate::order::{median, range};
 
 /// A measured output and the standard deviation of its noise.
 #[derive(Clone, Debug)]
-pub(super) struct Seen {
+pub(in crate::criticism) struct Seen {
     pub values: Vec<f64>,
     pub noise: f64,
 }
 
 /// What is regressed.
 #[derive(Clone, Debug)]
-pub(super) struct Signals {
+pub(in crate::criticism) struct Signals {
     pub kind: Kind,
     pub step: f64,
     /// Held from a sample to the next.

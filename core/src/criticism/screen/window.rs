@@ -13,7 +13,7 @@ use crate::measurement::Kind;
 
 /// Windows of one width.
 #[derive(Clone, Debug)]
-pub(super) struct Width {
+pub(in crate::criticism) struct Width {
     /// Intervals in a window.
     pub length: usize,
     /// First samples.
@@ -129,6 +129,11 @@ impl Width {
         self.integrals(values, order).collect()
     }
 
+    /// Standard deviation of the noise in what [`Self::motion`] gives.
+    pub fn noise_of_motion(&self, signals: &Signals, derivative: usize) -> f64 {
+        self.sensor(signals, derivative).0
+    }
+
     /// Share of the acceleration that is noise.
     fn noisy(&self, signals: &Signals) -> f64 {
         let (noise, values, order) = self.sensor(signals, 2);
@@ -138,7 +143,7 @@ impl Width {
 }
 
 /// Widths from the shortest whose acceleration is not noise.
-pub(super) fn widths(signals: &Signals) -> Vec<Width> {
+pub(in crate::criticism) fn widths(signals: &Signals) -> Vec<Width> {
     let share = match signals.kind {
         Kind::Drive => WIDEST,
         Kind::Process => WIDEST_OF_PROCESS,

@@ -47,6 +47,27 @@ impl Formula {
         Ok(order.into_iter().map(|k| names[k].clone()).collect())
     }
 
+    /// The force at an instant with these values of its parameters, in the order of [`Self::parameters`]; 0 where the formula has
+    /// no finite value.
+    ///
+    /// # Errors
+    /// The column and what would be right there.
+    pub fn force(
+        &self,
+        kind: Kind,
+    ) -> Result<impl Fn(&Instant, &[f64]) -> f64 + use<>, FormulaError> {
+        let (tree, names) = parse::parse(&self.text, kind)?;
+        let order = start::order(&tree, names.len());
+        Ok(move |at: &Instant, values: &[f64]| {
+            let mut sorted = vec![0.0; order.len()];
+            for (k, value) in order.iter().zip(values) {
+                sorted[*k] = *value;
+            }
+            let force = tree.value(at, &sorted);
+            if force.is_finite() { force } else { 0.0 }
+        })
+    }
+
     /// The effect.
     ///
     /// Effects are referred to as long as the program runs, as those of the library are: what is made here is
