@@ -12,6 +12,7 @@ mod plant_editor;
 mod servo;
 mod settings;
 mod table;
+mod theory;
 
 use std::collections::VecDeque;
 
@@ -35,6 +36,7 @@ use nyquist::Nyquist;
 use on_off::OnOff;
 use plant_editor::PlantEditor;
 use servo::Hunting;
+use theory::Theory;
 
 /// Simulated periods that are played back in a second.
 const PERIODS_PER_SECOND: f64 = 0.6;
@@ -60,6 +62,7 @@ pub struct Explore {
     /// What a relay has as it is built, and a drive with a controller, where the page is about them.
     on_off: OnOff,
     servo: Hunting,
+    theory: Theory,
     files: Files,
     /// A scenario that is being read, what was read, and why nothing was.
     reading: Option<Job<ScenarioTask>>,
@@ -371,6 +374,7 @@ impl Explore {
                     table::predictions_ui(ui, &self.input, data);
                     table::harmonics_ui(ui, data);
                 }
+                self.theory.ui(ui, &self.input);
                 table::equations_ui(ui);
             }
             About::OnOff => self.on_off.numbers_ui(ui),
