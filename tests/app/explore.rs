@@ -175,7 +175,6 @@ fn a_drive_with_a_gap_opens_on_its_own_page() {
         let shown = &state(&harness)["backlash"];
         assert_eq!(shown["gap"], 2.0 * drive.drive.half_gap, "{name}");
         assert_eq!(shown["motor_coulomb"], drive.drive.motor.coulomb, "{name}");
-        show(&mut harness, "v1;explore");
         assert_eq!(explored(&harness)["loop"], before, "{name}");
     }
 }
