@@ -7,7 +7,7 @@ use hysteron_core::drive::{
     RoughDrive, Summary, TRAVERSES, Turn, checks, cycles_with_play, design_drifting_test, figures,
     loop_theory, play_describing_function, relay_seen_through_play, run, summarize,
 };
-use hysteron_core::explore::ExploreInput;
+use hysteron_core::explore::{ExploreInput, compute};
 use hysteron_core::limit_cycle::exact_symmetric;
 use hysteron_core::plant::TransferFunction;
 use hysteron_core::relay::Relay;
@@ -394,7 +394,10 @@ fn the_theory_of_a_loop_with_play_meets_its_exact_cycle() {
         },
         noise: None,
     };
-    let theory = loop_theory(&input, 0.05).unwrap();
+    let theory_of = |input: &ExploreInput, half_gap: f64| {
+        loop_theory(input, &compute(input).unwrap(), half_gap)
+    };
+    let theory = theory_of(&input, 0.05);
     // Equation (3) in z: -H_h(-1) at the exact half period is eps/k.
     let [h, value] = theory.at_cycle.unwrap();
     assert!((value - 0.05).abs() < 1e-9, "{value}");
@@ -413,10 +416,10 @@ fn the_theory_of_a_loop_with_play_meets_its_exact_cycle() {
     let (first, last) = (theory.play[0], theory.play[theory.play.len() - 1]);
     assert!(first[0] < 0.05 && last[0] > 0.95, "{first:?} {last:?}");
     // Without play there is none, and an asymmetric relay has no symmetric cycle.
-    let none = loop_theory(&input, 0.0).unwrap();
+    let none = theory_of(&input, 0.0);
     assert!(none.play.is_empty() && none.predicted.is_empty());
-    let mut asymmetric = input;
+    let mut asymmetric = input.clone();
     asymmetric.relay.asymmetry = 0.2;
-    let none = loop_theory(&asymmetric, 0.05).unwrap();
+    let none = theory_of(&asymmetric, 0.05);
     assert!(none.z_form.is_empty() && none.at_cycle.is_none());
 }

@@ -10,15 +10,16 @@
     reason = "the core neither prints nor starts threads nor reads the clock; its bench does"
 )]
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use hysteron_core::backlash::{backlash_map, estimate_gap};
 use hysteron_core::drive::{
     self, Adhesion, Body, Command, Contact, Drive, DriveInput, Recorder, VelocityRelay,
 };
-use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
+use hysteron_core::measurement::{Measurement, Quantity};
 use hysteron_core::relay::Relay;
 use hysteron_core::rig::Random;
+
+use crate::support::record::{channel, of_motor};
+use crate::support::threads;
 
 /// Records of the full bench and of `cargo test`.
 const FULL: u64 = 50;
@@ -111,58 +112,35 @@ fn never_met(seed: u64) -> (String, Measurement, bool) {
 
 /// The record as `hysteron simulate` writes it, with noise on the velocity.
 fn instantaneous(run: &drive::DriveRun, noise: f64, random: &mut Random) -> Measurement {
-    let channel = |quantity, name: &str, unit: &str, values: Vec<f64>| Channel {
-        quantity,
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-        values,
-    };
     let velocity = run.v1.iter().map(|v| v + noise * random.normal()).collect();
+    let signals = [run.input.clone(), run.x1.clone(), velocity];
     Measurement {
-        name: "simulated".to_owned(),
-        kind: Kind::Drive,
-        time: run.time.clone(),
-        input: channel(Quantity::Input, "u", "N m", run.input.clone()),
-        outputs: vec![
-            channel(Quantity::Position, "x1", "rad", run.x1.clone()),
-            channel(Quantity::Velocity, "v1", "rad/s", velocity),
-        ],
         reference: vec![channel(Quantity::LoadPosition, "x2", "rad", run.x2.clone())],
-        warnings: vec![],
+        ..of_motor("simulated".to_owned(), run.time.clone(), signals)
     }
 }
 
-/// What is claimed of each record, with its name and whether its load is held by dry friction, on as many threads as there are processors; nothing where nothing is.
+/// What is claimed of each record, with its name and whether its load is held by dry friction; nothing where nothing is.
 fn claims(
     seeds: std::ops::Range<u64>,
     of: impl Fn(u64) -> (String, Measurement, bool) + Sync,
 ) -> Vec<String> {
-    let next = AtomicUsize::new(0);
-    let all: Vec<u64> = seeds.collect();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let work = || {
+    let seeds: Vec<u64> = seeds.collect();
+    let claimed = threads::each(&seeds, |seed| {
         let mut found = Vec::new();
-        while let Some(seed) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let (name, record, held) = of(*seed);
-            let estimate = estimate_gap(&record).unwrap();
-            if estimate.gap.is_some() || !estimate.contacts.is_empty() {
-                found.push(format!("{name}: {}", estimate.text));
-            }
-            // A load that dry friction holds against a soft shaft moves as one in a gap.
-            let map = backlash_map(&record).ok().and_then(|m| m.gap);
-            if let Some(gap) = map.filter(|_| !held) {
-                found.push(format!("{name}: a gap of {gap:e} rad by the map"));
-            }
+        let (name, record, held) = of(*seed);
+        let estimate = estimate_gap(&record).unwrap();
+        if estimate.gap.is_some() || !estimate.contacts.is_empty() {
+            found.push(format!("{name}: {}", estimate.text));
+        }
+        // A load that dry friction holds against a soft shaft moves as one in a gap.
+        let map = backlash_map(&record).ok().and_then(|m| m.gap);
+        if let Some(gap) = map.filter(|_| !held) {
+            found.push(format!("{name}: a gap of {gap:e} rad by the map"));
         }
         found
-    };
-    std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        handles
-            .into_iter()
-            .flat_map(|h| h.join().unwrap())
-            .collect()
-    })
+    });
+    claimed.concat()
 }
 
 /// Seeds of this run.

@@ -2,7 +2,7 @@
 //! the relay.
 
 use super::{PlayCycle, cycles_with_play, play_describing_function, relay_seen_through_play};
-use crate::explore::{ExploreError, ExploreInput, compute};
+use crate::explore::{ExploreData, ExploreInput, compute};
 use crate::limit_cycle::{Cycle, pulse_transfer_at_minus_one, z_form};
 use crate::plant::TransferFunction;
 
@@ -25,9 +25,9 @@ pub struct LoopTheory {
 const PLAY_REACH: f64 = 30.0;
 const PLAY_POINTS: usize = 120;
 
-/// What the theory says of a loop with play of this half gap (in the unit of the output) before its relay; 0 for none.
-pub fn loop_theory(input: &ExploreInput, half_gap: f64) -> Result<LoopTheory, ExploreError> {
-    let plain = compute(input)?;
+/// What the theory says of a loop, of which `plain` is known, with play of this half gap (in the unit of the output) before its
+/// relay; 0 for none.
+pub fn loop_theory(input: &ExploreInput, plain: &ExploreData, half_gap: f64) -> LoopTheory {
     let (plant, relay) = (&input.plant, &input.relay);
     let space = plant.state_space();
     let lag = plant.dead_time + relay.delay;
@@ -49,7 +49,7 @@ pub fn loop_theory(input: &ExploreInput, half_gap: f64) -> Result<LoopTheory, Ex
         noise: None,
         ..input.clone()
     });
-    Ok(LoopTheory {
+    LoopTheory {
         z_form: half_period.map_or_else(Vec::new, |h| z_form(&space, lag, h)),
         at_cycle,
         play: (1..=PLAY_POINTS)
@@ -61,5 +61,5 @@ pub fn loop_theory(input: &ExploreInput, half_gap: f64) -> Result<LoopTheory, Ex
             .filter_map(|c| Some((c, play(c.before)?)))
             .collect(),
         with_play: with_play.ok().and_then(|d| d.exact),
-    })
+    }
 }

@@ -87,9 +87,10 @@ impl DriveRun {
             motor: drive.motor.inertia * v1,
             load: drive.load.inertia * v2,
         };
-        let within = |t: &f64| (from..=to).contains(t);
         let sampled = self.time.len().min(self.x2.len()).min(self.v2.len());
-        let samples = (0..sampled).filter(|i| within(&self.time[*i])).map(|i| {
+        let first = self.time.partition_point(|t| *t < from);
+        let end = self.time.partition_point(|t| *t <= to).min(sampled);
+        let samples = (first..end).map(|i| {
             let state = [self.x1[i], self.v1[i], self.x2[i], self.v2[i]];
             at(self.time[i], state)
         });

@@ -43,6 +43,7 @@ pub use atom::{
 };
 pub use effect::Effect;
 pub use formula::{Formula, FormulaError, MAX_FORMULA, MAX_PARAMETERS};
+pub(crate) use formula::{Variable, variables};
 pub use id::{EffectId, VISCOUS_FRICTION};
 pub use names::{find, for_kind, is_of_record, name_of};
 pub use probe::{GapLoad, Place, Rubbing, SeenGap, StepPart, Steps};

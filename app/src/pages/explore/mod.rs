@@ -374,7 +374,14 @@ impl Explore {
                     table::predictions_ui(ui, &self.input, data);
                     table::harmonics_ui(ui, data);
                 }
-                self.theory.ui(ui, &self.input);
+                if let Some(Finished {
+                    input,
+                    data: Ok((data, _)),
+                    ..
+                }) = &self.finished
+                {
+                    self.theory.ui(ui, input, data);
+                }
                 table::equations_ui(ui);
             }
             About::OnOff => self.on_off.numbers_ui(ui),

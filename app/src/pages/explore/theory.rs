@@ -2,7 +2,7 @@
 
 use egui_plot::{HLine, Line, LineStyle, Points};
 use hysteron_core::drive::{LoopTheory, loop_theory};
-use hysteron_core::explore::ExploreInput;
+use hysteron_core::explore::{ExploreData, ExploreInput};
 
 use crate::language::{tr, tr_number};
 use crate::theme;
@@ -18,31 +18,31 @@ const HEIGHT: f32 = 170.0;
 pub struct Theory {
     /// Half gap of the play before the relay, in the unit of the output.
     pub play: f64,
-    known: Option<(ExploreInput, f64, Option<LoopTheory>)>,
+    known: Option<(ExploreInput, f64, LoopTheory)>,
 }
 
 impl Theory {
-    fn of(&mut self, input: &ExploreInput) -> Option<&LoopTheory> {
-        let known = self.known.as_ref();
-        if known.is_none_or(|(i, play, _)| i != input || *play != self.play) {
-            let found = loop_theory(input, self.play).ok();
-            self.known = Some((input.clone(), self.play, found));
-        }
-        self.known.as_ref()?.2.as_ref()
+    fn of(&mut self, input: &ExploreInput, data: &ExploreData) -> &LoopTheory {
+        let play = self.play;
+        let known = self.known.take();
+        let known = known.filter(|(i, p, _)| i == input && *p == play);
+        let new = || (input.clone(), play, loop_theory(input, data, play));
+        &self.known.insert(known.unwrap_or_else(new)).2
     }
 
-    pub fn ui(&mut self, ui: &mut egui::Ui, input: &ExploreInput) {
-        ui.collapsing(tr("Equation (3) in z"), |ui| self.z_ui(ui, input));
-        ui.collapsing(tr("Play before the relay"), |ui| self.play_ui(ui, input));
+    /// Beside what is known of a loop.
+    pub fn ui(&mut self, ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData) {
+        ui.collapsing(tr("Equation (3) in z"), |ui| self.z_ui(ui, input, data));
+        ui.collapsing(tr("Play before the relay"), |ui| {
+            self.play_ui(ui, input, data);
+        });
     }
 
     /// The pulse transfer function at -1 over the half period: where it meets the threshold is the exact cycle.
-    fn z_ui(&mut self, ui: &mut egui::Ui, input: &ExploreInput) {
+    fn z_ui(&mut self, ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData) {
         equation_ui(ui, "H_h(-1) = -ε/k", &|_| None);
         let level = input.relay.hysteresis / input.relay.gain;
-        let Some(theory) = self.of(input) else {
-            return;
-        };
+        let theory = self.of(input, data);
         let Some([h, value]) = theory.at_cycle else {
             ui.label(tr("There is no symmetric exact cycle to compare it with."));
             return;
@@ -72,14 +72,14 @@ impl Theory {
         )));
     }
 
-    fn play_ui(&mut self, ui: &mut egui::Ui, input: &ExploreInput) {
+    fn play_ui(&mut self, ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreData) {
         slider(ui, &mut self.play, 0.0, 1.0, 0.0..=0.5, "half gap β").on_hover_text(tr(
             "Play between the output and the relay: it stays behind until the output has crossed the gap",
         ));
-        let half_gap = self.play;
-        let Some(theory) = self.of(input).filter(|_| half_gap > 0.0) else {
+        if self.play == 0.0 {
             return;
-        };
+        }
+        let theory = self.of(input, data);
         let keys = [
             ("N(A) of the play", theme::DESCRIBING, Shape::Line),
             ("at the predicted cycle", theme::MODEL, Shape::Circle),
