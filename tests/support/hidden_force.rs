@@ -56,7 +56,7 @@ impl Hidden {
     /// One or two terms; the numbers of one of them enter nonlinearly at most.
     pub fn drawn(seed: u64) -> Self {
         let mut random = Random::new(seed.wrapping_mul(7919));
-        let drive = if seed % 2 == 0 {
+        let drive = if seed.is_multiple_of(2) {
             Drive::Moves
         } else {
             Drive::Walk
@@ -135,7 +135,7 @@ impl Hidden {
                     }
                     // A ramp to the goal, as a motion planner gives it.
                     let speed = 6.0 * STEP;
-                    place += (goal - place as f64).clamp(-speed, speed);
+                    place += (goal - place).clamp(-speed, speed);
                     (3.0 * (place - s[0]) - 0.25 * s[1]).clamp(-1.5, 1.5)
                 }
                 Drive::Walk => {
