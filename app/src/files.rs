@@ -9,6 +9,7 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::user_model::UserModel;
 
 use crate::recent::Recent;
+use crate::save::AT_ONCE;
 use hysteron_work::content::Content;
 use hysteron_work::enclosed::Enclosed;
 use hysteron_work::reading::Reading;
@@ -55,7 +56,6 @@ pub const SCENARIO: Filter = Filter {
 };
 
 /// What to do where no dialog can be shown.
-#[cfg(not(target_arch = "wasm32"))]
 const NO_DIALOG: &str = "No dialog can be shown here: drop the file on this window.";
 
 /// A file that is being read elsewhere, and how to find it again.
@@ -338,16 +338,13 @@ impl Entrance {
 
     /// Asks for a file.
     pub fn open_dialog(&self, ctx: &egui::Context, filter: Filter) {
-        let (sender, ctx) = (self.sender.clone(), ctx.clone());
-        #[cfg(not(target_arch = "wasm32"))]
-        let refused = self.refused.clone();
+        let (sender, refused, ctx) = (self.sender.clone(), self.refused.clone(), ctx.clone());
         let dialog = rfd::AsyncFileDialog::new().add_filter(filter.words, filter.endings);
         let pick = async move {
-            #[cfg(not(target_arch = "wasm32"))]
-            let asked = std::time::Instant::now();
+            let asked = web_time::Instant::now();
             let picked = dialog.pick_file().await;
-            #[cfg(not(target_arch = "wasm32"))]
-            if picked.is_none() && asked.elapsed() < crate::save::AT_ONCE {
+            // The dialog of a browser is always there.
+            if picked.is_none() && !cfg!(target_arch = "wasm32") && asked.elapsed() < AT_ONCE {
                 let _ = refused.send(NO_DIALOG.to_owned());
                 ctx.request_repaint();
             }

@@ -128,14 +128,17 @@ mod platform {
         static IDLE: Cell<Option<Worker>> = const { Cell::new(None) };
     }
 
+    /// What is called with what a worker says, and where it fails.
+    type Handlers = (
+        Closure<dyn FnMut(MessageEvent)>,
+        Closure<dyn FnMut(ErrorEvent)>,
+    );
+
     pub struct Job<R> {
         worker: Option<Worker>,
         news: Rc<RefCell<Vec<News<R>>>>,
         finished: Rc<Cell<bool>>,
-        _handlers: Option<(
-            Closure<dyn FnMut(MessageEvent)>,
-            Closure<dyn FnMut(ErrorEvent)>,
-        )>,
+        _handlers: Option<Handlers>,
     }
 
     pub fn start<T: Runs>(ctx: egui::Context, task: T) -> Job<T::Report> {

@@ -4,13 +4,13 @@
 use std::{
     io::{self, Write as _},
     path::{Path, PathBuf},
-    time::{Duration, Instant},
+    time::Instant,
 };
 
 use std::sync::mpsc::Sender;
+use std::time::Duration;
 
 /// A dialog that ends within this time was never shown: nobody closes one so fast.
-#[cfg(not(target_arch = "wasm32"))]
 pub const AT_ONCE: Duration = Duration::from_millis(300);
 
 /// Files of one name that are kept beside each other, at most.

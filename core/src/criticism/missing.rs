@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::session::{Scored, Session};
 use crate::diagnosis::MissingPart;
-use crate::effect::{Dimension, Place, StepPart};
+use crate::effect::{Dimension, Place, StepPart, Variable};
 use crate::measurement::Kind;
 use crate::uncertain::with_error;
 
@@ -24,20 +24,21 @@ pub(super) fn missing_parts(session: &Session, scored: &Scored) -> Vec<MissingPa
     let first = data.time.first().copied().unwrap_or(0.0);
     let time: Vec<f64> = data.time.iter().map(|t| t - first).collect();
     let speed = session.output_unit().to_owned();
-    let mut axes: Vec<(&str, &str, String, Vec<f64>)> =
-        vec![("force", "time", "s".to_owned(), time)];
+    let mut axes: Vec<(&str, Variable, String, Vec<f64>)> =
+        vec![("force", Variable::Time, "s".to_owned(), time)];
     match data.kind {
         Kind::Drive => {
             let position = session.unit_of(Some(Dimension::Position));
-            axes.push(("force", "velocity", speed, velocity));
-            axes.push(("force", "position", position, data.position_estimate()));
+            let place = data.position_estimate();
+            axes.push(("force", Variable::Velocity, speed, velocity));
+            axes.push(("force", Variable::Position, position, place));
         }
         Kind::Process => {
             axes[0].0 = "input";
-            axes.push(("input", "output", speed, velocity));
+            axes.push(("input", Variable::Velocity, speed, velocity));
         }
     }
-    axes.push(("input", "input", force.clone(), data.input.clone()));
+    axes.push(("input", Variable::Input, force.clone(), data.input.clone()));
     let mut found: Vec<MissingPart> = axes
         .into_iter()
         .filter_map(|(what, axis, axis_unit, values)| {
@@ -45,7 +46,7 @@ pub(super) fn missing_parts(session: &Session, scored: &Scored) -> Vec<MissingPa
             Some(part(
                 what,
                 &force,
-                axis,
+                axis.axis(data.kind),
                 &axis_unit,
                 steps.parts,
                 steps.explained,

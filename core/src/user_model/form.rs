@@ -1,6 +1,7 @@
 //! The simplest forces that look like what is missing, as formulas to try.
 
 use crate::diagnosis::MissingPart;
+use crate::effect::variables;
 use crate::measurement::Kind;
 
 /// Forms that are named for a part at most.
@@ -45,13 +46,9 @@ const SHAPES: [Shape; 6] = [
 
 /// The simplest forms that follow a missing force of such a system, the likeliest first; none for an error of a sensor.
 pub fn forms(kind: Kind, part: &MissingPart) -> Vec<Form> {
-    let letter = match (kind, part.axis.as_str()) {
-        (Kind::Drive, "position") => "x",
-        (Kind::Drive, "velocity") => "v",
-        (Kind::Process, "output") => "y",
-        (_, "input") => "u",
-        (_, "time") => "t",
-        _ => return Vec::new(),
+    let mut known = variables(kind).iter();
+    let Some((letter, _)) = known.find(|(_, own)| own.axis(kind) == part.axis) else {
+        return Vec::new();
     };
     if part.what == "output" {
         return Vec::new();

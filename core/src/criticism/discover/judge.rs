@@ -10,8 +10,7 @@ use crate::criticism::explain::{Trial, difference};
 use crate::criticism::select::outweighs;
 use crate::criticism::session::{Rest, Session};
 use crate::diagnosis::{Discovery, DiscoveryEnd, FoundFormula, Parameter};
-use crate::effect::{EffectId, Variable};
-use crate::measurement::Kind;
+use crate::effect::EffectId;
 use crate::uncertain::{brief, with_error};
 
 /// A formula that was simulated.
@@ -111,16 +110,6 @@ fn digits(value: f64) -> String {
     rounded.to_string()
 }
 
-fn variable_name(variable: Variable, kind: Kind) -> &'static str {
-    match (variable, kind) {
-        (Variable::Position, _) => "position",
-        (Variable::Velocity, Kind::Drive) => "velocity",
-        (Variable::Velocity, Kind::Process) => "output",
-        (Variable::Input, _) => "input",
-        (Variable::Time, _) => "time",
-    }
-}
-
 /// The answer where the model leaves noise as it is.
 pub(super) fn nothing_left(base: &Trial) -> Discovery {
     Discovery {
@@ -167,7 +156,7 @@ pub(super) fn answer(
         formulas,
         curve: curve
             .filter(|_| end == DiscoveryEnd::Curve)
-            .map(|c| variable_name(c.variable, kind).to_owned()),
+            .map(|c| c.variable.axis(kind).to_owned()),
         experiment: None,
         text: String::new(),
     };

@@ -46,6 +46,19 @@ pub enum Variable {
     Time,
 }
 
+impl Variable {
+    /// Name of the axis that it is of such a system, as a missing part has it.
+    pub fn axis(self, kind: Kind) -> &'static str {
+        match (self, kind) {
+            (Self::Position, _) => "position",
+            (Self::Velocity, Kind::Drive) => "velocity",
+            (Self::Velocity, Kind::Process) => "output",
+            (Self::Input, _) => "input",
+            (Self::Time, _) => "time",
+        }
+    }
+}
+
 /// A function of one number or two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Function {
