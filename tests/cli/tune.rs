@@ -145,7 +145,15 @@ fn numbers_with_hysteresis_give_a_point_and_the_remedy() {
 #[test]
 fn bad_input_gets_one_line() {
     let garbled = written("garbled.log", "PID Autotune start\n bias: 9");
+    let scenario = written(
+        "loop.toml",
+        "# a loop\n[plant] # of one lag\nformula = \"1/(s+1)\"\n",
+    );
     for (arguments, part) in [
+        (
+            vec![scenario.as_str()],
+            "a scenario with a table [plant], no measurement",
+        ),
         (
             vec![garbled.as_str()],
             "this looks like a log of Marlin M303",

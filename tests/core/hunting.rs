@@ -185,6 +185,7 @@ fn sticking_play_cogging_and_limits_as_by_small_steps() {
         let found = settled(&servo).unwrap();
         let cycle = found.exact.unwrap_or_else(|| panic!("{name}: {found:?}"));
         assert_eq!(cycle.stable, Some(true), "{name}: {cycle:?}");
+        assert_eq!(found.simulated.unwrap().stable, Some(true), "{name}");
         close(cycle.period, period, 5e-3);
         close(cycle.amplitude, amplitude, 5e-3);
     }

@@ -228,22 +228,123 @@ fn each_cause_is_recognised_with_its_number() {
     assert!((0.2..0.5).contains(&number), "{number}");
     let number = has(&tried(|t| t.step = 0.4), TroubleKind::Quantised);
     assert!((2.0..4.0).contains(&number), "{number}");
-    has(
-        &tried(|t| (t.hysteresis, t.noise) = (0.02, 0.1)),
-        TroubleKind::NoiseLargerThanHysteresis,
-    );
-    has(
+    let flickering = tried(|t| (t.hysteresis, t.noise) = (0.02, 0.1));
+    let number = has(&flickering, TroubleKind::NoiseLargerThanHysteresis);
+    let given = 0.1 * flickering.cycle.as_ref().unwrap().amplitude;
+    assert!((0.7..1.2).contains(&(number / given)), "{number} {given}");
+    // Of the mean input from the first to the last period, of a load that drifts by 0.3 of it over the test.
+    let number = has(
         &tried(|t| (t.drift, t.periods) = (0.3, 12.0)),
         TroubleKind::Drift,
     );
+    assert!((0.2..0.4).contains(&number), "{number}");
     let number = has(&tried(|t| t.periods = 1.6), TroubleKind::WindowTooShort);
     assert!(number <= 2.0, "{number}");
 }
 
 #[test]
 fn a_minimum_time_is_recognised() {
-    let result = tried(|t| (t.holds, t.least_time, t.noise) = (0.2, 0.5, 0.01));
-    has(&result, TroubleKind::MinimumTime);
+    // A load that drifts lets the outputs at the ends of equal times differ.
+    for (holds, drift, word) in [(0.2, -0.3, "on"), (0.8, 0.3, "off")] {
+        let of = |least_time| {
+            tried(|t| {
+                (t.holds, t.least_time, t.noise) = (holds, least_time, 0.01);
+                (t.drift, t.periods) = (drift, 20.0);
+            })
+        };
+        let free = of(0.0);
+        assert!(
+            free.troubles
+                .iter()
+                .all(|t| t.kind != TroubleKind::MinimumTime),
+            "{}",
+            free.text
+        );
+        // Half of the 25.65 s of the symmetric cycle without it.
+        let held = of(0.5);
+        let number = has(&held, TroubleKind::MinimumTime);
+        assert!((number - 12.826).abs() < 0.01, "{number}");
+        assert!(
+            held.text.contains(&format!("Every time {word} lasts")),
+            "{}",
+            held.text
+        );
+    }
+}
+
+/// A lag of 50 s and one of 10 s under a sampled relay about 1, seen through noise of this size.
+fn through_noise(hysteresis: f64, noise: f64) -> Record {
+    let mut random = Random::new(23);
+    let (mut inner, mut output, mut up) = (0.0, 0.0, true);
+    let mut record = Record {
+        name: "through noise".to_owned(),
+        time: (0..6000).map(|i| 0.1 * f64::from(i)).collect(),
+        input: Vec::new(),
+        output: Vec::new(),
+        input_unit: "1".to_owned(),
+        output_unit: "1".to_owned(),
+    };
+    for _ in 0..record.time.len() {
+        let seen = output + noise * random.normal();
+        if (seen - 1.0).abs() > hysteresis {
+            up = seen < 1.0;
+        }
+        let input = if up { 2.0 } else { 0.0 };
+        record.input.push(input);
+        record.output.push(seen);
+        inner += 0.1 * (input - inner) / 50.0;
+        output += 0.1 * (inner - output) / 10.0;
+    }
+    record
+}
+
+#[test]
+fn switches_that_noise_makes_are_no_cycle_of_the_plant() {
+    let result = tune_record(&through_noise(0.05, 0.3), &Settings::default()).unwrap();
+    let number = has(&result, TroubleKind::NoiseLargerThanHysteresis);
+    assert!((number / 0.3 - 1.0).abs() < 0.1, "{number}");
+    assert!(result.stall().is_some(), "{}", result.text);
+    assert!(
+        result.cycle.is_none() && result.point.is_none() && result.conventional.is_none(),
+        "{}",
+        result.text
+    );
+    let result = tune_record(&through_noise(0.05, 0.002), &Settings::default()).unwrap();
+    assert!(
+        result.cycle.is_some() && result.stall().is_none(),
+        "{}",
+        result.text
+    );
+}
+
+#[test]
+fn a_relay_that_never_switches_is_said_with_how_far_the_output_came() {
+    let mut record = out_of_reach();
+    record.input.fill(1.0);
+    let said = tune_record(&record, &Settings::default())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains("from 20 to 170: the relay never switched"),
+        "{said}"
+    );
+    let mut random = Random::new(3);
+    record.output = record.time.iter().map(|_| random.normal()).collect();
+    let said = tune_record(&record, &Settings::default())
+        .unwrap_err()
+        .to_string();
+    assert!(said.contains("needs an input that changes"), "{said}");
+}
+
+#[test]
+fn a_record_that_tells_no_gain_gives_no_gains() {
+    let mut random = Random::new(9);
+    let mut record = out_of_reach();
+    record.input = record.time.iter().map(|_| random.normal()).collect();
+    record.output = record.time.iter().map(|_| random.normal()).collect();
+    let result = tune_record(&record, &Settings::default()).unwrap();
+    assert!(result.gains.is_empty(), "{:?}", result.gains);
+    assert!(result.text.contains("No gains follow"), "{}", result.text);
 }
 
 /// What a plant out of reach of its set point shows: a step that levels off.

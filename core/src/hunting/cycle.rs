@@ -116,6 +116,9 @@ pub fn settled(servo: &Servo) -> Result<Settled, ServoError> {
             break;
         }
     }
+    if let Some((simulated, exact)) = simulated.as_mut().zip(exact.as_ref()) {
+        judge(simulated, exact);
+    }
     let text = match exact.as_ref().or(simulated.as_ref()) {
         Some(cycle) => format!(
             "It hunts: the measured position swings to and fro by {:.4e} (half of peak to peak) with a period of {:.4} s, and \
@@ -228,6 +231,14 @@ fn cycle_of(pattern: &[Stand]) -> HuntingCycle {
         stuck: pattern[1..].iter().map(|s| s.stuck).sum::<f64>() / period,
         multiplier: None,
         stable: None,
+    }
+}
+
+/// The run's cycle takes the stability of the exact one, if that is the one that it repeats.
+fn judge(simulated: &mut HuntingCycle, exact: &HuntingCycle) {
+    let alike = |a: f64, b: f64| (a - b).abs() <= ALIKE * b;
+    if alike(simulated.period, exact.period) && alike(simulated.amplitude, exact.amplitude) {
+        (simulated.multiplier, simulated.stable) = (exact.multiplier, exact.stable);
     }
 }
 

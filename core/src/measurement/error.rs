@@ -125,6 +125,10 @@ pub enum Problem {
     },
     #[error("there are no numbers in the file; expected times, an input and an output")]
     NoNumbers,
+    #[error(
+        "the file is a scenario with a table [{table}], no measurement: `hysteron simulate` and `hysteron limit-cycle` take it, and the pages Explore and Backlash"
+    )]
+    Scenario { table: &'static str },
     #[error("the file begins as JSON does, but is none: {what}")]
     Json { what: String },
     #[error(

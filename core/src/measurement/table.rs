@@ -84,6 +84,9 @@ fn table(bytes: &[u8]) -> Result<Option<Table>, text::Located> {
         Format::Mat4 => Err(whole(Problem::Mat4)),
         Format::Mat5 => Ok(Some(of_matlab(mat::read(bytes).map_err(whole)?))),
         Format::Other => {
+            if let Some(table) = text::table_of_scenario(bytes) {
+                return Err(whole(Problem::Scenario { table }));
+            }
             // A log may begin with a bracket, as JSON does.
             let series = match json::read(bytes) {
                 Ok(Some(series)) => Some(series),

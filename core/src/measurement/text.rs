@@ -30,6 +30,18 @@ pub(super) struct Text<Rows> {
     pub rows: Rows,
 }
 
+/// Tables with which a scenario may begin.
+const TABLES_OF_SCENARIO: [&str; 5] = ["plant", "relay", "run", "drive", "servo"];
+
+/// The table with which a file begins that is a scenario.
+pub(super) fn table_of_scenario(bytes: &[u8]) -> Option<&'static str> {
+    let mut lines = decoded(bytes).ok()?.lines().map(str::trim);
+    let first = lines.find(|line| !line.is_empty() && !line.starts_with('#'))?;
+    let name = first.split('#').next()?.trim_end();
+    let name = name.strip_prefix('[')?.strip_suffix(']')?.trim();
+    TABLES_OF_SCENARIO.into_iter().find(|table| *table == name)
+}
+
 /// The text of a file, without its byte order mark.
 pub(super) fn decoded(bytes: &[u8]) -> Result<&str, Located> {
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };

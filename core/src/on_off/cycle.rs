@@ -111,6 +111,9 @@ pub fn settled(loop_: &OnOffLoop) -> Result<Settled, SimulateError> {
             break;
         }
     }
+    if let Some((simulated, exact)) = pattern.as_mut().zip(exact.as_ref()) {
+        simulated.judged_by(exact);
+    }
     let text = said(pattern.as_ref(), exact.as_ref());
     Ok(Settled {
         simulated: pattern,
@@ -199,6 +202,14 @@ impl OnOffCycle {
             positions,
             multiplier: None,
             stable: None,
+        }
+    }
+
+    /// Takes the stability of the exact cycle, if that is the one that the run repeats.
+    fn judged_by(&mut self, exact: &Self) {
+        let alike = |a: f64, b: f64| (a - b).abs() <= ALIKE * b;
+        if alike(self.period, exact.period) && alike(self.amplitude, exact.amplitude) {
+            (self.multiplier, self.stable) = (exact.multiplier, exact.stable);
         }
     }
 }

@@ -45,9 +45,6 @@ const ROUND_OFF: f64 = 1e-9;
 /// By how much the score must be better with a drift: strong evidence on Raftery's scale (1995).
 const DRIFT_EVIDENCE: f64 = 10.0;
 
-/// Relative standard error from which a gain is not known.
-const VAGUE: f64 = 0.5;
-
 /// Step of a numerical derivative.
 const DERIVATIVE: f64 = 1e-5;
 
@@ -366,7 +363,7 @@ impl Compared {
                 + fit.parameters as f64 * libm::log(independent.max(2.0));
         }
         // A model whose gain is not known at all is of no use, however well it follows.
-        let vague = |f: &Fit| f.model.gain.std_error >= VAGUE * f.model.gain.value.abs();
+        let vague = |f: &Fit| !f.model.gain.is_known();
         fits.sort_by(|a, b| vague(a).cmp(&vague(b)).then(a.score.total_cmp(&b.score)));
         if let Some(first) = fits.first_mut() {
             first.model.preferred = true;

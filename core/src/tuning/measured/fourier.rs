@@ -16,6 +16,7 @@ use super::fit::Fit;
 use super::least_squares::{coherence, inverse_gram, least_squares};
 use super::record::Record;
 use super::response::Held;
+use super::structure::Value;
 use crate::sums::dot;
 
 /// Most harmonics that are fitted, and samples of a period for each.
@@ -49,6 +50,15 @@ impl Point {
             std_error_magnitude: error,
             std_error_phase_deg: (error / magnitude).to_degrees(),
         }
+    }
+
+    /// Whether its error leaves anything of it.
+    pub(super) fn is_known(&self) -> bool {
+        let magnitude = Value {
+            value: self.magnitude,
+            std_error: self.std_error_magnitude,
+        };
+        magnitude.is_known()
     }
 
     /// As a complex number.

@@ -221,7 +221,7 @@ pub(super) fn all(basis: &Basis<'_>, form: Form, full_scale: f64) -> Vec<TunedGa
     }
     // Without a model the point alone is moved.
     if reduced.is_none()
-        && let Some(point) = basis.point
+        && let Some(point) = basis.point.filter(|p| p.is_known())
     {
         let from = identified(None, None, Some(point)).point;
         let target = Target::PhaseMargin(Wish::default().phase_margin).point();
@@ -258,11 +258,12 @@ pub(super) fn all(basis: &Basis<'_>, form: Form, full_scale: f64) -> Vec<TunedGa
     found
 }
 
-/// The best model that the rules understand: without a zero that leads.
+/// The best model that the rules understand: of a known gain, without a zero that leads.
 fn for_rules<'a>(basis: &Basis<'a>) -> Option<&'a FittedModel> {
     basis
         .models
         .iter()
+        .filter(|m| m.gain.is_known())
         .find(|m| m.structure != Structure::SopdtZero || m.zero.is_some_and(|z| z.value <= 0.0))
 }
 

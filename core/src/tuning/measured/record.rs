@@ -3,9 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
+use crate::order::{median, range};
 
 /// Fewest samples from which a model can be had.
 const FEWEST: usize = 20;
+
+/// Ends of a record over which an output is taken: one part of so many.
+const ENDS: usize = 20;
+
+/// Share of its range by which an output that goes somewhere differs from begin to end.
+const GOES: f64 = 0.5;
 
 /// A record of one input and one output. The input is held: `input[i]` acts from `time[i]` to `time[i + 1]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +53,18 @@ pub enum RecordError {
         "the input is {0} from the first sample to the last: a test needs an input that changes, so record what the heater or valve was told as well"
     )]
     NoInput(f64),
+    /// The relay never switches while the output goes somewhere.
+    #[error(
+        "the input is {input} from the first sample to the last, while the output goes from {from} to {to}: the relay never switched, since {to} is short of its threshold; a lower target, a stronger input or a longer test lets it switch"
+    )]
+    NeverSwitched {
+        /// The input.
+        input: f64,
+        /// Output at the begin.
+        from: f64,
+        /// Output at the end.
+        to: f64,
+    },
     /// A number read off a test that cannot be.
     #[error("{name} is {value}: it must be {range}")]
     Reading {
@@ -103,9 +122,26 @@ impl Record {
             return Err(RecordError::Still(self.output[0]));
         }
         if self.input.iter().all(|u| *u == self.input[0]) {
-            return Err(RecordError::NoInput(self.input[0]));
+            return Err(self.without_switch());
         }
         Ok(())
+    }
+
+    /// Why an input that stays where it is tells nothing.
+    fn without_switch(&self) -> RecordError {
+        let n = self.output.len();
+        let part = (n / ENDS).max(1);
+        let of = |part: &[f64]| median(&mut part.to_vec());
+        let (from, to) = (of(&self.output[..part]), of(&self.output[n - part..]));
+        let (low, high) = range(&self.output);
+        if (to - from).abs() < GOES * (high - low) {
+            return RecordError::NoInput(self.input[0]);
+        }
+        RecordError::NeverSwitched {
+            input: self.input[0],
+            from: rounded(from),
+            to: rounded(to),
+        }
     }
 
     /// Length, s.
@@ -125,6 +161,11 @@ impl Record {
     /// Median time between samples, s.
     pub(super) fn sampling(&self) -> f64 {
         let mut steps: Vec<f64> = self.time.windows(2).map(|t| t[1] - t[0]).collect();
-        crate::order::median(&mut steps)
+        median(&mut steps)
     }
+}
+
+/// To four significant digits, as it is said.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -25,6 +25,10 @@ const MUCH_HYSTERESIS: f64 = 0.2;
 /// A static gain is told with at most this relative error.
 const GAIN_TOLD: f64 = 0.2;
 
+/// Where no rule has what it needs.
+const NO_GAINS: &str =
+    "No gains follow: neither the gain of a model nor a point of the curve is known well enough.";
+
 /// What the user wants besides.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
@@ -102,7 +106,16 @@ pub struct MeasuredTuning {
 /// A record that cannot be used.
 pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
     record.validate()?;
-    let cycle = cycle::find(record);
+    let found = cycle::find(record);
+    // Where noise makes the switches, output and input of the cycle are that of the noise: it shows nothing of the plant.
+    let chatters = found
+        .as_ref()
+        .is_some_and(|c| trouble::is_chatter(record, c));
+    let (cycle, chatter) = if chatters {
+        (None, found)
+    } else {
+        (found, None)
+    };
     let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
     let fits = compared.fit_all();
@@ -128,6 +141,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     let troubles = trouble::find(&Evidence {
         record,
         cycle: cycle.as_ref(),
+        chatter: chatter.as_ref(),
         fit: fits.first(),
         noise: fits.first().map_or(0.0, |f| f.noise),
         target: settings.target,
@@ -208,6 +222,9 @@ impl MeasuredTuning {
         sentences.extend(self.of_formula());
         if let Some(model) = self.models.first() {
             sentences.push(self.of_model(model));
+        }
+        if self.gains.is_empty() {
+            sentences.push(NO_GAINS.to_owned());
         }
         sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
         sentences.extend(self.notes.iter().cloned());

@@ -103,6 +103,16 @@ pub struct Value {
     pub std_error: f64,
 }
 
+/// Relative standard error from which a gain is not known.
+const VAGUE: f64 = 0.5;
+
+impl Value {
+    /// Whether its error leaves anything of it.
+    pub(super) fn is_known(&self) -> bool {
+        self.std_error < VAGUE * self.value.abs()
+    }
+}
+
 /// A model with the standard errors of its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FittedModel {

@@ -26,12 +26,20 @@ const NOISY: f64 = 0.5;
 /// Flicker pulses for each half period that show that noise switches the relay.
 const FLICKERS: f64 = 0.25;
 
+/// Scatter of the periods, as a share of their mean, from which they come at random.
+const IRREGULAR: f64 = 0.3;
+
+/// Median size of the second differences of white noise, in its standard deviations: 0.6745 times the root of 6.
+const MEDIAN_OF_SECOND: f64 = 1.6522;
+
 /// The input is stuck where it does not change over this last share of the record.
 const STUCK: f64 = 0.5;
 
-/// Half periods that agree within this share of a sample, while the output at their ends scatters by more than this
-/// multiple of the noise, are held by a minimum time.
+/// So many half periods or more are held by a minimum time, where they agree within the first share of a sample, those of the
+/// other side differ by more than the second, and the outputs at their ends by more than the third of what chance makes.
+const FEWEST_HELD: usize = 4;
 const SAME_LENGTH: f64 = 1.01;
+const VARIES: f64 = 2.0;
 const SCATTERS: f64 = 3.0;
 
 /// Share of the input's variance that a straight line in the output explains where a controller is at work.
@@ -86,6 +94,8 @@ pub struct Trouble {
 pub(super) struct Evidence<'a> {
     pub record: &'a Record,
     pub cycle: Option<&'a Cycle>,
+    /// What would be a cycle if noise did not make it.
+    pub chatter: Option<&'a Cycle>,
     pub fit: Option<&'a Fit>,
     /// Noise of the output.
     pub noise: f64,
@@ -184,6 +194,38 @@ fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     })
 }
 
+/// Whether noise makes the switches of a cycle: they come at random, and the output jumps by as much as the hysteresis
+/// from sample to sample.
+pub(super) fn is_chatter(record: &Record, cycle: &Cycle) -> bool {
+    cycle.scatter > IRREGULAR * cycle.period
+        && jumps(&record.output) > NOISY * cycle.hysteresis.max(0.0)
+}
+
+/// Standard deviation of white noise that would change the second differences as much: no course that is sampled well does.
+fn jumps(output: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = output
+        .windows(3)
+        .map(|y| (y[0] - 2.0 * y[1] + y[2]).abs())
+        .collect();
+    median(&mut sizes) / MEDIAN_OF_SECOND
+}
+
+fn chatter(e: &Evidence<'_>, cycle: &Cycle) -> Trouble {
+    let level = jumps(&e.record.output);
+    trouble(
+        TroubleKind::NoiseLargerThanHysteresis,
+        true,
+        level,
+        format!(
+            "Noise switches the relay, every {} s on average and at random: the noise ({}) is of the size of the \
+             hysteresis ({}), so there is no cycle to read. Three times the noise as hysteresis, or a filter, ends it.",
+            n(0.5 * cycle.period),
+            of_unit(level, &e.record.output_unit),
+            n(cycle.hysteresis.max(0.0)),
+        ),
+    )
+}
+
 /// A value with its unit.
 fn of_unit(value: f64, unit: &str) -> String {
     match unit {
@@ -268,35 +310,69 @@ fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     })
 }
 
-fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
-    let sampling = e.record.sampling();
-    let level = e.noise;
-    for up in [true, false] {
-        let (mut lengths, mut ends) = (Vec::new(), Vec::new());
-        for s in cycle.switches.windows(2) {
-            if s[0].1 == up && s[0].0 >= cycle.window[0] && s[1].0 <= cycle.window[1] {
-                lengths.push(s[1].0 - s[0].0);
-                let i = e.record.time.partition_point(|t| *t < s[1].0);
-                ends.extend(e.record.output.get(i));
+/// Half periods of one side: their lengths, the outputs at their ends, and how far these move in a sample there.
+struct Halves {
+    lengths: Vec<f64>,
+    ends: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+impl Halves {
+    fn of(record: &Record, cycle: &Cycle, up: bool) -> Self {
+        let mut halves = Self {
+            lengths: Vec::new(),
+            ends: Vec::new(),
+            slopes: Vec::new(),
+        };
+        // The first one belongs to the start.
+        let all = cycle.switches.windows(2).filter(|s| s[0].1 == up);
+        for s in all.skip(1) {
+            halves.lengths.push(s[1].0 - s[0].0);
+            let i = record.time.partition_point(|t| *t < s[1].0);
+            if let Some([before, at]) = record
+                .output
+                .get(i.saturating_sub(1)..=i)
+                .and_then(|y| y.first_chunk())
+            {
+                halves.ends.push(*at);
+                halves.slopes.push((at - before).abs());
             }
         }
-        let ((least, most), (low, high)) = (range(&lengths), range(&ends));
-        let others = cycle.scatter > 2.0 * sampling;
-        // Lengths that no threshold set: all the same, while outputs and the other half periods are not.
-        if lengths.len() >= 4
-            && most - least <= SAME_LENGTH * sampling
-            && others
-            && high - low > SCATTERS * level.max(sensor_step(&e.record.output))
-        {
-            return Some(trouble(
+        halves
+    }
+}
+
+/// Lengths that no threshold set: all the same, while the outputs at their ends and the other half periods are not.
+fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
+    let sampling = e.record.sampling();
+    let both = [true, false].map(|up| Halves::of(e.record, cycle, up));
+    let spread = |values: &[f64]| {
+        let (least, most) = range(values);
+        most - least
+    };
+    [true, false].into_iter().find_map(|up| {
+        let (own, other) = if up {
+            (&both[0], &both[1])
+        } else {
+            (&both[1], &both[0])
+        };
+        let chance = median(&mut own.slopes.clone())
+            .max(e.noise)
+            .max(sensor_step(&e.record.output));
+        let held = own.lengths.len() >= FEWEST_HELD
+            && spread(&own.lengths) <= SAME_LENGTH * sampling
+            && spread(&other.lengths) > VARIES * sampling
+            && spread(&own.ends) > SCATTERS * chance;
+        held.then(|| {
+            let (least, (low, high)) = (range(&own.lengths).0, range(&own.ends));
+            trouble(
                 TroubleKind::MinimumTime,
                 false,
                 least,
                 held_text(up, least, low, high),
-            ));
-        }
-    }
-    None
+            )
+        })
+    })
 }
 
 fn held_text(up: bool, least: f64, low: f64, high: f64) -> String {
@@ -316,6 +392,9 @@ fn held_text(up: bool, least: f64, low: f64, high: f64) -> String {
 
 fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
     let record = e.record;
+    if let Some(cycle) = e.chatter {
+        return vec![Some(chatter(e, cycle))];
+    }
     if let Some(controller) = controller(record) {
         return vec![Some(controller)];
     }
