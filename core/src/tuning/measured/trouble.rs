@@ -217,7 +217,7 @@ fn chatter(e: &Evidence<'_>, cycle: &Cycle) -> Trouble {
         true,
         level,
         format!(
-            "Noise switches the relay, every {} s on average and at random: the noise ({}) is of the size of the \
+            "Noise switches the relay, every {} s on average and at random: the noise ({}) is not small beside the \
              hysteresis ({}), so there is no cycle to read. Three times the noise as hysteresis, or a filter, ends it.",
             n(0.5 * cycle.period),
             of_unit(level, &e.record.output_unit),
