@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::structure::Structure;
 use crate::diagnosis::CriticismError;
 use crate::effect::EffectId;
 use crate::measurement::Measurement;
@@ -18,7 +17,7 @@ pub(super) struct Knowledge {
 }
 
 /// The half gap of a backlash.
-const HALF_GAP: (Option<EffectId>, &str) = (Some(EffectId::new("backlash")), "beta");
+pub(super) const HALF_GAP: (Option<EffectId>, &str) = (Some(EffectId::new("backlash")), "beta");
 
 impl Knowledge {
     /// What `model` knows.
@@ -40,6 +39,11 @@ impl Knowledge {
     /// The same with the half gap that contacts tell, and its tolerance.
     pub fn with_felt_gap(self, felt_gap: Option<(f64, f64)>) -> Self {
         Self { felt_gap, ..self }
+    }
+
+    /// Half gap that the contacts in the record tell, and its tolerance.
+    pub fn felt_gap(&self) -> Option<(f64, f64)> {
+        self.felt_gap
     }
 
     /// The same where no value is held: every parameter is free.
@@ -95,57 +99,5 @@ pub(super) fn check(model: &UserModel, measurement: &Measurement) -> Result<(), 
             model: model.kind.name(),
             measured: measurement.kind.name(),
         })
-    }
-}
-
-impl Structure {
-    /// What is known of each value, in order; `None` where nothing is.
-    pub fn known(&self) -> Vec<Option<&Known>> {
-        let symbols = self.symbols().into_iter();
-        symbols
-            .map(|(owner, symbol)| self.knowledge.find(owner, symbol))
-            .collect()
-    }
-
-    /// Values that the fit changes.
-    pub fn free_count(&self) -> usize {
-        self.fixed().iter().filter(|f| !**f).count()
-    }
-
-    /// Known value and standard deviation of each prior, by index.
-    pub fn priors(&self) -> Vec<(usize, f64, f64)> {
-        let known = self.known();
-        let mut priors: Vec<(usize, f64, f64)> = known
-            .iter()
-            .enumerate()
-            .filter_map(|(j, k)| match k.as_ref()?.status {
-                Status::Prior(tolerance) => Some((j, k.as_ref()?.value, tolerance)),
-                _ => None,
-            })
-            .collect();
-        if let Some((half_gap, tolerance)) = self.knowledge.felt_gap {
-            let at = self.symbols().iter().position(|s| *s == HALF_GAP);
-            let unsaid = at.filter(|j| known[*j].is_none());
-            priors.extend(unsaid.map(|j| (j, half_gap, tolerance)));
-        }
-        priors
-    }
-
-    /// Squared deviations from the priors, in units of their tolerance.
-    pub fn prior_cost(&self, values: &[f64]) -> f64 {
-        self.priors()
-            .iter()
-            .map(|(j, value, tolerance)| ((values[*j] - value) / tolerance).powi(2))
-            .sum()
-    }
-
-    /// Puts known values in the place of guessed ones among the values from `from` on.
-    pub fn begin(&self, values: &mut [f64], from: usize) {
-        for (value, known) in values.iter_mut().zip(self.known()).skip(from) {
-            if let Some(known) = known {
-                *value = known.value;
-            }
-        }
-        self.hold(values);
     }
 }

@@ -17,6 +17,7 @@ mod guess;
 mod integrating;
 mod jobs;
 mod knowledge;
+mod known;
 mod locate;
 mod missing;
 mod next_experiment;

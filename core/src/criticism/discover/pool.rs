@@ -1,6 +1,7 @@
 //! Which of the sums that the regression found are simulated.
 
-use super::search::{Search, score};
+use super::search::Search;
+use super::sum::score;
 use super::tuning::{NEAR, SAME_FORCE, SIMULATED};
 use super::weak::Weak;
 use super::written::Written;

@@ -3,39 +3,17 @@
 
 use std::collections::BTreeMap;
 
-use super::grammar::{Form, Numbers, forms, length};
+use super::grammar::{Form, forms, length};
+use super::numbers::{Reaches, stepped};
+use super::sum::{Sum, Term, score, text};
 use super::tuning::{
-    AT_A_TIME, CENTRES, FIRST_SCALE, FIRST_TERMS, LAST_SCALE, LAST_STEP, LEAST_TOLD, MOST_STEPS,
-    MOST_WAVES, NOISE_LEFT, PER_PART, PRICE, REFINED, SCALES, SHAPES_KEPT, THIRDS, TOLD, WAVE_STEP,
-    WIDTHS, WORTH,
+    AT_A_TIME, FIRST_TERMS, LAST_STEP, LEAST_TOLD, MOST_STEPS, NOISE_LEFT, PER_PART, REFINED,
+    SHAPES_KEPT, THIRDS, TOLD, WORTH,
 };
-use super::weak::{BodyColumn, Reach, Solved, Weak};
+use super::weak::{BodyColumn, Solved, Weak};
 use crate::crew::Crew;
-use crate::effect::{Variable, variables};
 use crate::measurement::Kind;
 use crate::sums::dot;
-
-/// A term: a form with values of its numbers.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Term {
-    pub form: Form,
-    pub numbers: [f64; 2],
-}
-
-/// A sum of terms with what it leaves of the regression.
-#[derive(Clone, Debug)]
-pub(super) struct Sum {
-    pub terms: Vec<Term>,
-    pub loss: f64,
-}
-
-impl Sum {
-    /// Windows of its terms, unweighted.
-    pub fn columns(&self, weak: &Weak) -> Vec<Vec<f64>> {
-        let of = |t: &Term| weak.columns(&t.form, t.numbers);
-        self.terms.iter().flat_map(of).collect()
-    }
-}
 
 /// A form with values of its numbers, on the grid.
 struct Tried {
@@ -74,7 +52,7 @@ enum Stage {
 pub(super) struct Search {
     kind: Kind,
     forms: Vec<Form>,
-    reaches: Vec<(Variable, Reach)>,
+    reaches: Reaches,
     tried: Vec<Tried>,
     /// Places of the first terms of pairs, and of each form its best pair with each other.
     firsts: Vec<usize>,
@@ -88,13 +66,10 @@ pub(super) struct Search {
 
 impl Search {
     pub fn new(kind: Kind, weak: &Weak) -> Self {
-        let reaches = variables(kind)
-            .iter()
-            .map(|(_, v)| (*v, weak.seen.reach(*v)));
         Self {
             kind,
             forms: forms(kind),
-            reaches: reaches.collect(),
+            reaches: Reaches::of(kind, weak),
             tried: Vec::new(),
             firsts: Vec::new(),
             pairs: BTreeMap::new(),
@@ -245,41 +220,6 @@ impl Search {
         sums
     }
 
-    fn reach(&self, variable: Variable) -> Option<Reach> {
-        self.reaches
-            .iter()
-            .find(|(v, _)| *v == variable)
-            .map(|(_, r)| *r)
-    }
-
-    /// Values of the numbers of a form that are tried.
-    fn grid(&self, form: &Form) -> Vec<[f64; 2]> {
-        let Some((bend, variable)) = form.bend else {
-            return vec![[0.0; 2]];
-        };
-        let Some(reach) = self.reach(variable) else {
-            return Vec::new();
-        };
-        let width = reach.high - reach.low;
-        let centre = |k: usize| reach.low + width * (k as f64 + 0.5) / CENTRES as f64;
-        match bend.numbers() {
-            Numbers::Scale => {
-                let ratio = libm::log(LAST_SCALE / FIRST_SCALE) / (SCALES - 1) as f64;
-                let at = |k: usize| reach.size * FIRST_SCALE * libm::exp(ratio * k as f64);
-                (0..SCALES).map(|k| [at(k), 0.0]).collect()
-            }
-            Numbers::Centre => (0..CENTRES).map(|k| [centre(k), 0.0]).collect(),
-            Numbers::CentreAndWidth => (0..CENTRES)
-                .flat_map(|k| WIDTHS.map(|w| [centre(k), w * width]))
-                .collect(),
-            Numbers::WaveNumber => {
-                let step = WAVE_STEP * std::f64::consts::PI / width.max(f64::MIN_POSITIVE);
-                let count = (2.0 * MOST_WAVES / WAVE_STEP) as usize;
-                (1..=count).map(|k| [step * k as f64, 0.0]).collect()
-            }
-        }
-    }
-
     /// A form with all values of its numbers.
     fn on_grid(&self, weak: &Weak, form: usize) -> Vec<Tried> {
         let own = &self.forms[form];
@@ -292,7 +232,11 @@ impl Search {
                 directions,
             })
         };
-        self.grid(own).into_iter().filter_map(told).collect()
+        self.reaches
+            .grid(own)
+            .into_iter()
+            .filter_map(told)
+            .collect()
     }
 
     /// Of forms without numbers that are the same on this record, the shortest stays.
@@ -387,7 +331,8 @@ impl Search {
         let mut steps: Vec<(usize, usize, f64)> = Vec::new();
         for (k, term) in terms.iter().enumerate() {
             steps.extend(
-                self.steps(term)
+                self.reaches
+                    .steps(term)
                     .into_iter()
                     .enumerate()
                     .map(|(j, s)| (k, j, s)),
@@ -402,7 +347,7 @@ impl Search {
                 for sign in [1.0, -1.0] {
                     let mut other = terms[*k].clone();
                     other.numbers[*j] = stepped(&other, *j, sign * share * step);
-                    if !self.may_be(&other) {
+                    if !self.reaches.may_be(&other) {
                         continue;
                     }
                     let mut trial = columns.clone();
@@ -419,53 +364,6 @@ impl Search {
             }
         }
         Some(Sum { terms, loss: least })
-    }
-
-    /// First steps of the numbers of a term: half of the grid's.
-    fn steps(&self, term: &Term) -> Vec<f64> {
-        let Some((bend, variable)) = term.form.bend else {
-            return Vec::new();
-        };
-        let Some(reach) = self.reach(variable) else {
-            return Vec::new();
-        };
-        let width = reach.high - reach.low;
-        match bend.numbers() {
-            Numbers::Scale => vec![0.2],
-            Numbers::Centre => vec![0.5 * width / CENTRES as f64],
-            Numbers::CentreAndWidth => vec![0.5 * width / CENTRES as f64, 0.35],
-            Numbers::WaveNumber => vec![0.5 * WAVE_STEP * std::f64::consts::PI / width],
-        }
-    }
-
-    /// Whether the numbers of a term are such as the record can tell: beyond them a bend is a power.
-    fn may_be(&self, term: &Term) -> bool {
-        let Some((bend, variable)) = term.form.bend else {
-            return true;
-        };
-        let Some(reach) = self.reach(variable) else {
-            return false;
-        };
-        let [p, q] = term.numbers;
-        let scale =
-            |s: f64| s > 0.3 * FIRST_SCALE * reach.size && s < 1.5 * LAST_SCALE * reach.size;
-        let centre = |c: f64| c > reach.low && c < reach.high;
-        match bend.numbers() {
-            Numbers::Scale => scale(p),
-            Numbers::Centre => centre(p),
-            Numbers::CentreAndWidth => centre(p) && scale(q),
-            Numbers::WaveNumber => p > 0.0 && p.is_finite(),
-        }
-    }
-}
-
-/// A number after a step: sizes change by factors.
-fn stepped(term: &Term, place: usize, step: f64) -> f64 {
-    let now = term.numbers[place];
-    match term.form.bend.map(|(bend, _)| bend.numbers()) {
-        Some(Numbers::Scale) => now * libm::exp(step),
-        Some(Numbers::CentreAndWidth) if place == 1 => now * libm::exp(step),
-        _ => now + step,
     }
 }
 
@@ -510,20 +408,4 @@ fn is_body(solved: &Solved, body: &[BodyColumn], kind: Kind) -> bool {
         Kind::Process => gain.abs() > TOLD * error,
     });
     input && of(BodyColumn::Velocity).is_none_or(|(rate, error)| rate < TOLD * error)
-}
-
-/// What is least for a formula that leaves little and is short: the logarithm of what it leaves of some hundred windows that tell
-/// something of their own, and a price for each part.
-pub(super) fn score(loss: f64, length: usize) -> f64 {
-    libm::log(loss.max(f64::MIN_POSITIVE)) + PRICE * length as f64
-}
-
-/// A sum as one types it, with all coefficients above 0.
-pub(super) fn text(terms: &[Term], kind: Kind) -> String {
-    let texts: Vec<String> = terms
-        .iter()
-        .enumerate()
-        .map(|(k, t)| t.form.text(kind, k))
-        .collect();
-    texts.join("+")
 }

@@ -1,7 +1,7 @@
 //! A sum of terms as a formula that a user could have typed, with values from which a fit begins.
 
 use super::grammar::{Bend, length};
-use super::search::{Sum, Term};
+use super::sum::{Sum, Term};
 use super::weak::{BodyColumn, Weak};
 use crate::effect::baseline::Baseline;
 use crate::measurement::Kind;
