@@ -18,6 +18,13 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// Standard deviation about the mean; 0 of no values.
+pub(crate) fn deviation(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
 /// The values in the runs (first place and the place after the last of each) without their mean there; 0 elsewhere.
 pub(crate) fn centred(values: &[f64], runs: &[(usize, usize)]) -> Vec<f64> {
     let used = || runs.iter().flat_map(|(from, to)| &values[*from..*to]);

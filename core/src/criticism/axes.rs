@@ -1,7 +1,7 @@
 //! The axes on which a model can fail: a value for every sample.
 
 use super::data::Data;
-use super::fit::Motion;
+use super::motion::Motion;
 use crate::measurement::Kind;
 
 /// Most levels of an input that counts as a relay's.

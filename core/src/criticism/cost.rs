@@ -1,7 +1,7 @@
 //! What a motion costs: squared residuals, over all or window by window, plain or robust.
 
 use super::data::Data;
-use super::fit::Motion;
+use super::motion::Motion;
 use crate::order::quantile;
 
 /// Whether a window has a block that is used for fitting.

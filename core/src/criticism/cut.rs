@@ -4,8 +4,8 @@
 //! state: where the body moves (while it sticks, the deflection of its friction contact cannot be seen, and decides
 //! when it breaks loose) and not inside a contact with a load.
 
-use super::data::spread;
 use crate::order::median;
+use crate::sums::deviation;
 
 /// Fewest samples in a window.
 pub(super) const MIN_WINDOW: usize = 10;
@@ -43,7 +43,7 @@ pub(super) fn evenly(n: usize, length: usize) -> Vec<usize> {
 /// it is fastest.
 pub(super) fn in_motion(velocity: &[f64], length: usize) -> Vec<usize> {
     let n = velocity.len();
-    let moving = MOVING * spread(velocity);
+    let moving = MOVING * deviation(velocity);
     let put_off = |cut: usize| {
         let later = cut..(cut + length / 2).min(n);
         let speed = |k: &usize| velocity[*k].abs();

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::before::{begins_at_rest, begins_at_zero};
 use super::cut::{self, Block, MIN_WINDOW};
-use super::fit::Motion;
+use super::motion::Motion;
 use super::noise::{Noise, noise_beside};
 use super::output::Output;
 use super::record::limited;
@@ -16,6 +16,7 @@ use crate::effect::Scales;
 use crate::effect::baseline::{Baseline, GUESS_FACTOR};
 use crate::measurement::{Channel, Kind, Measurement};
 use crate::model::{Excitation, FollowedNoise, SeenLoad, Sensor, Start, smoothed};
+use crate::sums::deviation;
 
 /// Fewest windows or blocks, so that held-back data are more than one piece of luck.
 const MIN_BLOCKS: usize = 20;
@@ -468,8 +469,8 @@ impl Data {
     pub fn scales(&self, inertia: f64, viscous: f64) -> Scales {
         let (step, n) = (self.excitation.mean_step(), self.len());
         let speed = match self.outputs.iter().find(|o| o.is_velocity) {
-            Some(v) => spread(&v.values),
-            None => spread(&self.velocity_estimate()),
+            Some(v) => deviation(&v.values),
+            None => deviation(&self.velocity_estimate()),
         };
         let position = match self.outputs.iter().find(|o| !o.is_velocity) {
             Some(x) => x.values.clone(),
@@ -482,7 +483,7 @@ impl Data {
         Scales {
             step,
             duration: step * (n - 1) as f64,
-            force: spread(&self.input),
+            force: deviation(&self.input),
             inertia,
             inertia_factor: GUESS_FACTOR,
             viscous: viscous.abs().max(inertia.abs() / (step * n as f64)),
@@ -552,11 +553,4 @@ fn position_estimate(time: &[f64], outputs: &[Output]) -> Vec<f64> {
             })
             .collect()
     })
-}
-
-/// Standard deviation about the mean.
-pub(super) fn spread(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
 }

@@ -2,7 +2,8 @@
 
 use super::axes::{Axis, Parts, axes};
 use super::data::Data;
-use super::fit::{Motion, residuals};
+use super::fit::residuals;
+use super::motion::Motion;
 use super::output::Output;
 use super::spectrum::Spectrum;
 use crate::diagnosis::Finding;

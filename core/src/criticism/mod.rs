@@ -20,6 +20,7 @@ mod knowledge;
 mod known;
 mod locate;
 mod missing;
+mod motion;
 mod next_experiment;
 mod noise;
 mod odd_windows;

@@ -7,8 +7,9 @@
 use super::axes::seconds;
 use super::correlation::product;
 use super::data::Data;
-use super::fit::{Motion, residuals};
+use super::fit::residuals;
 use super::locate::signal_name;
+use super::motion::Motion;
 use crate::diagnosis::{ResidualTest, ResidualTestKind};
 use crate::sums::centred;
 

@@ -4,7 +4,8 @@ use super::correlation::product;
 use super::cost::{cost_between, fit_cost, informed_windows};
 use super::cut::Block;
 use super::data::Data;
-use super::fit::{Fit, Motion, residuals};
+use super::fit::{Fit, residuals};
+use super::motion::Motion;
 use super::output::Output;
 use super::window::bend_between;
 

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector, Vector4};
 
-use super::{Fit, Motion, farthest};
+use super::{Fit, farthest};
 use crate::criticism::cost::{informed_windows, window_weights};
 use crate::criticism::data::Data;
+use crate::criticism::motion::Motion;
 use crate::criticism::window_sums::{
     BODY_STATES, STATES, WindowSums, changed, inverse, kept_within, reduced, state,
 };
@@ -62,7 +63,7 @@ impl Fit {
                 return Motion::still(data.len());
             }
             if k == 0 && model.is_same_everywhere() {
-                return Motion::shifted(data);
+                return super::shifted(data);
             }
             let step = [dx, dv, LOAD_DIFFERENCE, LOAD_DIFFERENCE][k];
             let change = Vector4::ith(k, step);

@@ -12,10 +12,11 @@ use nalgebra::DMatrix;
 
 use super::cost::{ODD_MEAN_SQUARE, oddness, robust_cost, robust_share};
 use super::data::Data;
+use super::motion::Motion;
 use super::structure::Structure;
 use super::window_sums::reduced;
 use crate::effect::Scales;
-use crate::model::{FollowedLoad, LoadBegin, Start};
+use crate::model::{LoadBegin, Start};
 
 /// Iterations after which a fit ends in any case.
 const MAX_ITERATIONS: usize = 30;
@@ -57,53 +58,13 @@ const SAME_PLACE: f64 = 0.01;
 /// Standard deviations by which a load on a joint may be off where it follows the body.
 const FARTHEST: f64 = 3.0;
 
-/// Position and velocity of the body at every sample.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Motion {
-    pub position: Vec<f64>,
-    pub velocity: Vec<f64>,
-    /// For each window, what its state costs by itself: how far a load is off where it is taken to be.
-    pub priors: Vec<f64>,
-    /// Where a load begins in the windows.
-    pub loads: FollowedLoad,
-    /// With these values.
-    pub values: Vec<f64>,
-}
-
-impl Motion {
-    /// No motion over `n` samples.
-    fn still(n: usize) -> Self {
-        Self {
-            position: vec![0.0; n],
-            velocity: vec![0.0; n],
-            ..Self::default()
-        }
+/// The derivative of the motion with respect to where it starts, if that is all that changes.
+fn shifted(data: &Data) -> Motion {
+    let mut motion = Motion::still(data.len());
+    for (from, to) in data.spans() {
+        motion.position[from..to].fill(1.0);
     }
-
-    /// The derivative of the motion with respect to where it starts, if that is all that changes.
-    fn shifted(data: &Data) -> Self {
-        let mut motion = Self::still(data.len());
-        for (from, to) in data.spans() {
-            motion.position[from..to].fill(1.0);
-        }
-        motion
-    }
-
-    /// Takes the motion of another one in a window.
-    fn take_window(&mut self, other: &Self, window: usize, (from, to): (usize, usize)) {
-        self.position[from..to].copy_from_slice(&other.position[from..to]);
-        self.velocity[from..to].copy_from_slice(&other.velocity[from..to]);
-        self.priors[window] = other.priors[window];
-    }
-
-    /// The part that an output shows.
-    pub fn of(&self, is_velocity: bool) -> &[f64] {
-        if is_velocity {
-            &self.velocity
-        } else {
-            &self.position
-        }
-    }
+    motion
 }
 
 /// A fit that goes on iteration by iteration.

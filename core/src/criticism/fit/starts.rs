@@ -1,8 +1,9 @@
 //! The states from which windows start, improved with the values kept.
 
-use super::{Fit, Motion, farthest};
+use super::{Fit, farthest};
 use crate::criticism::cost::{ODD_MEAN_SQUARE, window_costs};
 use crate::criticism::data::Data;
+use crate::criticism::motion::Motion;
 use crate::criticism::window_sums::{changed, inverse, kept_within};
 use crate::effect::Scales;
 use crate::model::{LoadBegin, Start};

@@ -8,8 +8,9 @@
 use crate::criticism::axes::{Axis, axes};
 use crate::criticism::correlation::product;
 use crate::criticism::data::Data;
-use crate::criticism::fit::{Motion, residuals};
+use crate::criticism::fit::residuals;
 use crate::criticism::locate::depends_on_the_motion;
+use crate::criticism::motion::Motion;
 use crate::criticism::output::Output;
 use crate::sums::centred;
 

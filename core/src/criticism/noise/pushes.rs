@@ -6,7 +6,8 @@
 //! motion or on the input, so that what one half of the windows shows of that foretells something of the other half.
 
 use crate::criticism::data::Data;
-use crate::criticism::fit::{Motion, residuals};
+use crate::criticism::fit::residuals;
+use crate::criticism::motion::Motion;
 use crate::criticism::output::Output;
 use crate::effect::Probe;
 use crate::measurement::Kind;

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::signals::{Signals, deviation};
+use super::signals::Signals;
 use super::tuning::{CONTROLLED, FEW_LEVELS};
 use crate::measurement::Kind;
+use crate::sums::deviation;
 
 /// A linear controller, read off the record: `u = offset + sum gains`.
 #[derive(Clone, Debug, PartialEq)]

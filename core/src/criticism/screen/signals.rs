@@ -5,6 +5,7 @@ use crate::criticism::noise::noise_level;
 use crate::effect::{Extent, Moment, Track};
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
 use crate::order::{median, range, sign};
+use crate::sums::deviation;
 
 /// A measured output and the standard deviation of its noise.
 #[derive(Clone, Debug)]
@@ -76,12 +77,6 @@ fn slope(values: &[f64], reach: usize, step: f64) -> Vec<f64> {
 
 pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
-}
-
-pub(super) fn deviation(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    let squares = values.iter().map(|v| (v - mean).powi(2));
-    (squares.sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// Equal steps, and values there: outputs on straight lines, the input as it was held.

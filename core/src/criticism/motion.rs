@@ -1,0 +1,43 @@
+//! What a model makes of a record: its motion, sample by sample.
+
+use crate::model::FollowedLoad;
+
+/// Position and velocity of the body at every sample.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Motion {
+    pub position: Vec<f64>,
+    pub velocity: Vec<f64>,
+    /// For each window, what its state costs by itself: how far a load is off where it is taken to be.
+    pub priors: Vec<f64>,
+    /// Where a load begins in the windows.
+    pub loads: FollowedLoad,
+    /// With these values.
+    pub values: Vec<f64>,
+}
+
+impl Motion {
+    /// No motion over `n` samples.
+    pub fn still(n: usize) -> Self {
+        Self {
+            position: vec![0.0; n],
+            velocity: vec![0.0; n],
+            ..Self::default()
+        }
+    }
+
+    /// Takes the motion of another one in a window.
+    pub fn take_window(&mut self, other: &Self, window: usize, (from, to): (usize, usize)) {
+        self.position[from..to].copy_from_slice(&other.position[from..to]);
+        self.velocity[from..to].copy_from_slice(&other.velocity[from..to]);
+        self.priors[window] = other.priors[window];
+    }
+
+    /// The part that an output shows.
+    pub fn of(&self, is_velocity: bool) -> &[f64] {
+        if is_velocity {
+            &self.velocity
+        } else {
+            &self.position
+        }
+    }
+}
