@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use super::task::Sketch;
+use super::sketch::Sketch;
 use super::tuning::{FAR, HOPE, ROUNDS, ROUNDS_LEFT, Round};
 use crate::criticism::fit::{Fit, same_place};
 use crate::criticism::session::Session;

@@ -4,7 +4,10 @@
 //! is needed; then every other effect that may is tried in the place of each.
 
 mod heat;
+mod hidden_body;
 mod judge;
+mod rival;
+mod sketch;
 mod swap;
 mod task;
 mod trial;
@@ -17,12 +20,14 @@ use super::contradicted::released;
 use super::screen::{Screened, Start};
 use super::session::Session;
 use crate::diagnosis::InputVerdict;
-use crate::effect::{Dimension, Effect, EffectId};
+use crate::effect::{Effect, EffectId};
 use heat::Heat;
+use hidden_body::is_hidden_body;
 pub(super) use judge::{Difference, difference};
-use swap::Rival;
+use rival::Rival;
+use sketch::Sketch;
 pub(super) use swap::may_replace;
-use task::{Sketch, Task};
+use task::Task;
 pub(super) use trial::Trial;
 use tuning::{
     ALIKE, FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS,
@@ -86,17 +91,6 @@ impl Level {
             hidden: !self.hidden,
         }
     }
-}
-
-/// The place of the inertia of a second body, whose motion is not measured, among the values of an effect that brings one.
-fn hidden_inertia(effect: &dyn Effect) -> Option<usize> {
-    let mut parameters = effect.parameters().iter();
-    parameters.position(|p| p.dimension == Dimension::Inertia)
-}
-
-/// Whether an effect brings a second body.
-fn is_hidden_body(effect: &dyn Effect) -> bool {
-    hidden_inertia(effect).is_some()
 }
 
 /// A search that goes on piece by piece.

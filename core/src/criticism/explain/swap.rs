@@ -1,21 +1,15 @@
 //! Other effects in the place of those of the best model.
 
 use super::heat::as_set;
-use super::task::{Sketch, Task};
+use super::hidden_body::is_hidden_body;
+use super::rival::Rival;
+use super::sketch::Sketch;
+use super::task::Task;
 use super::tuning::{ALIKE, MOST_SWAPS};
-use super::{Explain, Stage, Trial, difference, is_hidden_body};
+use super::{Explain, Stage, Trial, difference};
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
 use crate::effect::{Effect, EffectId, ParameterSpec};
-
-/// An effect that could stand in the place of one in the best model.
-#[derive(Clone)]
-pub(in crate::criticism) struct Rival {
-    /// Place of the one that it replaces among the effects of the best model.
-    pub place: usize,
-    pub effect: &'static dyn Effect,
-    pub trial: usize,
-}
 
 /// Whether the values of two effects have the same dimensions.
 fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
