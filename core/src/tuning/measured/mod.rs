@@ -18,6 +18,8 @@
 //! | `fourier` | the point of the Nyquist curve |
 //! | `ultimate` | ultimate gain and period, where they follow |
 //! | `gains` | rules, forms, margins achieved |
+//! | `evidence` | causes, and what they are looked for in |
+//! | `minimum_time` | whether a least time holds the relay |
 //! | `trouble` | why a test stalls or misleads |
 //! | `readings` | from a few numbers, without a record |
 //! | `log` | logs of firmwares |
@@ -29,11 +31,13 @@
 
 mod compared;
 mod cycle;
+mod evidence;
 mod fit;
 mod fourier;
 mod gains;
 mod least_squares;
 pub mod log;
+mod minimum_time;
 mod number;
 mod opened;
 mod readings;
@@ -47,6 +51,7 @@ mod wander;
 mod wishes;
 
 pub use cycle::Cycle;
+pub use evidence::{Trouble, TroubleKind};
 pub use fourier::Point;
 pub use gains::{Form, TunedGains, alone, steps};
 pub use opened::{OpenError, Opened, open};
@@ -54,6 +59,5 @@ pub use readings::{AmplitudeConvention, Readings, tune_readings};
 pub use record::{Record, RecordError};
 pub use report::{Conventional, MeasuredTuning, Settings, Summary, tune_record};
 pub use structure::{FittedModel, Structure, Value};
-pub use trouble::{Trouble, TroubleKind};
 pub use ultimate::MeasuredUltimate;
 pub use wishes::Wishes;

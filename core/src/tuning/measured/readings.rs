@@ -9,12 +9,12 @@ use std::f64::consts::PI;
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
+use super::evidence::{Trouble, TroubleKind};
 use super::fourier::Point;
 use super::gains::{self, Basis};
 use super::number::{full_scale, number};
 use super::record::RecordError;
 use super::report::{Conventional, MeasuredTuning, Settings, Summary};
-use super::trouble::{Trouble, TroubleKind};
 use super::ultimate::MeasuredUltimate;
 
 /// Dead times over time constants of the lags whose cycles are compared.

@@ -6,12 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::compared::Compared;
 use super::cycle::{self, Cycle};
+use super::evidence::{Evidence, Trouble};
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
 use super::number::{full_scale, number};
 use super::record::{Record, RecordError};
 use super::structure::{FittedModel, Value};
-use super::trouble::{self, Evidence, Trouble};
+use super::trouble;
 use super::ultimate::{self, MeasuredUltimate};
 use crate::order::range;
 use crate::uncertain::{with_error, with_uncertainty};

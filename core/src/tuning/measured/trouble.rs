@@ -1,9 +1,8 @@
 //! Why a relay test stalls, or misleads: each cause recognised from the record, with the number that shows it.
 
-use serde::{Deserialize, Serialize};
-
 use super::cycle::{Cycle, rounds, threshold};
-use super::fit::Fit;
+use super::evidence::{Evidence, Trouble, TroubleKind, of_unit, sensor_step, trouble};
+use super::minimum_time::minimum_time;
 use super::number::number;
 use super::record::Record;
 use crate::order::{median, range};
@@ -35,13 +34,6 @@ const MEDIAN_OF_SECOND: f64 = 1.6522;
 /// The input is stuck where it does not change over this last share of the record.
 const STUCK: f64 = 0.5;
 
-/// So many half periods or more are held by a minimum time, where they agree within the first share of a sample, those of the
-/// other side differ by more than the second, and the outputs at their ends by more than the third of what chance makes.
-const FEWEST_HELD: usize = 4;
-const SAME_LENGTH: f64 = 1.01;
-const VARIES: f64 = 2.0;
-const SCATTERS: f64 = 3.0;
-
 /// Share of the input's variance that a straight line in the output explains where a controller is at work.
 const FOLLOWS: f64 = 0.95;
 
@@ -50,58 +42,6 @@ const LEVELS: usize = 12;
 
 /// Whole periods from which the window is long enough.
 const WHOLE_PERIODS: usize = 2;
-
-/// What went wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TroubleKind {
-    /// The output levels off before the relay would switch.
-    TargetUnreachable,
-    /// The input is up almost always.
-    HeaterTooWeak,
-    /// Noise switches the relay.
-    NoiseLargerThanHysteresis,
-    /// Up and down take different times.
-    Asymmetric,
-    /// The sensor's steps are coarse.
-    Quantised,
-    /// The cycle wanders.
-    Drift,
-    /// A least time on or off holds the relay.
-    MinimumTime,
-    /// Too few periods.
-    WindowTooShort,
-    /// The input is not a relay's.
-    NoRelay,
-    /// A controller makes the input of the output.
-    Controller,
-}
-
-/// One cause.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trouble {
-    /// Which.
-    pub kind: TroubleKind,
-    /// Whether the test told nothing for this reason; else it is a caution.
-    pub fatal: bool,
-    /// The number that shows it.
-    pub number: f64,
-    /// A sentence with it.
-    pub text: String,
-}
-
-/// What the causes are looked for in.
-pub(super) struct Evidence<'a> {
-    pub record: &'a Record,
-    pub cycle: Option<&'a Cycle>,
-    /// What would be a cycle if noise did not make it.
-    pub chatter: Option<&'a Cycle>,
-    pub fit: Option<&'a Fit>,
-    /// Noise of the output.
-    pub noise: f64,
-    /// Set point, if it is known.
-    pub target: Option<f64>,
-}
 
 /// All that is wrong, the fatal first.
 pub(super) fn find(evidence: &Evidence<'_>) -> Vec<Trouble> {
@@ -112,15 +52,6 @@ pub(super) fn find(evidence: &Evidence<'_>) -> Vec<Trouble> {
     let mut causes: Vec<Trouble> = causes.into_iter().flatten().collect();
     causes.sort_by_key(|c| !c.fatal);
     causes
-}
-
-fn trouble(kind: TroubleKind, fatal: bool, number: f64, text: String) -> Trouble {
-    Trouble {
-        kind,
-        fatal,
-        number,
-        text,
-    }
 }
 
 /// Four significant digits.
@@ -226,23 +157,6 @@ fn chatter(e: &Evidence<'_>, cycle: &Cycle) -> Trouble {
     )
 }
 
-/// A value with its unit.
-fn of_unit(value: f64, unit: &str) -> String {
-    match unit {
-        "1" => n(value),
-        unit => format!("{} {unit}", n(value)),
-    }
-}
-
-/// Least distance of two different values.
-fn sensor_step(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
-    let mut steps: Vec<f64> = sorted.windows(2).map(|v| v[1] - v[0]).collect();
-    median(&mut steps)
-}
-
 fn quantised(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     let step = sensor_step(&e.record.output);
     let steps = cycle.amplitude / step;
@@ -308,86 +222,6 @@ fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             ),
         )
     })
-}
-
-/// Half periods of one side: their lengths, the outputs at their ends, and how far these move in a sample there.
-struct Halves {
-    lengths: Vec<f64>,
-    ends: Vec<f64>,
-    slopes: Vec<f64>,
-}
-
-impl Halves {
-    fn of(record: &Record, cycle: &Cycle, up: bool) -> Self {
-        let mut halves = Self {
-            lengths: Vec::new(),
-            ends: Vec::new(),
-            slopes: Vec::new(),
-        };
-        // The first one belongs to the start.
-        let all = cycle.switches.windows(2).filter(|s| s[0].1 == up);
-        for s in all.skip(1) {
-            halves.lengths.push(s[1].0 - s[0].0);
-            let i = record.time.partition_point(|t| *t < s[1].0);
-            if let Some([before, at]) = record
-                .output
-                .get(i.saturating_sub(1)..=i)
-                .and_then(|y| y.first_chunk())
-            {
-                halves.ends.push(*at);
-                halves.slopes.push((at - before).abs());
-            }
-        }
-        halves
-    }
-}
-
-/// Lengths that no threshold set: all the same, while the outputs at their ends and the other half periods are not.
-fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
-    let sampling = e.record.sampling();
-    let both = [true, false].map(|up| Halves::of(e.record, cycle, up));
-    let spread = |values: &[f64]| {
-        let (least, most) = range(values);
-        most - least
-    };
-    [true, false].into_iter().find_map(|up| {
-        let (own, other) = if up {
-            (&both[0], &both[1])
-        } else {
-            (&both[1], &both[0])
-        };
-        let chance = median(&mut own.slopes.clone())
-            .max(e.noise)
-            .max(sensor_step(&e.record.output));
-        let held = own.lengths.len() >= FEWEST_HELD
-            && spread(&own.lengths) <= SAME_LENGTH * sampling
-            && spread(&other.lengths) > VARIES * sampling
-            && spread(&own.ends) > SCATTERS * chance;
-        held.then(|| {
-            let (least, (low, high)) = (range(&own.lengths).0, range(&own.ends));
-            trouble(
-                TroubleKind::MinimumTime,
-                false,
-                least,
-                held_text(up, least, low, high),
-            )
-        })
-    })
-}
-
-fn held_text(up: bool, least: f64, low: f64, high: f64) -> String {
-    let (least, low, high) = (n(least), n(low), n(high));
-    if up {
-        format!(
-            "Every time on lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time on holds \
-             the relay, so the cycle is not that of its thresholds."
-        )
-    } else {
-        format!(
-            "Every time off lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time off holds \
-             the relay, so the cycle is not that of its thresholds."
-        )
-    }
 }
 
 fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {

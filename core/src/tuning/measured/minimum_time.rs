@@ -1,0 +1,94 @@
+//! Whether a least time on or off holds the relay.
+
+use super::cycle::Cycle;
+use super::evidence::{Evidence, Trouble, TroubleKind, sensor_step, trouble};
+use super::number::number as n;
+use super::record::Record;
+use crate::order::{median, range};
+
+/// So many half periods or more are held by a minimum time, where they agree within the first share of a sample, those of the
+/// other side differ by more than the second, and the outputs at their ends by more than the third of what chance makes.
+const FEWEST_HELD: usize = 4;
+const SAME_LENGTH: f64 = 1.01;
+const VARIES: f64 = 2.0;
+const SCATTERS: f64 = 3.0;
+
+/// Half periods of one side: their lengths, the outputs at their ends, and how far these move in a sample there.
+struct Halves {
+    lengths: Vec<f64>,
+    ends: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+impl Halves {
+    fn of(record: &Record, cycle: &Cycle, up: bool) -> Self {
+        let mut halves = Self {
+            lengths: Vec::new(),
+            ends: Vec::new(),
+            slopes: Vec::new(),
+        };
+        // The first one belongs to the start.
+        let all = cycle.switches.windows(2).filter(|s| s[0].1 == up);
+        for s in all.skip(1) {
+            halves.lengths.push(s[1].0 - s[0].0);
+            let i = record.time.partition_point(|t| *t < s[1].0);
+            if let Some([before, at]) = record
+                .output
+                .get(i.saturating_sub(1)..=i)
+                .and_then(|y| y.first_chunk())
+            {
+                halves.ends.push(*at);
+                halves.slopes.push((at - before).abs());
+            }
+        }
+        halves
+    }
+}
+
+/// Lengths that no threshold set: all the same, while the outputs at their ends and the other half periods are not.
+pub(super) fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
+    let sampling = e.record.sampling();
+    let both = [true, false].map(|up| Halves::of(e.record, cycle, up));
+    let spread = |values: &[f64]| {
+        let (least, most) = range(values);
+        most - least
+    };
+    [true, false].into_iter().find_map(|up| {
+        let (own, other) = if up {
+            (&both[0], &both[1])
+        } else {
+            (&both[1], &both[0])
+        };
+        let chance = median(&mut own.slopes.clone())
+            .max(e.noise)
+            .max(sensor_step(&e.record.output));
+        let held = own.lengths.len() >= FEWEST_HELD
+            && spread(&own.lengths) <= SAME_LENGTH * sampling
+            && spread(&other.lengths) > VARIES * sampling
+            && spread(&own.ends) > SCATTERS * chance;
+        held.then(|| {
+            let (least, (low, high)) = (range(&own.lengths).0, range(&own.ends));
+            trouble(
+                TroubleKind::MinimumTime,
+                false,
+                least,
+                held_text(up, least, low, high),
+            )
+        })
+    })
+}
+
+fn held_text(up: bool, least: f64, low: f64, high: f64) -> String {
+    let (least, low, high) = (n(least), n(low), n(high));
+    if up {
+        format!(
+            "Every time on lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time on holds \
+             the relay, so the cycle is not that of its thresholds."
+        )
+    } else {
+        format!(
+            "Every time off lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time off holds \
+             the relay, so the cycle is not that of its thresholds."
+        )
+    }
+}
