@@ -64,12 +64,13 @@ impl Compare {
                 }
             }
         });
+        self.unknown_ui(ui, targets, commands);
         plot_ui(part, TALL, ui);
         ui.small(tr("Steps over one axis, with bars of two standard errors."));
     }
 
     /// A name that no effect of the user's has yet.
-    fn free_name(&self, name: &str) -> String {
+    pub(super) fn free_name(&self, name: &str) -> String {
         let taken = |name: &str| {
             self.own
                 .iter()
