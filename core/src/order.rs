@@ -1,4 +1,9 @@
-//! The least, the largest and the middle of some values, and those that are not marked.
+//! The least, the largest and the middle of some values, those that are not marked, and on which side of 0 one lies.
+
+/// 1 above 0, -1 below, and 0 for 0 itself.
+pub fn sign(value: f64) -> f64 {
+    f64::from(i8::from(value > 0.0) - i8::from(value < 0.0))
+}
 
 /// Least and largest value; without values infinity and minus infinity.
 pub fn range(values: &[f64]) -> (f64, f64) {

@@ -37,9 +37,9 @@ fn the_page_opens_on_a_drive_whose_gap_the_motor_finds() {
 }
 
 #[test]
-fn figs_7_10_11_and_12_check_their_claims_on_screen() {
+fn figs_7_8_10_11_and_12_check_their_claims_on_screen() {
     let mut harness = page(WIDE);
-    for number in [7, 10, 11, 12] {
+    for number in [7, 8, 10, 11, 12] {
         click(&mut harness, &format!("Fig. {number}"));
         let state = state(&harness);
         let checks = state["checks"].as_array().expect("checks");
@@ -49,6 +49,23 @@ fn figs_7_10_11_and_12_check_their_claims_on_screen() {
         );
         picture(&mut harness, &format!("backlash_fig_{number}"));
     }
+}
+
+/// The blocks of Fig. 8 stand still with the load met, and go back to the masses.
+#[test]
+fn fig_8_lights_its_blocks_up_where_the_load_is_met() {
+    let mut harness = app("start", WIDE);
+    // Next to the end of the gap, and where it is first met.
+    show(
+        &mut harness,
+        "v1;backlash;backlash.structure=true;backlash.run.start.x1=-0.0094;backlash.paused=0.0425",
+    );
+    let said = texts(&harness);
+    assert!(said.iter().any(|t| t == "Momentum"), "{said:?}");
+    picture(&mut harness, "backlash_blocks");
+    click(&mut harness, "Blocks");
+    let said = texts(&harness);
+    assert!(said.iter().any(|t| t == "Phase portrait"), "{said:?}");
 }
 
 #[test]

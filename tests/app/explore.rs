@@ -163,6 +163,23 @@ fn a_servo_that_hunts_in_its_play_opens_from_a_scenario() {
 }
 
 #[test]
+fn a_drive_with_a_gap_opens_on_its_own_page() {
+    for name in ["drive-drifting", "drive-late-compliant"] {
+        let mut harness = app("explore", WIDE);
+        let before = explored(&harness)["loop"].clone();
+        let text = open_scenario(&mut harness, name);
+        assert_eq!(state(&harness)["page"], "backlash", "{name}");
+        let Ok(AnyScenario::Drive(drive)) = AnyScenario::from_toml(&text) else {
+            panic!("{name} is a drive");
+        };
+        let shown = &state(&harness)["backlash"];
+        assert_eq!(shown["gap"], 2.0 * drive.drive.half_gap, "{name}");
+        assert_eq!(shown["motor_coulomb"], drive.drive.motor.coulomb, "{name}");
+        assert_eq!(explored(&harness)["loop"], before, "{name}");
+    }
+}
+
+#[test]
 fn what_is_no_scenario_is_said_and_loses_nothing() {
     let mut harness = app("explore", WIDE);
     let ctx = harness.ctx.clone();
@@ -206,4 +223,30 @@ fn what_a_controller_cannot_be_is_refused_in_a_link() {
     ] {
         assert!(app.open_link(&ctx, link).is_err(), "{link}");
     }
+}
+
+#[test]
+fn equation_3_in_z_and_play_stand_beside_the_exact_cycle() {
+    let mut harness = app("start", WIDE);
+    show(&mut harness, "v1;explore;explore.play=0.05");
+    for name in ["Equation (3) in z", "Play before the relay"] {
+        harness.get_by_label(name).scroll_to_me();
+        finish(&mut harness);
+        click(&mut harness, name);
+    }
+    let said = texts(&harness);
+    let z = said
+        .iter()
+        .find(|t| t.starts_with("By (3) h = "))
+        .expect("a sentence");
+    let [value, level] = ["-H_h(-1) = ", "ε/k = "].map(|key| {
+        let rest = z.split(key).nth(1).expect("a value");
+        rest[..8].parse::<f64>().expect("a number")
+    });
+    assert!((value - level).abs() < 1e-6, "{z}");
+    harness
+        .get_by_label_contains("With play the relay acts")
+        .scroll_to_me();
+    finish(&mut harness);
+    picture(&mut harness, "explore_theory");
 }

@@ -147,3 +147,24 @@ fn an_answer_of_before_does_not_look_like_one_of_now() {
     assert!(!computing(&harness));
     assert_ne!(answer(&harness), said);
 }
+
+#[test]
+fn the_plain_law_8_is_stepped_by_hand_beside_steffensens() {
+    let mut harness = app("start", WIDE);
+    show(&mut harness, "v1;tune;tune.step=adaptation");
+    let next = |harness: &App| texts(harness).iter().any(|t| t.starts_with("Next: K = "));
+    assert!(next(&harness));
+    let mut runs = 2;
+    while next(&harness) {
+        runs += 1;
+        assert!(runs < 14, "it has an end");
+        click(&mut harness, "Next run");
+    }
+    let said = texts(&harness);
+    let end = said
+        .iter()
+        .find(|t| t.starts_with("It has the wanted amplitude after"));
+    let end = end.expect("a last sentence");
+    assert!(end.contains(&format!("after {runs} runs")), "{end}");
+    picture(&mut harness, "tune_secant");
+}

@@ -302,6 +302,66 @@ fn a_drive_is_simulated_into_what_a_rig_would_have_recorded() {
     assert!((gap / 0.019 - 1.0).abs() < 0.02, "{gap}");
 }
 
+/// What `gap` says of what `simulate` writes, beside what the drive of the file has: its gap in rad, and its impacts.
+fn gap_after_simulate(name: &str, text: &str) -> Option<(f64, usize, Value)> {
+    use hysteron_core::scenario::AnyScenario;
+    let AnyScenario::Drive(input) = AnyScenario::from_toml(text).unwrap() else {
+        return None;
+    };
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [file, csv] = ["toml", "csv"].map(|e| folder.join(format!("gap-{name}.{e}")));
+    std::fs::write(&file, text).unwrap();
+    hysteron("simulate", &file, &["--csv", csv.to_str().unwrap()]);
+    let found = hysteron("gap", &csv, &["--format", "json"]);
+    let impacts = hysteron_core::drive::run(&input).unwrap().impacts();
+    let found = serde_json::from_str(&self::text(&found)).unwrap();
+    Some((2.0 * input.drive.half_gap, impacts, found))
+}
+
+#[track_caller]
+fn gap_is_right(name: &str, (gap, impacts, found): (f64, usize, Value)) {
+    if impacts == 0 {
+        assert_eq!(found["quality"], "no_engagement", "{name}: {found}");
+        assert!(found["gap"].is_null(), "{name}: {found}");
+    } else {
+        close(&found["gap"], gap, 0.05);
+    }
+}
+
+#[test]
+fn every_drive_that_is_simulated_has_its_gap_or_none_was_met() {
+    let mut drives = 0;
+    for entry in std::fs::read_dir(scenario("")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let text = std::fs::read_to_string(&path).unwrap();
+        if let Some(found) = gap_after_simulate(&name, &text) {
+            gap_is_right(&name, found);
+            drives += 1;
+        }
+    }
+    assert!(drives >= 2, "{drives}");
+}
+
+/// Drives of an independent check: `gs` crosses its gap, the others never meet their load.
+#[test]
+fn drives_of_an_independent_check_are_told_as_it_says() {
+    for (name, met) in [
+        ("gs", true),
+        ("gs_5e-5", false),
+        ("gs_1.3e-4", false),
+        ("gs_2e-4", false),
+    ] {
+        let Some(bytes) = crate::shared::shared(&format!("theory/{name}.toml")) else {
+            return;
+        };
+        let text = String::from_utf8(bytes).unwrap();
+        let found = gap_after_simulate(name, &text).expect("a drive");
+        assert_eq!(found.1 > 0, met, "{name}");
+        gap_is_right(name, found);
+    }
+}
+
 #[test]
 fn the_cycle_of_a_drive_in_its_gap_by_hand() {
     // m = 8.8e-4, d small, eps = 0.5, k+ = 0.65 and k- = 0.35 less or more friction 0.03:

@@ -1,5 +1,11 @@
 //! Forces that nobody told the search: it finds their formula, or one that is as good, and says none where there is none.
 
+#![allow(
+    clippy::disallowed_methods,
+    clippy::disallowed_macros,
+    reason = "the core neither prints nor starts threads nor reads the clock; its bench does"
+)]
+
 use crate::support::hidden_force::{Hidden, Truth};
 use hysteron_core::criticism::DiscoveryJob;
 use hysteron_core::diagnosis::{Discovery, DiscoveryEnd, FoundFormula};

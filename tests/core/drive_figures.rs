@@ -1,12 +1,13 @@
-//! Figs. 7, 10, 11 and 12 of the paper; the design of a drifting test; play in a relay loop.
+//! Figs. 7, 8, 10, 11 and 12 of the paper; the design of a drifting test; play in a relay loop.
 
 use std::f64::consts::PI;
 
 use hysteron_core::drive::{
     Adhesion, Body, Command, Contact, Drive, DriveFigure, DriveInput, DriveRun, EventKind,
     RoughDrive, Summary, TRAVERSES, Turn, checks, cycles_with_play, design_drifting_test, figures,
-    play_describing_function, relay_seen_through_play, run, summarize,
+    loop_theory, play_describing_function, relay_seen_through_play, run, summarize,
 };
+use hysteron_core::explore::{ExploreInput, compute};
 use hysteron_core::limit_cycle::exact_symmetric;
 use hysteron_core::plant::TransferFunction;
 use hysteron_core::relay::Relay;
@@ -33,6 +34,49 @@ fn fig_7_the_backlash_map_is_a_loop_of_two_branches_a_gap_apart() {
         assert!((x1 - x2).abs() <= 0.0095 * (1.0 + 1e-12));
     }
     assert!(summary.traverses.len() >= 8, "{}", summary.traverses.len());
+}
+
+#[test]
+fn fig_8_an_impact_hands_momentum_over_and_leaves_the_sum() {
+    let (figure, done, _) = figure(8);
+    let drive = figure.input.drive;
+    let mut impacts = 0;
+    for event in &done.events {
+        let EventKind::Impact(side, speed) = event.kind else {
+            continue;
+        };
+        impacts += 1;
+        let mode = done.mode_at(event.time);
+        assert_eq!(mode.met, Some((side, 0.0)));
+        assert!(mode.pressed.is_none() && !mode.load_rests);
+        // Without loss the kinetic energy stays as well, and the relative speed turns round.
+        let [v1, v2] = event.speeds_before(&drive);
+        let energy = drive.kinetic_energy(v1, v2) / drive.kinetic_energy(event.v1, event.v2);
+        assert!((energy - 1.0).abs() < 1e-12, "{energy}");
+        assert!((side.sign() * (event.v2 - event.v1) / speed - 1.0).abs() < 1e-12);
+        // The load has moved freely since the sample before, from where it was at rest or slowed by its friction.
+        let sample = done.time.partition_point(|t| *t < event.time) - 1;
+        let quiet = !done.events.iter().any(|e| {
+            e.time > done.time[sample] && e.time < event.time && e.kind != EventKind::SwitchUp
+        });
+        if quiet && done.v2[sample] == 0.0 {
+            assert!(v2.abs() < 1e-12, "{v2}");
+        }
+    }
+    assert!(impacts > 3, "{impacts}");
+    // Both sides of an impact are among the instants, and the sum is continuous across it.
+    let all = done.instants(&drive, 0.0, 0.6);
+    let jumps: Vec<_> = all
+        .windows(2)
+        .filter(|w| w[0].time == w[1].time && w[0].load != w[1].load)
+        .collect();
+    assert_eq!(jumps.len(), impacts);
+    for pair in jumps {
+        let (a, b) = (pair[0].momentum(), pair[1].momentum());
+        assert!((a - b).abs() < 1e-12 * pair[1].load.abs(), "{a} {b}");
+    }
+    // A load that its friction holds is said to rest.
+    assert!(done.mode_at(0.0).load_rests);
 }
 
 #[test]
@@ -338,4 +382,44 @@ fn a_loop_with_play_between_two_plants_oscillates_as_predicted() {
     let known = hysteron_core::limit_cycle::describing_function(&third_order_lag(), &relay);
     assert!((none[0].omega / known[0].omega - 1.0).abs() < 1e-9);
     assert!((none[0].before / known[0].cycle.amplitude - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_theory_of_a_loop_with_play_meets_its_exact_cycle() {
+    let input = ExploreInput {
+        plant: third_order_lag(),
+        relay: Relay {
+            hysteresis: 0.05,
+            ..Relay::default()
+        },
+        noise: None,
+    };
+    let theory_of = |input: &ExploreInput, half_gap: f64| {
+        loop_theory(input, &compute(input).unwrap(), half_gap)
+    };
+    let theory = theory_of(&input, 0.05);
+    // Equation (3) in z: -H_h(-1) at the exact half period is eps/k.
+    let [h, value] = theory.at_cycle.unwrap();
+    assert!((value - 0.05).abs() < 1e-9, "{value}");
+    let beside = |i: usize| (theory.z_form[i][0] - h).signum() * (theory.z_form[i][1] - 0.05);
+    let ends = [beside(0), beside(theory.z_form.len() - 1)];
+    assert!(
+        ends[0] * ends[1] > 0.0,
+        "it crosses the threshold once: {ends:?}"
+    );
+    // With play the exact cycle is that of the hysteresis 0.1, the table's 4.78767194204541 s.
+    let exact = theory.with_play.unwrap();
+    assert!((exact.period / 4.787_671_942_045_41 - 1.0).abs() < 1e-9);
+    let (predicted, _) = theory.predicted[0];
+    assert!((predicted.period / exact.period - 1.0).abs() < 0.03);
+    // Nearly nothing passes a play as wide as the swing, and nearly all one that is small against it.
+    let (first, last) = (theory.play[0], theory.play[theory.play.len() - 1]);
+    assert!(first[0] < 0.05 && last[0] > 0.95, "{first:?} {last:?}");
+    // Without play there is none, and an asymmetric relay has no symmetric cycle.
+    let none = theory_of(&input, 0.0);
+    assert!(none.play.is_empty() && none.predicted.is_empty());
+    let mut asymmetric = input.clone();
+    asymmetric.relay.asymmetry = 0.2;
+    let none = theory_of(&asymmetric, 0.05);
+    assert!(none.z_form.is_empty() && none.at_cycle.is_none());
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use crate::support::drive_cases::play;
 use hysteron_core::backlash::{
-    GapError, GapEstimate, Quality, Segment, Side, backlash_map, estimate_gap, pelt,
+    GapError, GapEstimate, MapSilence, Quality, Segment, Side, backlash_map, estimate_gap, pelt,
 };
 use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity, import_csv};
 use hysteron_core::rig::Random;
@@ -567,6 +567,72 @@ fn fig_7_the_map_shows_gap_and_asymmetry() {
             .to_string()
             .contains("x2")
     );
+}
+
+#[test]
+fn the_map_has_the_gap_of_rigs_and_none_of_a_load_that_stands_still() {
+    for (gap, seed) in [(0.004, 710), (0.007, 711), (0.012, 712), (0.025, 713)] {
+        let record = with_gap(gap, seed).measure();
+        let map = backlash_map(&record).unwrap();
+        let found = map
+            .gap
+            .unwrap_or_else(|| panic!("{seed}: {:?}", map.silence));
+        assert!((found / gap - 1.0).abs() < 0.05, "{seed}: {found}");
+        // The same load at rest: noise, counts of its encoder, or nothing at all.
+        for (name, noise, count) in [
+            ("noise", 2e-5, 0.0),
+            ("counts", 4e-6, 1e-5),
+            ("none", 0.0, 0.0),
+        ] {
+            let mut random = Random::new(seed);
+            let mut still = record.clone();
+            for value in &mut still.reference[0].values {
+                let read = noise * random.normal();
+                *value = if count > 0.0 {
+                    (read / count).round() * count
+                } else {
+                    read
+                };
+            }
+            let map = backlash_map(&still).unwrap();
+            assert_eq!(
+                (map.gap, map.silence),
+                (None, Some(MapSilence::NotMoved)),
+                "{name}"
+            );
+        }
+    }
+}
+
+/// The load is met in each of them, which so few samples do not show: not that there is none.
+#[test]
+fn few_samples_in_a_cycle_are_said_to_be_few() {
+    for seed in [820, 825] {
+        let record = with_gap(0.01, seed).measure();
+        for every in [2, 3, 4, 6] {
+            let estimate = estimate(&every_so_many(&record, every));
+            nothing(&estimate);
+            assert_eq!(estimate.quality, Quality::TooFewSamples, "{every}");
+            assert!(
+                estimate.text.contains("too few samples"),
+                "{}",
+                estimate.text
+            );
+        }
+    }
+}
+
+/// A record of which one sample in so many was written.
+fn every_so_many(record: &Measurement, every: usize) -> Measurement {
+    let thin = |values: &[f64]| values.iter().step_by(every).copied().collect::<Vec<f64>>();
+    let mut thinned = record.clone();
+    thinned.time = thin(&record.time);
+    thinned.input.values = thin(&record.input.values);
+    for (to, from) in thinned.outputs.iter_mut().zip(&record.outputs) {
+        to.values = thin(&from.values);
+    }
+    thinned.reference.clear();
+    thinned
 }
 
 /// Optimal partitioning by trying all, Jackson et al. 2005.

@@ -20,15 +20,16 @@
     reason = "definitions of rigs are plain values"
 )]
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use hysteron_core::backlash::{GapEstimate, estimate_gap};
 use hysteron_core::drive::{
     self, Adhesion, Body, Command, Contact, Drive, DriveInput, VelocityRelay,
 };
-use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
+use hysteron_core::measurement::Measurement;
 use hysteron_core::relay::Relay;
 use hysteron_core::rig::{DriveRig, Friction, Load, Random, carried_over};
+
+use crate::support::record::of_motor;
+use crate::support::threads;
 
 /// Rigs of the full bench with a gap that is met, and without a contact.
 const RIGS: usize = 200;
@@ -207,24 +208,8 @@ fn simulated(seed: u64, gap: f64, met: bool) -> Rig {
 }
 
 fn record(run: &drive::DriveRun) -> Measurement {
-    let channel = |quantity, name: &str, unit: &str, values: &[f64]| Channel {
-        quantity,
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-        values: values.to_vec(),
-    };
-    Measurement {
-        name: "simulated".to_owned(),
-        kind: Kind::Drive,
-        time: run.time.clone(),
-        input: channel(Quantity::Input, "u", "N m", &run.input),
-        outputs: vec![
-            channel(Quantity::Position, "x1", "rad", &run.x1),
-            channel(Quantity::Velocity, "v1", "rad/s", &run.v1),
-        ],
-        reference: vec![],
-        warnings: vec![],
-    }
+    let signals = [run.input.clone(), run.x1.clone(), run.v1.clone()];
+    of_motor("simulated".to_owned(), run.time.clone(), signals)
 }
 
 fn rig(seed: u64, index: usize) -> Rig {
@@ -251,28 +236,6 @@ fn look(rig: Rig) -> Found {
         gap: rig.gap,
         met: rig.met,
     }
-}
-
-/// All of them, on as many threads as there are processors.
-fn all(seed: u64, indices: &[usize]) -> Vec<Found> {
-    let next = AtomicUsize::new(0);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let work = || {
-        let mut found = Vec::new();
-        while let Some(index) = indices.get(next.fetch_add(1, Ordering::Relaxed)) {
-            found.push((*index, look(rig(seed, *index))));
-        }
-        found
-    };
-    let mut found: Vec<(usize, Found)> = std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        handles
-            .into_iter()
-            .flat_map(|h| h.join().unwrap())
-            .collect()
-    });
-    found.sort_by_key(|f| f.0);
-    found.into_iter().map(|f| f.1).collect()
 }
 
 impl Found {
@@ -386,7 +349,7 @@ fn intervals_hold_the_gap_of_rigs_that_nobody_tuned() {
         .unwrap_or(1);
     let (with, without) = if full { (RIGS, EMPTY) } else { QUICK };
     let indices: Vec<usize> = (0..with).chain(RIGS..RIGS + without).collect();
-    let found = all(seed, &indices);
+    let found = threads::each(&indices, |index| look(rig(seed, *index)));
     for f in &found {
         println!("{}", f.line());
     }

@@ -163,6 +163,9 @@ fn sticking_play_cogging_and_limits_as_by_small_steps() {
     let mut loose = servo(1.0, 0.6, 1.0);
     loose.half_gap = 0.1;
     loose.friction.coulomb = 0.005;
+    let mut without_integral = servo(1.0, 0.0, 0.1);
+    without_integral.half_gap = 0.1;
+    without_integral.friction.coulomb = 1e-5;
     let mut cogged = sticky;
     cogged.cogging = Some(Cogging {
         amplitude: 0.1,
@@ -174,6 +177,7 @@ fn sticking_play_cogging_and_limits_as_by_small_steps() {
     for (name, servo) in [
         ("sticky", sticky),
         ("loose", loose),
+        ("without integral", without_integral),
         ("cogged", cogged),
         ("limited", limited),
     ] {

@@ -20,6 +20,7 @@ mod figures;
 mod fingerprints;
 mod gap;
 mod gap_coverage;
+mod gap_unmet;
 mod hidden_effects;
 mod hunting;
 mod import;

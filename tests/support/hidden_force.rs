@@ -1,8 +1,10 @@
 //! Forces that no search knows beforehand, drawn from a grammar of their own, on a drive that uses nothing of the model under test:
 //! Runge-Kutta steps, a sampled controller, sensors with white noise.
 
-use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
+use hysteron_core::measurement::Measurement;
 use hysteron_core::rig::Random;
+
+use super::record::of_motor;
 
 /// Where the body is.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +56,7 @@ impl Hidden {
     /// One or two terms; the numbers of one of them enter nonlinearly at most.
     pub fn drawn(seed: u64) -> Self {
         let mut random = Random::new(seed.wrapping_mul(7919));
-        let drive = if seed % 2 == 0 {
+        let drive = if seed.is_multiple_of(2) {
             Drive::Moves
         } else {
             Drive::Walk
@@ -133,7 +135,7 @@ impl Hidden {
                     }
                     // A ramp to the goal, as a motion planner gives it.
                     let speed = 6.0 * STEP;
-                    place += (goal - place as f64).clamp(-speed, speed);
+                    place += (goal - place).clamp(-speed, speed);
                     (3.0 * (place - s[0]) - 0.25 * s[1]).clamp(-1.5, 1.5)
                 }
                 Drive::Walk => {
@@ -168,24 +170,7 @@ impl Hidden {
                 *value += NOISE * size * random.normal();
             }
         }
-        let channel = |quantity, name: &str, unit: &str, values| Channel {
-            quantity,
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-            values,
-        };
-        let record = Measurement {
-            name: format!("hidden force {}", self.seed),
-            kind: Kind::Drive,
-            time,
-            input: channel(Quantity::Input, "u", "N m", input),
-            outputs: vec![
-                channel(Quantity::Position, "x1", "rad", x),
-                channel(Quantity::Velocity, "v1", "rad/s", v),
-            ],
-            reference: vec![],
-            warnings: vec![],
-        };
+        let record = of_motor(format!("hidden force {}", self.seed), time, [input, x, v]);
         (record, truth)
     }
 }

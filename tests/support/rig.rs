@@ -2,7 +2,9 @@
 //! integrated by Runge-Kutta, a relay in a sampled controller, an encoder that quantises, a noisy
 //! velocity. A model that explains its files does not do so by construction.
 
-use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity};
+use hysteron_core::measurement::Measurement;
+
+use super::record::of_motor;
 
 /// What is hidden in a drive.
 #[derive(Clone, Copy, Debug)]
@@ -99,24 +101,8 @@ impl Rig {
                 s = self.runge_kutta(s, acting, h);
             }
         }
-        let channel = |quantity, name: &str, unit: &str, values| Channel {
-            quantity,
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-            values,
-        };
-        Measurement {
-            name: format!("rig {}", self.seed),
-            kind: Kind::Drive,
-            time,
-            input: channel(Quantity::Input, "u", "N m", input),
-            outputs: vec![
-                channel(Quantity::Position, "x1", "rad", position),
-                channel(Quantity::Velocity, "v1", "rad/s", velocity),
-            ],
-            reference: vec![],
-            warnings: vec![],
-        }
+        let signals = [input, position, velocity];
+        of_motor(format!("rig {}", self.seed), time, signals)
     }
 
     fn rates(&self, s: [f64; 4], u: f64) -> [f64; 4] {

@@ -1,8 +1,6 @@
 //! Judging a diagnosis by the truth, and the table of all.
 
 use std::fmt::Write as _;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use hysteron_core::criticism::DiagnosisJob;
@@ -13,6 +11,7 @@ use serde::Serialize;
 
 use super::case::{Case, Hidden, Truth};
 use super::diagnosis::{classes, finish};
+use super::threads;
 
 /// A final error within this factor of the noise floor counts as reaching it.
 pub const NEAR_FLOOR: f64 = 1.2;
@@ -65,31 +64,15 @@ pub fn diagnose(measurement: &Measurement) -> Result<Diagnosis, String> {
 
 /// Runs the cases on all processors; the order of the outcomes is that of the cases.
 pub fn run(cases: &[(u64, Case)]) -> Vec<Outcome> {
-    let next = AtomicUsize::new(0);
-    let outcomes = Mutex::new(Vec::new());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((seed, case)) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let measurement = case.measure();
-                    let start = Instant::now();
-                    let diagnosis = diagnose(&measurement);
-                    let seconds = start.elapsed().as_secs_f64();
-                    let outcome = judge(*seed, case, diagnosis, seconds);
-                    println!("{}", row(&outcome));
-                    outcomes.lock().unwrap().push(outcome);
-                }
-            });
-        }
-    });
-    let mut outcomes = outcomes.into_inner().unwrap();
-    outcomes.sort_by_key(|o| {
-        cases
-            .iter()
-            .position(|(seed, case)| *seed == o.seed && case.name == o.case)
-    });
-    outcomes
+    threads::each(cases, |(seed, case)| {
+        let measurement = case.measure();
+        let start = Instant::now();
+        let diagnosis = diagnose(&measurement);
+        let seconds = start.elapsed().as_secs_f64();
+        let outcome = judge(*seed, case, diagnosis, seconds);
+        println!("{}", row(&outcome));
+        outcome
+    })
 }
 
 fn judge(seed: u64, case: &Case, diagnosis: Result<Diagnosis, String>, seconds: f64) -> Outcome {

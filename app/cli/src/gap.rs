@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use hysteron_core::backlash::{BacklashMap, GapEstimate, backlash_map, estimate_gap};
+use hysteron_core::backlash::{BacklashMap, GapEstimate, MapSilence, backlash_map, estimate_gap};
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, Quantity, TorqueConstant};
 use serde_json::json;
 
@@ -122,7 +122,8 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
             _ => {
                 let _ = writeln!(
                     out,
-                    "\nBy the measured load, for reference: it was pushed one way at most, so that its map shows no gap"
+                    "\nBy the measured load, for reference: {}",
+                    silence(map, scale, &unit)
                 );
             }
         }
@@ -131,4 +132,22 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
         let _ = writeln!(out, "Note: {note}");
     }
     out
+}
+
+/// Why the map shows no gap.
+fn silence(map: &BacklashMap, scale: f64, unit: &str) -> String {
+    match map.silence {
+        Some(MapSilence::NotMoved) => {
+            "it did not move by more than its sensor can tell, so that its map shows no gap"
+                .to_owned()
+        }
+        Some(MapSilence::Yields { span }) => format!(
+            "it moves within {:.3} {unit} of the motor, and what joins them yields over most of that, as a shaft does: its \
+             map shows no gap",
+            scale * span
+        ),
+        Some(MapSilence::OneWay) | None => {
+            "it was pushed one way at most, so that its map shows no gap".to_owned()
+        }
+    }
 }

@@ -26,10 +26,6 @@ impl Work for ScenarioTask {
     }
 }
 
-/// What a scenario without a place in these loops is met with.
-const ELSEWHERE: &str =
-    "This scenario is a drive with play under a relay: simulate it with the command line.";
-
 fn read(text: &str) -> Result<ScenarioReport, String> {
     match AnyScenario::from_toml(text).map_err(|e| e.to_string())? {
         AnyScenario::Loop(scenario) => {
@@ -46,7 +42,7 @@ fn read(text: &str) -> Result<ScenarioReport, String> {
             Ok(ScenarioReport::OnOff(Box::new(input)))
         }
         AnyScenario::Servo(scenario) => Ok(ScenarioReport::Servo(Box::new(scenario.servo))),
-        AnyScenario::Drive(_) => Err(ELSEWHERE.to_owned()),
+        AnyScenario::Drive(drive) => Ok(ScenarioReport::Drive(drive)),
     }
 }
 

@@ -208,6 +208,8 @@ pub enum ScenarioReport {
     OnOff(Box<OnOffInput>),
     /// A drive with a controller of its position.
     Servo(Box<Servo>),
+    /// A drive with a hidden gap under a relay.
+    Drive(Box<DriveInput>),
 }
 
 impl Task for ScenarioTask {

@@ -6,8 +6,10 @@ use crate::order::{median, range};
 /// Fewest cycles of a drifting test.
 const FEWEST: usize = 30;
 
-/// Fewest samples in a cycle; with fewer its contacts cannot be placed.
+/// Fewest samples in a cycle; with fewer nothing of it is seen.
 const FEWEST_SAMPLES: f64 = 6.0;
+/// Samples in a cycle from which on a load that was met is seen: of fewer a gap may follow, but not that there is none.
+pub(super) const ENOUGH_SAMPLES: f64 = 15.0;
 
 /// Share of the swing within which a sample counts as on a level of the relay.
 const ON_LEVEL: f64 = 0.1;
@@ -33,9 +35,17 @@ pub(super) struct Cycles {
     pub speed: f64,
 }
 
+/// Why there are no cycles.
+pub(super) enum NoCycles {
+    /// The input is not that of a velocity relay in a limit cycle.
+    NoRelay,
+    /// Too few samples in each to see anything of it; how many there are.
+    Few(f64),
+}
+
 impl Cycles {
-    /// `None` where the input is not that of a velocity relay in a limit cycle.
-    pub fn new(record: &Record) -> Option<Self> {
+    /// The cycles of a velocity relay.
+    pub fn new(record: &Record) -> Result<Self, NoCycles> {
         let u = &record.input;
         let (low, high) = range(u);
         let middle = if low < 0.0 && high > 0.0 {
@@ -47,13 +57,13 @@ impl Cycles {
             .filter(|&i| u[i] > middle && u[i - 1] <= middle)
             .collect();
         if starts.len() <= FEWEST {
-            return None;
+            return Err(NoCycles::NoRelay);
         }
         let mut lengths: Vec<f64> = starts.windows(2).map(|w| (w[1] - w[0]) as f64).collect();
         let length = median(&mut lengths);
         let covered = (starts[starts.len() - 1] - starts[0]) as f64;
-        if length < FEWEST_SAMPLES || covered < 0.5 * record.len() as f64 {
-            return None;
+        if covered < 0.5 * record.len() as f64 {
+            return Err(NoCycles::NoRelay);
         }
         let (mut on_level, mut reversing) = (0, 0);
         let (mut asymmetries, mut gains, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
@@ -72,11 +82,18 @@ impl Cycles {
             asymmetries.push((high + low) / (high - low));
         }
         let count = starts.len() - 1;
-        if (on_level as f64) < MOSTLY * covered || (reversing as f64) < MOSTLY * count as f64 {
-            return None;
+        if (reversing as f64) < MOSTLY * count as f64 {
+            return Err(NoCycles::NoRelay);
+        }
+        // Of so few samples many may be means over a switch, off both levels.
+        if length < FEWEST_SAMPLES {
+            return Err(NoCycles::Few(length));
+        }
+        if (on_level as f64) < MOSTLY * covered {
+            return Err(NoCycles::NoRelay);
         }
         let flips = flips(&asymmetries);
-        Some(Self {
+        Ok(Self {
             flips,
             length,
             gain: median(&mut gains),

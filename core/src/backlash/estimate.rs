@@ -5,7 +5,7 @@ use crate::model::{SeenContact, SeenLoad, Sharpness, Turn};
 use crate::order::{drop_marked, median, quantile, range};
 
 use super::contacts::{FEWEST_CONTACTS, Touch, touches};
-use super::cycles::Cycles;
+use super::cycles::{Cycles, ENOUGH_SAMPLES, NoCycles};
 use super::drift::Drift;
 use super::free_motor::FreeMotor;
 use super::gap::{Contact, CycleDrift, GapError, GapEstimate, LoadMotion, Quality, Side, Traverse};
@@ -102,8 +102,14 @@ impl Felt {
 fn look(measurement: &Measurement) -> Result<(GapEstimate, Option<Felt>), GapError> {
     let record = Record::new(measurement)?;
     let none = |record: &Record| Ok((nothing(record, Quality::NoDriftingTest), None));
-    let Some(cycles) = Cycles::new(&record) else {
-        return none(&record);
+    let cycles = match Cycles::new(&record) {
+        Ok(cycles) => cycles,
+        Err(NoCycles::NoRelay) => return none(&record),
+        Err(NoCycles::Few(per_cycle)) => {
+            let mut estimate = nothing(&record, Quality::TooFewSamples);
+            estimate.text = verdict::too_few_samples(Some(per_cycle));
+            return Ok((estimate, None));
+        }
     };
     let Some(motor) = FreeMotor::new(&record, &cycles) else {
         return none(&record);
@@ -164,6 +170,11 @@ fn look(measurement: &Measurement) -> Result<(GapEstimate, Option<Felt>), GapErr
         }
     }
     estimate.text = verdict::text(&estimate, cycles.flips.iter().any(|f| *f));
+    if estimate.gap.is_none() && cycles.length < ENOUGH_SAMPLES {
+        estimate.quality = Quality::TooFewSamples;
+        estimate.contacts.clear();
+        estimate.text = verdict::too_few_samples(Some(cycles.length));
+    }
     Ok((estimate, felt))
 }
 

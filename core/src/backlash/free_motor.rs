@@ -247,7 +247,7 @@ impl Rows {
 }
 
 /// Median of the absolute value of a standard normal variable.
-const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
+pub(super) const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// Mean of the sign of a velocity that goes from `a` to `b` on a straight line.
 fn mean_sign(a: f64, b: f64) -> f64 {

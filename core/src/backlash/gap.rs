@@ -94,6 +94,8 @@ pub enum Quality {
     Disturbed,
     /// The motor never met a load; no gap stated.
     NoEngagement,
+    /// Too few samples in a cycle of the relay to say that no load was met; no gap stated.
+    TooFewSamples,
     /// Not a velocity relay's limit cycle; no gap stated.
     NoDriftingTest,
 }

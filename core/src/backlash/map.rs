@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::measurement::{Measurement, Quantity};
 use crate::order::{median, range};
 
+use super::free_motor::NORMAL_MEDIAN;
+
 /// Fewest samples of a branch.
 const FEWEST: usize = 50;
 
@@ -22,10 +24,18 @@ const OUTER: f64 = 0.3;
 /// 30 bits over the travel resolves no less, and what a computed load does there is round-off.
 const RESOLVED: f64 = 1e-9;
 
+/// Share of the span of `x1 - x2` that a gap must be: what the contacts yield is the rest, and a spring that yields more than
+/// it joins has no gap that could be told from it.
+const MOSTLY_GAP: f64 = 0.5;
+
+/// Part of the gap about its middle, on either side, and the share of the samples in it in which the load may be pushed.
+const INNER: f64 = 0.25;
+const FREE_OF_PUSHES: f64 = 0.05;
+
 /// Half window of the second difference, samples; the least in which the largest acceleration stands out
-/// by `CLEAR` from what the noise makes of it.
+/// by `CLEAR` from what the noise makes of it: six of its standard deviations, since there are many.
 const WINDOWS: std::ops::RangeInclusive<usize> = 2..=16;
-const CLEAR: f64 = 12.0;
+const CLEAR: f64 = 15.0;
 
 /// One branch of the map: the load pushed one way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,12 +57,29 @@ pub struct BacklashMap {
     pub positive: Option<Branch>,
     /// The load pushed backwards.
     pub negative: Option<Branch>,
-    /// Distance of the branches: the whole gap, with what the contact yields.
+    /// Distance of the branches: the whole gap. `None` where the map shows none.
     pub gap: Option<f64>,
+    /// Why it shows none.
+    pub silence: Option<MapSilence>,
     /// Middle of the branches: 0 where the load stood in the middle of its gap at zero.
     pub asymmetry: Option<f64>,
     /// `rad` or `m`.
     pub unit: String,
+}
+
+/// Why a map shows no gap.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MapSilence {
+    /// The load did not move by more than its sensor can tell.
+    NotMoved,
+    /// It was pushed one way at most.
+    OneWay,
+    /// What joins the masses yields over most of the way that they move against each other, as a shaft or preloaded gears do.
+    Yields {
+        /// From the least to the largest `x1 - x2`, rad or m.
+        span: f64,
+    },
 }
 
 /// Why there is no map.
@@ -94,12 +121,19 @@ pub fn backlash_map(measurement: &Measurement) -> Result<BacklashMap, MapError> 
     let offsets: Vec<f64> = (0..points.len()).map(offset).collect();
     let (low, high) = range(&offsets);
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let (window, accelerations) = accelerations(&points);
-    let largest = accelerations.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
     let (least, most) = range(&points.iter().map(|p| p[0]).collect::<Vec<_>>());
-    if largest < RESOLVED * (most - least) {
-        return Ok(untouched(points, motor.unit.clone()));
-    }
+    let Some((window, accelerations)) = accelerations(&points, RESOLVED * (most - least)) else {
+        return Ok(BacklashMap {
+            points,
+            positive: None,
+            negative: None,
+            gap: None,
+            silence: Some(MapSilence::NotMoved),
+            asymmetry: None,
+            unit: motor.unit.clone(),
+        });
+    };
+    let largest = accelerations.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
     let branch = |sign: f64| {
         let pushed: Vec<[f64; 2]> = accelerations
             .iter()
@@ -111,30 +145,42 @@ pub fn backlash_map(measurement: &Measurement) -> Result<BacklashMap, MapError> 
     };
     let (positive, negative) = (branch(1.0), branch(-1.0));
     let both = positive.zip(negative);
+    let gap = both.map(|(p, n)| p.offset - n.offset);
+    let span = high - low;
+    // A gap is where nothing pushes.
+    let pushed_within = |gap: f64, at: f64| {
+        let inside = accelerations
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| (offset(i + window) - at).abs() < INNER * gap);
+        let (all, pushed) = inside.fold((0, 0), |(all, pushed), (_, a)| {
+            (all + 1, pushed + i32::from(a.abs() > PUSHED * largest))
+        });
+        f64::from(pushed) > FREE_OF_PUSHES * f64::from(all)
+    };
+    let silence = match both {
+        None => Some(MapSilence::OneWay),
+        Some((p, n)) => {
+            let (gap, at) = (p.offset - n.offset, 0.5 * (p.offset + n.offset));
+            let yields = gap < MOSTLY_GAP * span || pushed_within(gap, at);
+            yields.then_some(MapSilence::Yields { span })
+        }
+    };
+    let shown = |value: f64| silence.is_none().then_some(value);
     Ok(BacklashMap {
         positive,
         negative,
-        gap: both.map(|(p, n)| p.offset - n.offset),
-        asymmetry: both.map(|(p, n)| 0.5 * (p.offset + n.offset)),
+        gap: gap.and_then(shown),
+        asymmetry: both.and_then(|(p, n)| shown(0.5 * (p.offset + n.offset))),
+        silence,
         unit: motor.unit.clone(),
         points,
     })
 }
 
-/// The map of a load that did not move.
-fn untouched(points: Vec<[f64; 2]>, unit: String) -> BacklashMap {
-    BacklashMap {
-        points,
-        positive: None,
-        negative: None,
-        gap: None,
-        asymmetry: None,
-        unit,
-    }
-}
-
-/// Second differences of the load's position (rad or m in the window squared), and the half window.
-fn accelerations(points: &[[f64; 2]]) -> (usize, Vec<f64>) {
+/// Second differences of the load's position (rad or m in the window squared), and the half window; `None` where none stands
+/// out from what the sensor writes of a load at rest, or reaches `least`.
+fn accelerations(points: &[[f64; 2]], least: f64) -> Option<(usize, Vec<f64>)> {
     let quantum = points
         .windows(2)
         .map(|w| (w[1][1] - w[0][1]).abs())
@@ -144,14 +190,13 @@ fn accelerations(points: &[[f64; 2]]) -> (usize, Vec<f64>) {
         .windows(4)
         .map(|w| (w[3][1] - 3.0 * w[2][1] + 3.0 * w[1][1] - w[0][1]).abs())
         .collect();
-    // Third differences of white noise have sqrt(20) times its size.
-    let noise = median(&mut rough) / 20.0_f64.sqrt();
+    // Third differences of white noise have sqrt(20) times its size, and half of them are within 0.67 of that.
+    let noise = median(&mut rough) / (NORMAL_MEDIAN * 20.0_f64.sqrt());
     let noise = if quantum.is_finite() {
         noise.max(quantum)
     } else {
         noise
     };
-    let mut found = (*WINDOWS.start(), Vec::new());
     for window in WINDOWS {
         if points.len() <= 2 * window {
             break;
@@ -160,13 +205,11 @@ fn accelerations(points: &[[f64; 2]]) -> (usize, Vec<f64>) {
             .windows(2 * window + 1)
             .map(|w| w[2 * window][1] - 2.0 * w[window][1] + w[0][1])
             .collect();
-        let clear = values.iter().any(|a| a.abs() > CLEAR * noise);
-        found = (window, values);
-        if clear {
-            break;
+        if values.iter().any(|a| a.abs() > (CLEAR * noise).max(least)) {
+            return Some((window, values));
         }
     }
-    found
+    None
 }
 
 /// The offset at which the load is touched: where the line of offset against acceleration meets zero.

@@ -37,4 +37,4 @@ pub use change_points::{Segment, pelt};
 pub use estimate::estimate_gap;
 pub(crate) use estimate::sighted;
 pub use gap::{Contact, CycleDrift, GapError, GapEstimate, LoadMotion, Quality, Side, Traverse};
-pub use map::{BacklashMap, Branch, MapError, backlash_map};
+pub use map::{BacklashMap, Branch, MapError, MapSilence, backlash_map};

@@ -1,5 +1,6 @@
 //! The verdict in plain words.
 
+use super::cycles::ENOUGH_SAMPLES;
 use super::gap::{GapEstimate, Quality};
 
 /// Traverses up to which all of them are spoken for; of more, nine in ten.
@@ -13,6 +14,7 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
     let (scale, unit) = estimate.written_in();
     let travel = number(estimate.travel * scale);
     match estimate.quality {
+        Quality::TooFewSamples => too_few_samples(None),
         Quality::NoDriftingTest => {
             "no drifting test: expected a limit cycle under a velocity relay whose asymmetry \
             changes its sign every few seconds"
@@ -28,7 +30,7 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
             )
         }
         Quality::Disturbed => "no engagement seen: the motor is disturbed, but not by contacts with a load, since the \
-            force acts all through the cycle (cogging and changing friction do so)"
+            force acts all through the cycle (cogging, changing friction and a shaft that yields do so)"
             .to_owned(),
         Quality::OneSide => format!(
             "the load was met at one side only ({} contacts); the gap may be wider than the travel of {travel} {unit}",
@@ -50,6 +52,17 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
     }
 }
 
+/// The same where the input turns round every so many samples, if that is known.
+pub(super) fn too_few_samples(per_cycle: Option<f64>) -> String {
+    let known = per_cycle.map_or_else(String::new, |n| {
+        format!(": a cycle of the relay has {n:.1}")
+    });
+    format!(
+        "too few samples to see contacts within a cycle{known}, and {ENOUGH_SAMPLES:.0} are needed; sample faster, or make the \
+         cycle longer by more hysteresis or less torque"
+    )
+}
+
 /// The gap with its standard error.
 fn value(estimate: &GapEstimate) -> String {
     let gap = estimate.gap.unwrap_or(0.0);
@@ -63,6 +76,7 @@ fn value(estimate: &GapEstimate) -> String {
     format!("{gap:.digits$} ± {error:.digits$} {unit}")
 }
 
+/// How well the traverses agree: all of a few, nine in ten of many, else those that do and how far the others are off.
 fn agreement(estimate: &GapEstimate) -> String {
     let gap = estimate.gap.unwrap_or(1.0);
     let mut off: Vec<f64> = estimate
@@ -79,18 +93,29 @@ fn agreement(estimate: &GapEstimate) -> String {
             format!("{percent:.0} %")
         }
     };
+    let agree = off.iter().filter(|o| **o <= AGREES).count();
     let last = off.last().copied().unwrap_or(0.0);
     match off.len() {
         0 => "by the travel between contacts at both sides".to_owned(),
         1 => "one traverse; a longer test would check it".to_owned(),
-        n if off[(n * 9 / 10).min(n - 1)] > AGREES => {
-            let n = if n <= FEW { word(n) } else { n.to_string() };
-            format!("{n} traverses scatter about it by up to {}", percent(last))
+        n if n == agree && n <= FEW => {
+            format!("{} traverses agree within {}", word(n), percent(last))
         }
-        n if n <= FEW => format!("{} traverses agree within {}", word(n), percent(last)),
-        n => format!(
+        n if n > FEW && off[n * 9 / 10] <= AGREES => format!(
             "nine in ten of {n} traverses agree within {}",
             percent(off[n * 9 / 10])
+        ),
+        n if 2 * agree > n => format!(
+            "{} of {} traverses agree within {}, the others are off by up to {}",
+            word(agree),
+            word(n),
+            percent(off[agree - 1]),
+            percent(last)
+        ),
+        n => format!(
+            "{} traverses scatter about it by up to {}",
+            word(n),
+            percent(last)
         ),
     }
 }

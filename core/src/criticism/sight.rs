@@ -48,7 +48,10 @@ pub(super) fn sight(measurement: &Measurement) -> Sighted {
     // Where something else disturbs the cycle, what was felt need not be a load.
     let is_load = !matches!(
         estimate.quality,
-        Quality::Disturbed | Quality::NoEngagement | Quality::NoDriftingTest
+        Quality::Disturbed
+            | Quality::NoEngagement
+            | Quality::TooFewSamples
+            | Quality::NoDriftingTest
     );
     let contacts = estimate.contacts.iter().filter(|_| is_load);
     Sighted {

@@ -1,4 +1,4 @@
-//! Figs. 7, 10, 11 and 12 of the paper: a drive for each.
+//! Figs. 7, 8, 10, 11 and 12 of the paper: a drive for each.
 
 use super::{
     Adhesion, Body, Command, Contact, Direction, Drive, DriveInput, DriveRun, EventKind, Summary,
@@ -57,7 +57,7 @@ pub fn drifting_test() -> DriveInput {
     DriveInput::new(reference_drive(), Command::Relay(relay), 10.0, Some(STEP))
 }
 
-/// Figs. 7, 10, 11 and 12.
+/// Figs. 7, 8, 10, 11 and 12.
 pub fn figures() -> Vec<DriveFigure> {
     let with = |asymmetry: f64, hysteresis: f64, flip: Option<f64>, duration: f64| {
         let mut input = drifting_test();
@@ -78,12 +78,21 @@ pub fn figures() -> Vec<DriveFigure> {
     let mut map = with(0.0, 4.0, None, 0.4);
     map.drive.load.inertia = 2e-5;
     map.drive.contact = Contact::Rigid { restitution: 0.0 };
+    // A gap that it has soon crossed.
+    let mut structure = with(0.3, 0.5, None, 0.6);
+    structure.drive.half_gap = 0.002;
     vec![
         DriveFigure {
             number: 7,
             title: "backlash map",
             claim: "Load over motor position is a loop of two parallel branches, 2β apart.",
             input: map,
+        },
+        DriveFigure {
+            number: 8,
+            title: "two-mass structure",
+            claim: "In the open gap each mass moves by itself; an impact hands momentum over, and the sum of both stays.",
+            input: structure,
         },
         DriveFigure {
             number: 10,
@@ -122,6 +131,7 @@ const MILLI: f64 = 1e3;
 pub fn checks(number: u32, input: &DriveInput, run: &DriveRun, summary: &Summary) -> Vec<Check> {
     match number {
         7 => map_has_two_branches(input, run, summary),
+        8 => hands_its_momentum_over(input, run),
         10 => stays_in_the_gap(input, run, summary),
         11 => drifts_as_the_formula_says(input, summary),
         12 => changes_its_drift_at_the_ends(input, run, summary),
@@ -172,6 +182,55 @@ fn map_has_two_branches(input: &DriveInput, run: &DriveRun, summary: &Summary) -
                 100.0 * slipped / between
             ),
             slipped < 0.5 * between,
+        ),
+    ]
+}
+
+/// Across each impact, from the sample before it to the one after, the sum of both momenta changes by what the torque and the
+/// frictions give in that time at most.
+fn hands_its_momentum_over(input: &DriveInput, run: &DriveRun) -> Vec<Check> {
+    let Drive { motor, load, .. } = input.drive;
+    let (mut handed, mut lost, mut allowed) = (0.0_f64, 0.0_f64, true);
+    for event in &run.events {
+        let after = run.time.partition_point(|t| *t <= event.time);
+        if !matches!(event.kind, EventKind::Impact(..)) || after == 0 || after == run.time.len() {
+            continue;
+        }
+        let (a, b) = (after - 1, after);
+        let sum = |i: usize| input.drive.momentum(run.v1[i], run.v2[i]);
+        let fastest = |v: &[f64], now: f64| v[a].abs().max(v[b].abs()).max(now.abs());
+        let friction = motor.coulomb
+            + load.coulomb
+            + motor.viscous * fastest(&run.v1, event.v1)
+            + load.viscous * fastest(&run.v2, event.v2);
+        let torque = run.input[a].abs().max(run.input[b].abs());
+        let change = (sum(b) - sum(a)).abs();
+        handed = handed.max(load.inertia * (event.v2 - event.speeds_before(&input.drive)[1]).abs());
+        lost = lost.max(change);
+        allowed &= change <= (torque + friction) * (run.time[b] - run.time[a]);
+    }
+    let widest = run.x1.iter().zip(&run.x2).map(|(x1, x2)| (x1 - x2).abs());
+    let widest = widest.fold(0.0, f64::max);
+    vec![
+        check(
+            format!("{} impacts at the ends of the gap", run.impacts()),
+            run.impacts() > 0,
+        ),
+        check(
+            format!(
+                "d stays within {:.2} mrad, β is {:.2} mrad",
+                MILLI * widest,
+                MILLI * input.drive.half_gap
+            ),
+            widest <= input.drive.half_gap * (1.0 + CLOSED_FORM),
+        ),
+        check(
+            format!(
+                "an impact hands over up to {:.3} mN m s; the sum of both changes by {:.3} meanwhile, which the torque does",
+                MILLI * handed,
+                MILLI * lost
+            ),
+            allowed && handed > 0.0,
         ),
     ]
 }

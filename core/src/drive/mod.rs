@@ -15,6 +15,7 @@ mod engine;
 mod error;
 mod figures;
 mod flow;
+mod loop_theory;
 mod modes;
 mod play;
 mod polynomial;
@@ -23,6 +24,7 @@ mod relay;
 mod scenario;
 mod spring;
 mod state;
+mod structure;
 mod summary;
 mod trajectory;
 
@@ -34,10 +36,12 @@ pub use engine::{DriveJob, run};
 pub use error::DriveError;
 pub(crate) use error::check;
 pub use figures::{DriveFigure, checks, drifting_test, figures, reference_drive};
+pub use loop_theory::{LoopTheory, loop_theory};
 pub use play::{PlayCycle, cycles_with_play, play_describing_function, relay_seen_through_play};
 pub use record::{Recorder, record};
 pub use relay::{Command, VelocityRelay};
 pub(crate) use scenario::DriveFile;
+pub use structure::{DriveMode, Instant};
 pub use summary::{Direction, Engagement, FreeDrift, Summary, Traverse, engaged_drift, summarize};
 pub use trajectory::{DriveRun, Energy, Event, EventKind, Mass, Side};
 

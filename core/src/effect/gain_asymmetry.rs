@@ -4,6 +4,7 @@ use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
+use crate::order::sign;
 
 pub(super) const ID: EffectId = EffectId::new("gain_asymmetry");
 
@@ -63,8 +64,8 @@ impl Effect for GainAsymmetry {
 
     fn apply(&self, values: &[f64], model: &mut Model) {
         let a = values[0];
-        model.input_maps.push(Box::new(move |u| {
-            (1.0 + a * f64::from(i8::from(u > 0.0) - i8::from(u < 0.0))) * u
-        }));
+        model
+            .input_maps
+            .push(Box::new(move |u| (1.0 + a * sign(u)) * u));
     }
 }

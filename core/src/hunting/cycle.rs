@@ -236,24 +236,35 @@ struct Map<'a> {
     servo: &'a Servo,
     size: f64,
     ways: Vec<f64>,
+    /// The integral where the controller has none: it stays as it is.
+    no_integral: Option<f64>,
     /// Distance of motor and measured position where the play is taken up.
     taken_up: Option<f64>,
 }
 
 impl Map<'_> {
     fn place(&self, s: &DVector<f64>) -> Place {
+        let mut rest = s.iter().skip(1).copied();
+        let integral = self.no_integral.or_else(|| rest.next());
+        let w = self.taken_up.map(|gap| s[0] - gap).or_else(|| rest.next());
         Place {
             x: s[0],
             v: 0.0,
-            integral: s[1],
-            w: self.taken_up.map_or_else(|| s[2], |gap| s[0] - gap),
+            integral: integral.unwrap_or_default(),
+            w: w.unwrap_or_default(),
         }
     }
 
+    /// What is free: position, integral where there is one, measured position where it may stand within the play.
+    fn free(&self, [x, integral, w]: [f64; 3]) -> DVector<f64> {
+        let integral = self.no_integral.is_none().then_some(integral);
+        let w = self.taken_up.is_none().then_some(w);
+        let free = [Some(x), integral, w].into_iter().flatten().collect();
+        DVector::from_vec(free)
+    }
+
     fn vector(&self, place: &Place) -> DVector<f64> {
-        let all = [place.x, place.integral, place.w];
-        let free = if self.taken_up.is_some() { 2 } else { 3 };
-        DVector::from_column_slice(&all[..free])
+        self.free([place.x, place.integral, place.w])
     }
 
     /// The standstills of one period.
@@ -305,17 +316,19 @@ fn solve(servo: &Servo, size: f64, pattern: &[Stand]) -> Option<HuntingCycle> {
         servo,
         size,
         ways: pattern[1..].iter().map(|s| s.way).collect(),
+        no_integral: (servo.controller.integral == 0.0).then_some(last.place.integral),
         taken_up: taken.then_some(distance),
     };
-    let scales = [
+    let scales = map.free([
         amplitude,
         servo.controller.proportional * amplitude,
         amplitude,
-    ];
+    ]);
+    let scales = scales.as_slice();
     let mut at = map.vector(&last.place);
     let n = at.len();
     for _ in 0..MAX_NEWTON {
-        let slope = map.slope(&at, &scales)?;
+        let slope = map.slope(&at, scales)?;
         let residual = map.end(&at)? - &at;
         let step = (DMatrix::identity(n, n) - &slope).lu().solve(&residual)?;
         at += &step;

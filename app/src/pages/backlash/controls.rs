@@ -13,6 +13,9 @@ use crate::widgets::typed::{DECIMALS, Typed};
 /// Width below which the playback stands in two rows, points.
 const NARROW_PLAYBACK: f32 = 520.0;
 
+/// The figure that is the block diagram.
+const STRUCTURE: u32 = 8;
+
 /// Values that a contact begins with when its kind is chosen.
 const STIFFNESS: f64 = 1500.0;
 const DAMPING: f64 = 0.2;
@@ -59,6 +62,7 @@ impl Backlash {
                     if !chosen {
                         self.input = figure.input;
                         self.playback.clock = 0.0;
+                        self.structure = figure.number == STRUCTURE;
                     }
                 }
             }
@@ -239,6 +243,14 @@ impl Backlash {
             }
             if ui.button(tr("From the start")).clicked() {
                 self.playback.clock = 0.0;
+            }
+            if !self.measured() {
+                let blocks = ui
+                    .selectable_label(self.structure, tr("Blocks"))
+                    .on_hover_text(tr("The two-mass structure as a block diagram, with d and the momentum over time"));
+                if blocks.clicked() {
+                    self.structure = !self.structure;
+                }
             }
             if !narrow {
                 self.speed_ui(ui);

@@ -9,6 +9,7 @@ mod plots;
 mod scene;
 mod settings;
 mod side;
+mod structure;
 mod units;
 mod words;
 
@@ -55,6 +56,8 @@ pub struct Backlash {
     input: DriveInput,
     /// Number of the figure whose claim is checked.
     figure: Option<u32>,
+    /// Whether the drive is drawn as the block diagram of Fig. 8.
+    structure: bool,
     design: Design,
     playback: Playback,
     /// Seconds of the drive in a second.
@@ -80,6 +83,7 @@ impl Default for Backlash {
         Self {
             input: drifting_test(),
             figure: None,
+            structure: false,
             design: Design::default(),
             playback: Playback::default(),
             speed: SPEED,
@@ -308,6 +312,29 @@ impl Backlash {
         }
     }
 
+    /// Whether the block diagram is asked for and known: a measured load has no momentum.
+    fn shows_structure(&self, scene: &Scene) -> bool {
+        self.structure && scene.input().is_some()
+    }
+
+    /// The masses, or the diagram of their blocks.
+    fn picture_ui(&self, ui: &mut egui::Ui, scene: &Scene) {
+        if self.shows_structure(scene) {
+            structure::ui(ui, scene, self.playback.clock);
+        } else {
+            picture::ui(ui, scene, self.playback.clock, PICTURE);
+        }
+    }
+
+    /// The two plots that go with that.
+    fn beside(&self, scene: &Scene) -> [fn(&mut egui::Ui, &Scene, f64, f32); 2] {
+        if self.shows_structure(scene) {
+            [structure::distance_ui, structure::momentum_ui]
+        } else {
+            [plots::phase_ui, plots::map_ui]
+        }
+    }
+
     fn wide_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         egui::Panel::left("drive")
             .exact_size(layout::side(ui, SIDE))
@@ -323,17 +350,19 @@ impl Backlash {
                 let Some(scene) = &self.scene else {
                     return;
                 };
-                picture::ui(ui, scene, self.playback.clock, PICTURE);
+                let clock = self.playback.clock;
+                self.picture_ui(ui, scene);
                 let height = (0.5 * ui.available_height() - 34.0).max(120.0);
-                plots::time_ui(ui, scene, self.playback.clock, height);
+                plots::time_ui(ui, scene, clock, height);
+                let [left, right] = self.beside(scene);
                 if layout::room_for_two(ui) {
                     ui.columns(2, |columns| {
-                        plots::phase_ui(&mut columns[0], scene, self.playback.clock, height);
-                        plots::map_ui(&mut columns[1], scene, self.playback.clock, height);
+                        left(&mut columns[0], scene, clock, height);
+                        right(&mut columns[1], scene, clock, height);
                     });
                 } else {
-                    plots::phase_ui(ui, scene, self.playback.clock, height);
-                    plots::map_ui(ui, scene, self.playback.clock, height);
+                    left(ui, scene, clock, height);
+                    right(ui, scene, clock, height);
                 }
             });
         });
@@ -345,10 +374,11 @@ impl Backlash {
                 self.answer_ui(ui);
                 self.playback_ui(ui, targets);
                 if let Some(scene) = &self.scene {
-                    picture::ui(ui, scene, self.playback.clock, PICTURE);
+                    self.picture_ui(ui, scene);
                     plots::time_ui(ui, scene, self.playback.clock, 220.0);
-                    plots::phase_ui(ui, scene, self.playback.clock, 240.0);
-                    plots::map_ui(ui, scene, self.playback.clock, 240.0);
+                    for plot_ui in self.beside(scene) {
+                        plot_ui(ui, scene, self.playback.clock, 240.0);
+                    }
                 }
                 self.side_ui(ui, recent, targets);
             });

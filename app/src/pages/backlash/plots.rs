@@ -75,7 +75,7 @@ pub fn time_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
 }
 
 /// The plots that show the moment that the positions are pointed at.
-fn moment() -> Id {
+pub fn moment() -> Id {
     Id::unique("moment_of_drive")
 }
 

@@ -21,6 +21,8 @@ const SPEEDS: std::ops::RangeInclusive<f64> = 1e-6..=1e3;
 pub struct Settings {
     /// Number of the figure whose claim is checked.
     figure: Option<u32>,
+    /// Whether the drive is drawn as the block diagram of Fig. 8.
+    structure: bool,
     /// The drive, its relay, and how long it runs.
     run: DriveInput,
     /// Gap, rad, and torque, N m, for which a drifting test is designed.
@@ -40,6 +42,7 @@ impl Settable for Backlash {
     fn set_to(&self) -> Settings {
         Settings {
             figure: self.figure,
+            structure: self.structure,
             run: self.input,
             expected_gap: self.design.gap,
             largest_torque: self.design.torque,
@@ -68,6 +71,7 @@ impl Settable for Backlash {
             self.scene = None;
         }
         self.figure = settings.figure;
+        self.structure = settings.structure;
         self.input = settings.run;
         self.design.gap = settings.expected_gap;
         self.design.torque = settings.largest_torque;

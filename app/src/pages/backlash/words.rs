@@ -1,5 +1,7 @@
 //! What the page says.
 
+use hysteron_core::backlash::Quality;
+
 use super::scene::Scene;
 use super::units::MILLI;
 
@@ -14,11 +16,14 @@ impl Scene {
                 (Some(gap), Some(error)) => {
                     let value = digits(MILLI * gap, MILLI * error);
                     let error = digits(MILLI * error, MILLI * error);
-                    return match known {
-                        Some(known) => format!(
-                            "From the motor alone: 2β = {value} ± {error} mrad (true: {known:.2})."
-                        ),
-                        None => format!("From the motor alone: 2β = {value} ± {error} mrad."),
+                    let truth =
+                        known.map_or_else(String::new, |known| format!(" (true: {known:.2})"));
+                    return if e.quality == Quality::AssumedCentre {
+                        format!(
+                            "From the motor alone, if it started in the middle: 2β = {value} ± {error} mrad{truth}."
+                        )
+                    } else {
+                        format!("From the motor alone: 2β = {value} ± {error} mrad{truth}.")
                     };
                 }
                 _ => "The gap cannot be found from the motor alone.".to_owned(),

@@ -12,6 +12,7 @@ mod plant_editor;
 mod servo;
 mod settings;
 mod table;
+mod theory;
 
 use std::collections::VecDeque;
 
@@ -35,6 +36,7 @@ use nyquist::Nyquist;
 use on_off::OnOff;
 use plant_editor::PlantEditor;
 use servo::Hunting;
+use theory::Theory;
 
 /// Simulated periods that are played back in a second.
 const PERIODS_PER_SECOND: f64 = 0.6;
@@ -60,6 +62,7 @@ pub struct Explore {
     /// What a relay has as it is built, and a drive with a controller, where the page is about them.
     on_off: OnOff,
     servo: Hunting,
+    theory: Theory,
     files: Files,
     /// A scenario that is being read, what was read, and why nothing was.
     reading: Option<Job<ScenarioTask>>,
@@ -104,7 +107,7 @@ impl View for Explore {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         self.input.clone_from(&desk.relay_loop);
-        self.take_scenario();
+        self.take_scenario(&mut desk.commands);
         match self.about() {
             About::Relay => self.compute(),
             About::OnOff => self.on_off.ask(ui.ctx(), self.controller, &self.input),
@@ -370,6 +373,14 @@ impl Explore {
                     ui.separator();
                     table::predictions_ui(ui, &self.input, data);
                     table::harmonics_ui(ui, data);
+                }
+                if let Some(Finished {
+                    input,
+                    data: Ok((data, _)),
+                    ..
+                }) = &self.finished
+                {
+                    self.theory.ui(ui, input, data);
                 }
                 table::equations_ui(ui);
             }

@@ -5,6 +5,7 @@ use hysteron_work::tasks::{ScenarioReport, ScenarioTask};
 use super::Explore;
 use super::controller::Controller;
 use super::{on_off, servo};
+use crate::command::Command;
 use crate::files::SCENARIO;
 use crate::jobs::{Job, ended};
 use crate::language::tr;
@@ -39,12 +40,14 @@ impl Explore {
         }
     }
 
-    /// Sets the page as a scenario has it that was opened.
-    pub(super) fn take_scenario(&mut self) {
+    /// Sets the page as a scenario has it that was opened; a drive with a gap has a page of its own.
+    pub(super) fn take_scenario(&mut self, commands: &mut Vec<Command>) {
         let Some(report) = self.opened.take() else {
             return;
         };
-        self.figure = None;
+        if !matches!(report, ScenarioReport::Drive(_)) {
+            self.figure = None;
+        }
         match report {
             ScenarioReport::Loop(input) => {
                 self.controller = Controller::TwoLevels;
@@ -60,6 +63,11 @@ impl Explore {
             ScenarioReport::Servo(servo) => {
                 self.controller = Controller::Servo;
                 self.servo.put(servo::Settings::of(&servo));
+            }
+            ScenarioReport::Drive(run) => {
+                let run = serde_json::to_value(run).unwrap_or_default();
+                commands.push(Command::Set("backlash", "run", run));
+                commands.push(Command::Go("backlash"));
             }
         }
     }

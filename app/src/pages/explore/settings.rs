@@ -9,6 +9,9 @@ use super::{on_off, servo};
 use crate::desk::Desk;
 use crate::page::Settable;
 
+/// Largest half gap that a link may ask for.
+const MOST_PLAY: f64 = 1e3;
+
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -24,6 +27,8 @@ pub struct Settings {
     on_off: on_off::Settings,
     /// A drive with a controller.
     servo: servo::Settings,
+    /// Half gap of the play before the relay.
+    play: f64,
 }
 
 impl Settable for Explore {
@@ -37,6 +42,7 @@ impl Settable for Explore {
             controller: self.controller,
             on_off: self.on_off.set.clone(),
             servo: self.servo.set.clone(),
+            play: self.theory.play,
         }
     }
 
@@ -53,6 +59,10 @@ impl Settable for Explore {
         }
         (settings.on_off).check(settings.controller, &desk.relay_loop)?;
         settings.servo.check()?;
+        if !(0.0..=MOST_PLAY).contains(&settings.play) {
+            return Err("The half gap of the play must be 0 to 1000.".to_owned());
+        }
+        self.theory.play = settings.play;
         self.controller = settings.controller;
         self.on_off.put(settings.on_off);
         self.servo.put(settings.servo);

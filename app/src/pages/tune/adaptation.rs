@@ -1,13 +1,15 @@
 //! Step 3: the gain for a phase margin, by the relay of equation (7) and the adaptation (8).
 
 use egui_plot::{Line, MarkerShape, Points};
-use hysteron_core::tuning::PhaseMarginReport;
+use hysteron_core::tuning::{AdaptationStep, PhaseMarginReport};
 use hysteron_core::uncertain::significant;
 
-use super::draw::{beside, curve, number, plot, table};
+use super::draw::{CAPTION, beside, curve, number, plot, table};
 use super::stage::{Seen, Stage};
 use crate::language::{tr, tr_number};
 use crate::theme;
+use crate::widgets::chart::{Shape, caption_ui};
+use crate::widgets::equation::equation_ui;
 
 pub const STAGE: Stage = Stage {
     id: "adaptation",
@@ -43,7 +45,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     };
     let design = &found.adaptation.design;
     ui.label(tr(format!(
-        "A relay with k = π a/4 = {} and ε = a sin φ = {} stands in series with the gain K, which is changed from run to run until the amplitude is a = {}. Every step squares the error.",
+        "A relay with k = π a/4 = {} and ε = a sin φ = {} stands in series with the gain K, which is changed from run to run until the amplitude is a = {}. Every step squares the error, at the price of a second run.",
         number(design.gain),
         number(design.hysteresis),
         number(design.amplitude)
@@ -57,34 +59,120 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
 }
 
 fn convergence_ui(ui: &mut egui::Ui, found: &PhaseMarginReport, height: f32) {
-    let errors: Vec<[f64; 2]> = found
-        .adaptation
-        .steps
-        .iter()
-        .enumerate()
-        .map(|(n, step)| [n as f64, step.error.abs().max(f64::EPSILON).log10()])
-        .collect();
+    let errors = |steps: &[AdaptationStep]| -> Vec<[f64; 2]> {
+        let sizes = steps.iter().map(|s| s.error.abs().max(f64::EPSILON));
+        let sizes = sizes.enumerate().map(|(n, size)| [n as f64, size.log10()]);
+        sizes.collect()
+    };
+    let shown = runs_shown(ui, found);
+    let secant = found.secant.as_ref();
+    let ways = [
+        (
+            STEFFENSEN,
+            theme::SIMULATED,
+            errors(&found.adaptation.steps),
+        ),
+        (
+            SECANT,
+            theme::DESCRIBING,
+            secant.map_or_else(Vec::new, |s| errors(&s.steps[..shown])),
+        ),
+    ];
+    let keys = ways.each_ref().map(|w| (w.0, w.1, Shape::Circle));
+    caption_ui(ui, "", &keys);
     plot(
         "convergence",
-        height,
+        height - CAPTION,
         "step n",
         "error of the amplitude, log10",
     )
     .with(|plot| plot.include_y(0.0))
     .show(ui, |plot| {
-        plot.line(
-            Line::new(tr("relative error"), curve(&errors))
-                .color(theme::SIMULATED)
-                .width(2.0),
-        );
-        plot.points(
-            Points::new(tr("relative error"), curve(&errors))
-                .color(theme::SIMULATED)
-                .radius(5.0)
-                .shape(MarkerShape::Circle),
-        );
+        for (name, color, errors) in &ways {
+            plot.line(Line::new(tr(*name), curve(errors)).color(*color).width(2.0));
+            plot.points(
+                Points::new(tr(*name), curve(errors))
+                    .color(*color)
+                    .radius(5.0)
+                    .shape(MarkerShape::Circle),
+            );
+        }
     });
 }
+
+const STEFFENSEN: &str = "Steffensen, two runs a step";
+const SECANT: &str = "secant (8), one run a step";
+
+/// How many runs of the secant were asked for; it begins with two.
+fn runs_shown(ui: &egui::Ui, found: &PhaseMarginReport) -> usize {
+    let all = found.secant.as_ref().map_or(0, |s| s.steps.len());
+    let asked = ui.data(|d| d.get_temp(egui::Id::unique(SECANT)));
+    asked.unwrap_or(2).min(all)
+}
+
+/// The plain law, a run at a time, with its numbers.
+fn secant_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
+    ui.add_space(6.0);
+    ui.strong(tr("The plain law (8), stepped by hand"));
+    let Some(secant) = &found.secant else {
+        ui.label(tr("The secant does not get there from this gain."));
+        return;
+    };
+    equation_ui(ui, EQUATION_8, &|_| None);
+    let mut shown = runs_shown(ui, found);
+    ui.horizontal(|ui| {
+        let more = shown < secant.steps.len();
+        let next = ui.add_enabled(more, egui::Button::new(tr("Next run")));
+        shown += usize::from(next.clicked());
+        if ui.button(tr("From the start")).clicked() {
+            shown = 2;
+        }
+        ui.data_mut(|d| d.insert_temp(egui::Id::unique(SECANT), shown));
+    });
+    let a = |step: &AdaptationStep| step.test.amplitude;
+    table(
+        ui,
+        "secant_table",
+        &["n", "K(n)", "a(n)", "error of a"],
+        |ui| {
+            for (n, step) in secant.steps.iter().take(shown).enumerate() {
+                ui.label(tr(n.to_string()));
+                ui.label(tr_number(format!("{:.6}", step.gain)));
+                ui.label(tr_number(format!("{:.6}", a(step))));
+                ui.label(tr_number(significant(step.error, 2)));
+                ui.end_row();
+            }
+        },
+    );
+    if let [.., last, now] = secant.steps.get(..shown).unwrap_or_default()
+        && let Some(next) = secant.steps.get(shown)
+    {
+        ui.label(tr(format!(
+            "Next: K = {:.6} - ({:.6} - {:.6}) · ({:.6} - {:.6})/({:.6} - {:.6}) = {:.6}.",
+            now.gain,
+            a(now),
+            found.adaptation.design.amplitude,
+            now.gain,
+            last.gain,
+            a(now),
+            a(last),
+            next.gain
+        )));
+    } else {
+        ui.label(tr(format!(
+            "It has the wanted amplitude after {} runs; Steffensen's steps took {}.",
+            secant.steps.len(),
+            found
+                .adaptation
+                .steps
+                .iter()
+                .map(|s| 1 + usize::from(s.trial.is_some()))
+                .sum::<usize>()
+        )));
+    }
+}
+
+const EQUATION_8: &str = "K(n+1) = K(n) - (a(n) - a) (K(n) - K(n-1))/(a(n) - a(n-1))";
 
 fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     let adaptation = &found.adaptation;
@@ -109,4 +197,5 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
             adaptation.design.phase_margin.to_degrees()
         )));
     }
+    secant_ui(ui, found);
 }

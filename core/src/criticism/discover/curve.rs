@@ -1,8 +1,8 @@
 //! A smooth curve along one variable, with as many values as a short table has: what a formula must be as good as.
 
-use super::grammar::Variable;
 use super::tuning::PIECES;
 use super::weak::Weak;
+use crate::effect::{Variable, variables};
 use crate::measurement::Kind;
 
 /// The best smooth curve.
@@ -14,7 +14,7 @@ pub(super) struct Curve {
 
 /// The curve along that variable which foretells most.
 pub(super) fn best(weak: &Weak, kind: Kind) -> Option<Curve> {
-    let curves = Variable::all(kind).iter().filter_map(|variable| {
+    let curves = variables(kind).iter().filter_map(|(_, variable)| {
         let columns = weak.pieces(*variable, PIECES)?;
         Some(Curve {
             variable: *variable,

@@ -10,36 +10,14 @@
 //! A number in a bend has the unit of its variable (or its inverse), and every form a coefficient, which has the unit that makes
 //! it a force: so every formula is right in its units by the way it is built.
 
+use crate::effect::{Variable, variables};
 use crate::measurement::Kind;
 
-/// What a form may depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Variable {
-    /// Of a drive.
-    Position,
-    /// Of a drive; the output of a process.
-    Velocity,
-    Input,
-    Time,
-}
-
-impl Variable {
-    pub fn all(kind: Kind) -> &'static [Self] {
-        match kind {
-            Kind::Drive => &[Self::Position, Self::Velocity, Self::Input, Self::Time],
-            Kind::Process => &[Self::Velocity, Self::Input, Self::Time],
-        }
-    }
-
-    fn name(self, kind: Kind) -> &'static str {
-        match (self, kind) {
-            (Self::Position, _) => "x",
-            (Self::Velocity, Kind::Drive) => "v",
-            (Self::Velocity, Kind::Process) => "y",
-            (Self::Input, _) => "u",
-            (Self::Time, _) => "t",
-        }
-    }
+/// As one types it.
+fn name(variable: Variable, kind: Kind) -> &'static str {
+    let mut all = variables(kind).iter();
+    all.find(|(_, own)| *own == variable)
+        .map_or("", |(name, _)| name)
 }
 
 /// A factor without a number in it.
@@ -286,10 +264,10 @@ impl Form {
         let mut text = symbol(0).to_owned();
         for (variable, plain) in &self.plain {
             text.push('*');
-            text.push_str(&plain.text(variable.name(kind)));
+            text.push_str(&plain.text(name(*variable, kind)));
         }
         if let Some((bend, variable)) = self.bend {
-            let (factor, divides) = bend.text(variable.name(kind), [symbol(1), symbol(2)]);
+            let (factor, divides) = bend.text(name(variable, kind), [symbol(1), symbol(2)]);
             text.push(if divides { '/' } else { '*' });
             text.push_str(&factor);
         }
@@ -324,7 +302,7 @@ const BESIDE_OTHERS: [Bend; 8] = [
 
 /// Every form, shorter ones first.
 pub(super) fn forms(kind: Kind) -> Vec<Form> {
-    let variables = Variable::all(kind);
+    let variables: Vec<Variable> = variables(kind).iter().map(|(_, z)| *z).collect();
     let mut forms = vec![Form {
         plain: Vec::new(),
         bend: None,

@@ -2,7 +2,7 @@
 
 use super::judge::{self, Simulated};
 use super::pool;
-use super::search::{Search, Sum};
+use super::search::Search;
 use super::tuning::{APART, PER_PART};
 use super::weak::{Seen, Weak};
 use super::written::Written;
@@ -240,7 +240,7 @@ impl DiscoveryJob {
         };
         let class = judge::class(&self.session, &self.simulated);
         let head = class.first().map(|k| &self.simulated[*k].written.sum);
-        let foretold = head.and_then(|sum| weak.foretold(&columns(weak, sum)));
+        let foretold = head.and_then(|sum| weak.foretold(&sum.columns(weak)));
         let discovery = judge::answer(
             &self.session,
             weak,
@@ -279,11 +279,4 @@ impl DiscoveryJob {
             beyond.fold(0.0, f64::max),
         )
     }
-}
-
-fn columns(weak: &Weak, sum: &Sum) -> Vec<Vec<f64>> {
-    sum.terms
-        .iter()
-        .flat_map(|t| weak.columns(&t.form, t.numbers))
-        .collect()
 }

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use super::curve::{self, Curve};
-use super::grammar::Variable;
 use super::tuning::{CURVE_BETTER, PIECES};
 use super::weak::Weak;
 use super::written::Written;
@@ -11,7 +10,7 @@ use crate::criticism::explain::{Trial, difference};
 use crate::criticism::select::outweighs;
 use crate::criticism::session::{Rest, Session};
 use crate::diagnosis::{Discovery, DiscoveryEnd, FoundFormula, Parameter};
-use crate::effect::EffectId;
+use crate::effect::{EffectId, Variable};
 use crate::measurement::Kind;
 use crate::uncertain::{brief, with_error};
 

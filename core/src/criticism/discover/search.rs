@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::grammar::{Form, Numbers, Variable, forms, length};
+use super::grammar::{Form, Numbers, forms, length};
 use super::tuning::{
     AT_A_TIME, CENTRES, FIRST_SCALE, FIRST_TERMS, LAST_SCALE, LAST_STEP, LEAST_TOLD, MOST_STEPS,
     MOST_WAVES, NOISE_LEFT, PER_PART, PRICE, REFINED, SCALES, SHAPES_KEPT, THIRDS, TOLD, WAVE_STEP,
@@ -11,6 +11,7 @@ use super::tuning::{
 };
 use super::weak::{BodyColumn, Reach, Solved, Weak};
 use crate::crew::Crew;
+use crate::effect::{Variable, variables};
 use crate::measurement::Kind;
 use crate::sums::dot;
 
@@ -26,6 +27,14 @@ pub(super) struct Term {
 pub(super) struct Sum {
     pub terms: Vec<Term>,
     pub loss: f64,
+}
+
+impl Sum {
+    /// Windows of its terms, unweighted.
+    pub fn columns(&self, weak: &Weak) -> Vec<Vec<f64>> {
+        let of = |t: &Term| weak.columns(&t.form, t.numbers);
+        self.terms.iter().flat_map(of).collect()
+    }
 }
 
 /// A form with values of its numbers, on the grid.
@@ -79,9 +88,9 @@ pub(super) struct Search {
 
 impl Search {
     pub fn new(kind: Kind, weak: &Weak) -> Self {
-        let reaches = Variable::all(kind)
+        let reaches = variables(kind)
             .iter()
-            .map(|v| (*v, weak.seen.reach(*v)));
+            .map(|(_, v)| (*v, weak.seen.reach(*v)));
         Self {
             kind,
             forms: forms(kind),
@@ -195,12 +204,7 @@ impl Search {
 
     /// A pair with each form as a third term.
     fn with_third(&self, weak: &Weak, pair: &Sum) -> Vec<Sum> {
-        let columns: Vec<Vec<f64>> = pair
-            .terms
-            .iter()
-            .flat_map(|t| weak.columns(&t.form, t.numbers))
-            .collect();
-        let Some(directions) = weak.directions(&columns) else {
+        let Some(directions) = weak.directions(&pair.columns(weak)) else {
             return Vec::new();
         };
         let held = Tried {

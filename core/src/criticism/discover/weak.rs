@@ -8,12 +8,13 @@
 //! is, is the target, and every window counts by what its noise lets it tell. Body, held effects and coefficients of terms are
 //! fitted together.
 
-use super::grammar::{Form, Plain, Variable};
+use super::grammar::{Form, Plain};
 use super::tuning::{EXACT, LEAST_TOLD, MOST_ROWS, WIDEST_SHARE};
 use crate::criticism::screen::{AtomColumns, Rows, Signals, Width, widths};
 use crate::effect::baseline::Baseline;
+use crate::effect::{Variable, variables};
 use crate::measurement::Kind;
-use crate::order::{quantile, range};
+use crate::order::{quantile, range, sign};
 use crate::sums::dot;
 
 /// What terms see of a record.
@@ -40,7 +41,7 @@ impl Seen {
             signals,
             factors: Vec::new(),
         };
-        let all = Variable::all(seen.signals.kind);
+        let all = variables(seen.signals.kind);
         for variable in [
             Variable::Position,
             Variable::Velocity,
@@ -48,7 +49,7 @@ impl Seen {
             Variable::Time,
         ] {
             let factors = |plain: Plain| {
-                if all.contains(&variable) {
+                if all.iter().any(|(_, own)| *own == variable) {
                     seen.factors(variable, plain)
                 } else {
                     [Vec::new(), Vec::new()]
@@ -81,12 +82,12 @@ impl Seen {
         let is_speed = variable == Variable::Velocity && signals.kind == Kind::Drive;
         let at = |k: usize| {
             let z = series.get(k).copied().unwrap_or(0.0);
-            let sign = if is_speed {
+            let side = if is_speed {
                 signals.direction[k]
             } else {
-                f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
+                sign(z)
             };
-            plain.at(z, sign)
+            plain.at(z, side)
         };
         let now = (0..self.time.len()).map(at).collect();
         let before = if variable == Variable::Input {
@@ -199,6 +200,14 @@ pub(super) struct Solved {
     pub errors: Vec<f64>,
 }
 
+impl Solved {
+    /// What these columns come to in a window.
+    fn at<'a>(&self, columns: impl IntoIterator<Item = &'a Vec<f64>>, window: usize) -> f64 {
+        let parts = columns.into_iter().zip(&self.coefficients);
+        parts.map(|(c, w)| c[window] * w).sum()
+    }
+}
+
 impl Weak {
     /// Of a baseline, with the atoms of held effects.
     pub fn new(seen: Seen, baseline: Baseline, held: &[AtomColumns]) -> Self {
@@ -279,39 +288,37 @@ impl Weak {
         columns.map(|values| rows.force(values)).collect()
     }
 
-    /// The same weighted, without what the body explains, and orthonormal; none where hardly anything is left of one.
+    /// A column weighted, without what the body and these directions explain, of length 1; none where hardly anything is left.
+    fn direction(&self, column: &[f64], beside: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let own = orthonormal(self.weighted(column), &self.base, LEAST_TOLD)?;
+        orthonormal(own, beside, LEAST_TOLD)
+    }
+
+    /// The same of each, beside those before it.
     pub fn directions(&self, columns: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let mut all: Vec<Vec<f64>> = Vec::with_capacity(columns.len());
         for column in columns {
-            let own = orthonormal(self.weighted(column), &self.base, LEAST_TOLD)?;
-            all.push(orthonormal(own, &all, LEAST_TOLD)?);
+            all.push(self.direction(column, &all)?);
         }
         Some(all)
     }
 
+    /// The columns of the body, then these, weighted.
+    fn beside_body(&self, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let all = self.plain.iter().chain(columns);
+        all.map(|c| self.weighted(c)).collect()
+    }
+
     /// Body and coefficients of these columns, together; none where they are not told apart, or the body is none.
     pub fn solve(&self, columns: &[Vec<f64>]) -> Option<Solved> {
-        let all: Vec<Vec<f64>> = self
-            .plain
-            .iter()
-            .chain(columns)
-            .map(|c| self.weighted(c))
-            .collect();
-        least_squares(&all, &self.weighted(&self.target))
+        least_squares(&self.beside_body(columns), &self.weighted(&self.target))
     }
 
     /// Weighted windows of the acceleration that a regression explains.
     pub fn said(&self, columns: &[Vec<f64>], solved: &Solved) -> Vec<f64> {
-        let all: Vec<&Vec<f64>> = self.plain.iter().chain(columns).collect();
+        let all = || self.plain.iter().chain(columns);
         (0..self.len())
-            .map(|k| {
-                let said: f64 = all
-                    .iter()
-                    .zip(&solved.coefficients)
-                    .map(|(c, w)| c[k] * w)
-                    .sum();
-                said * self.weights[k]
-            })
+            .map(|k| solved.at(all(), k) * self.weights[k])
             .collect()
     }
 
@@ -333,8 +340,7 @@ impl Weak {
         let mut told: Vec<Vec<f64>> = Vec::new();
         let mut columns = Vec::new();
         for column in (0..count).map(hat) {
-            let own = orthonormal(self.weighted(&column), &self.base, LEAST_TOLD);
-            if let Some(own) = own.and_then(|own| orthonormal(own, &told, LEAST_TOLD)) {
+            if let Some(own) = self.direction(&column, &told) {
                 told.push(own);
                 columns.push(column);
             }
@@ -346,12 +352,7 @@ impl Weak {
     /// half does not tell the columns.
     pub fn foretold(&self, columns: &[Vec<f64>]) -> Option<Vec<f64>> {
         let blocks = &self.blocks;
-        let all: Vec<Vec<f64>> = self
-            .plain
-            .iter()
-            .chain(columns)
-            .map(|c| self.weighted(c))
-            .collect();
+        let all = self.beside_body(columns);
         let target = self.weighted(&self.target);
         let mut losses = vec![0.0; blocks.iter().max().map_or(0, |b| b + 1)];
         for half in [0, 1] {
@@ -365,12 +366,7 @@ impl Weak {
             let own: Vec<Vec<f64>> = all.iter().map(|c| of(c)).collect();
             let solved = least_squares(&own, &of(&target))?;
             for (k, block) in blocks.iter().enumerate().filter(|(_, b)| *b % 2 != half) {
-                let said: f64 = all
-                    .iter()
-                    .zip(&solved.coefficients)
-                    .map(|(c, w)| c[k] * w)
-                    .sum();
-                losses[*block] += (target[k] - said).powi(2);
+                losses[*block] += (target[k] - solved.at(&all, k)).powi(2);
             }
         }
         Some(losses)

@@ -252,10 +252,6 @@ impl Explain {
         (done / (done + 8.0), text)
     }
 
-    fn is_held(&self, id: EffectId) -> bool {
-        self.held.iter().any(|own| own.id() == id)
-    }
-
     /// Number of effects that a trial has more than the model.
     fn size(&self, trial: usize) -> usize {
         self.trials[trial]
@@ -373,7 +369,7 @@ impl Explain {
         let mut added = self.trials[trial]
             .effects()
             .iter()
-            .filter(|e| !self.is_held(e.id()));
+            .filter(|e| !self.held.iter().any(|own| own.id() == e.id()));
         self.size(trial) == level.size
             && self.holds(trial)
             && added.any(|e| is_hidden_body(*e)) == level.hidden
@@ -390,13 +386,7 @@ impl Explain {
             let of_level: Vec<usize> = (0..self.trials.len())
                 .filter(|t| self.is_of(*t, level))
                 .collect();
-            let likely: Vec<usize> = of_level
-                .iter()
-                .copied()
-                .filter(|t| self.is_likely(session, *t))
-                .collect();
-            let lead = self.lead(session, &likely);
-            let lead = lead.or_else(|| self.lead(session, &of_level));
+            let lead = self.lead(session, &of_level);
             self.leads[usize::from(hidden)].push(lead);
         }
         // A smaller one may have come up as a part of one that was looked at.
@@ -408,11 +398,7 @@ impl Explain {
                 || difference.is_met_once() && self.explains(session, self.best, *t)
                 || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best)
         };
-        let better: Vec<usize> = (0..self.trials.len())
-            .filter(open)
-            .filter(|t| self.is_likely(session, *t))
-            .filter(better)
-            .collect();
+        let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self
             .lead(session, &better)
             .filter(|_| self.looked_at.len() < MOST_LEADS);

@@ -158,7 +158,6 @@ impl Explain {
                 continue;
             };
             let fair = places.contains(place) && may_replace(*effect, best.effects()[*place]);
-            let fair = fair && self.is_likely(session, index);
             if ids.len() == own.len() && fair && trial.values() <= values {
                 let rival = Rival {
                     place: *place,

@@ -1,7 +1,7 @@
 //! One model to be fitted.
 
 use super::heat::Heat;
-use super::tuning::{CROSSINGS, FITTED, SAME_BODY, SETTLED, SETTLING, USUAL};
+use super::tuning::{CROSSINGS, FITTED, SAME_BODY, SETTLED, SETTLING};
 use super::{Trial, hidden_inertia, is_hidden_body};
 use crate::criticism::data::Data;
 use crate::criticism::fit::{Fit, least};
@@ -10,7 +10,7 @@ use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
 use crate::criticism::structure::Structure;
 use crate::effect::baseline::Baseline;
-use crate::effect::{Effect, EffectId, ParameterSpec, Range, Scales};
+use crate::effect::{Effect, EffectId, Range, Scales};
 use crate::model::Start as WindowStart;
 
 /// A model with values from which it may be fitted.
@@ -107,7 +107,7 @@ impl Sketch {
         let told: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
         // What repeats along the way has a valley at every period.
         let mut specs = effect.parameters().iter();
-        let repeats = specs.any(|p| matches!(p.range, Range::Repeating | Range::Recurring));
+        let repeats = specs.any(|p| p.range == Range::Repeating);
         let mut sketches = Vec::new();
         if told.is_empty() || is_hidden_body(effect) || repeats {
             sketches.extend(Self::sought(session, fit, effect));
@@ -317,13 +317,6 @@ fn first_guess(session: &Session) -> Option<Vec<f64>> {
     )
 }
 
-/// Values of an effect of which the record tells none to begin with: a share of what is typical.
-fn usual(session: &Session, effect: &dyn Effect) -> Vec<f64> {
-    let scales = &session.scales;
-    let value = |p: &ParameterSpec| p.clamp(USUAL * scales.of(p.dimension), scales);
-    effect.parameters().iter().map(value).collect()
-}
-
 /// The model that effects are added to: from what the screen told, and one effect after the other.
 fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) -> Option<Fit> {
     let ids: Vec<EffectId> = held.iter().map(|e| e.id()).collect();
@@ -334,9 +327,6 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
     let mut fit = Sketch::new(session, &[], guessed).fitted(session);
     for effect in held {
         let mut sketches = Sketch::beside(session, screened, &fit, *effect);
-        if sketches.is_empty() {
-            sketches.push(Sketch::with(&fit, *effect, &usual(session, *effect)));
-        }
         Sketch::with_other_bodies(&mut sketches, session, &fit);
         let all = sketches
             .into_iter()

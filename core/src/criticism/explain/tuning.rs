@@ -18,12 +18,12 @@ pub(super) struct Round {
 pub(super) const ROUNDS: [Round; 4] = [
     Round {
         iterations: 1,
-        sets: 24,
+        sets: 20,
         starts: 4,
     },
     Round {
         iterations: 2,
-        sets: 14,
+        sets: 12,
         starts: 3,
     },
     Round {
@@ -53,9 +53,6 @@ pub(super) const FITTED_HIDDEN: usize = 3;
 
 /// Samples of the usual motion over which a dry contact builds up its force: hard, and seen.
 pub(super) const CROSSINGS: [f64; 3] = [0.003, 0.35, 0.8];
-
-/// Share of its typical size with which a value begins of which the record tells nothing.
-pub(super) const USUAL: f64 = 0.1;
 
 /// Times the cost on the scout of what there is up to which a model is fitted to the record: so much a race of a few iterations on
 /// a part of it is off.

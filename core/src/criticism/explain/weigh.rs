@@ -6,7 +6,6 @@ use crate::criticism::select::{
     SMALL_SHARE, is_all_that_counters_show, is_noise, is_trifle, outweighs,
 };
 use crate::criticism::session::{Session, small_share};
-use crate::effect::is_seldom;
 
 impl Explain {
     pub(super) fn is_noise(&self, session: &Session, trial: usize) -> bool {
@@ -19,13 +18,6 @@ impl Explain {
             let score = &scored.score;
             is_all_that_counters_show(score) || is_noise(score, session.first(scored), small)
         })
-    }
-
-    /// Whether a model adds no effect that few machines have, or leaves noise with it.
-    pub(super) fn is_likely(&self, session: &Session, trial: usize) -> bool {
-        let mut added = self.trials[trial].effects().iter();
-        let seldom = added.any(|e| is_seldom(e.id()) && !self.is_held(e.id()));
-        !seldom || self.is_noise(session, trial)
     }
 
     /// Whether a model has, in the place of an effect of another, a part of that or what that comes near to.

@@ -4,7 +4,7 @@ use super::tuning::{REST, SIGN_SIGMAS, SMOOTH, WIDEST_SMOOTHING};
 use crate::criticism::noise::noise_level;
 use crate::effect::{Extent, Moment, Track};
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
-use crate::order::{median, range};
+use crate::order::{median, range, sign};
 
 /// A measured output and the standard deviation of its noise.
 #[derive(Clone, Debug)]
@@ -209,7 +209,7 @@ impl Signals {
             *direction = if width > 0.0 {
                 (speed[k] / width).clamp(-1.0, 1.0)
             } else {
-                f64::from(i8::from(speed[k] > 0.0) - i8::from(speed[k] < 0.0))
+                sign(speed[k])
             };
         }
         // A reversal crosses the hidden band at the typical acceleration, seen over two half samples.
@@ -273,11 +273,6 @@ impl Signals {
                 0.0
             } else {
                 high - low
-            },
-            places: if self.place.is_empty() {
-                [0.0; 2]
-            } else {
-                [low, high]
             },
             acceleration: rms(&rate),
             rotates: self.rotates,

@@ -4,6 +4,12 @@ use super::parse::{Expr, Function, Variable};
 use crate::model::Instant;
 
 impl Expr {
+    /// The force at this instant with these parameters; 0 where the formula has no finite value.
+    pub fn force(&self, at: &Instant, parameters: &[f64]) -> f64 {
+        let force = self.value(at, parameters);
+        if force.is_finite() { force } else { 0.0 }
+    }
+
     /// The value at this instant with these parameters; may be no number where the formula has none.
     pub fn value(&self, at: &Instant, parameters: &[f64]) -> f64 {
         let of = |e: &Self| e.value(at, parameters);

@@ -18,6 +18,7 @@ use crate::measurement::Kind;
 use crate::model::{Instant, Model};
 
 pub use parse::{FormulaError, MAX_FORMULA, MAX_PARAMETERS};
+pub(crate) use parse::{Variable, variables};
 
 /// An effect as the user writes it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,14 +59,7 @@ impl Formula {
     ) -> Result<impl Fn(&Instant, &[f64]) -> f64 + use<>, FormulaError> {
         let (tree, names) = parse::parse(&self.text, kind)?;
         let order = start::order(&tree, names.len());
-        Ok(move |at: &Instant, values: &[f64]| {
-            let mut sorted = vec![0.0; order.len()];
-            for (k, value) in order.iter().zip(values) {
-                sorted[*k] = *value;
-            }
-            let force = tree.value(at, &sorted);
-            if force.is_finite() { force } else { 0.0 }
-        })
+        Ok(move |at: &Instant, values: &[f64]| tree.force(at, &sorted(&order, values)))
     }
 
     /// The effect.
@@ -152,8 +146,7 @@ fn columns(tree: &'static parse::Expr, order: &[usize]) -> Option<&'static [Part
                     input: m.input,
                     time: m.time,
                 };
-                let force = tree.value(&at, &values);
-                if force.is_finite() { force } else { 0.0 }
+                tree.force(&at, &values)
             };
             Part::Own(Own(Box::leak(Box::new(force))))
         })
@@ -161,15 +154,13 @@ fn columns(tree: &'static parse::Expr, order: &[usize]) -> Option<&'static [Part
     Some(parts.leak())
 }
 
-impl FormulaEffect {
-    /// Values in the order of the tree.
-    fn sorted(&self, values: &[f64]) -> Vec<f64> {
-        let mut sorted = vec![0.0; values.len()];
-        for (k, value) in self.order.iter().zip(values) {
-            sorted[*k] = *value;
-        }
-        sorted
+/// Values in the order of the tree, where they come in this one.
+fn sorted(order: &[usize], values: &[f64]) -> Vec<f64> {
+    let mut sorted = vec![0.0; order.len()];
+    for (k, value) in order.iter().zip(values) {
+        sorted[*k] = *value;
     }
+    sorted
 }
 
 impl Effect for FormulaEffect {
@@ -222,10 +213,9 @@ impl Effect for FormulaEffect {
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
-        let (tree, values) = (self.tree, self.sorted(values));
-        model.own_forces.push(Box::new(move |at: &Instant| {
-            let force = tree.value(at, &values);
-            if force.is_finite() { force } else { 0.0 }
-        }));
+        let (tree, values) = (self.tree, sorted(&self.order, values));
+        model
+            .own_forces
+            .push(Box::new(move |at: &Instant| tree.force(at, &values)));
     }
 }

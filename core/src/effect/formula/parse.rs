@@ -35,7 +35,7 @@ pub struct FormulaError {
 
 /// What a formula may depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Variable {
+pub enum Variable {
     /// Position of a drive.
     Position,
     /// Velocity of a drive, output of a process.
@@ -96,8 +96,8 @@ pub(super) enum Expr {
     Call(Function, Vec<Expr>),
 }
 
-/// Variables of this kind of system.
-fn variables(kind: Kind) -> &'static [(&'static str, Variable)] {
+/// Variables of this kind of system, as one types them.
+pub fn variables(kind: Kind) -> &'static [(&'static str, Variable)] {
     match kind {
         Kind::Drive => &[
             ("x", Variable::Position),

@@ -10,7 +10,7 @@ use std::f64::consts::SQRT_2;
 use super::equations::solved;
 use super::{Probe, STILL};
 use crate::model::{free_body, slope};
-use crate::order::quantile;
+use crate::order::{quantile, sign};
 use crate::simplex::minimise;
 use nalgebra::{DMatrix, DVector};
 
@@ -355,8 +355,4 @@ impl Seen<'_> {
         let left = mean.sqrt();
         Some((Line { coefficients, left }, velocity))
     }
-}
-
-fn sign(v: f64) -> f64 {
-    if v == 0.0 { 0.0 } else { v.signum() }
 }
