@@ -3,6 +3,7 @@
 //! The page is made from finished data alone, so that the command line, the app and a batch write the
 //! same one. Everything that comes from a file is escaped.
 
+mod formulas;
 mod html;
 mod input;
 mod model;
@@ -42,6 +43,13 @@ pub fn html(input: &ReportInput) -> String {
     section(&mut out, "Where the models fail", &places(input));
     if !input.last.missing.is_empty() {
         section(&mut out, "What is missing", &missing(input));
+    }
+    if let Some(discovery) = input.discovery {
+        section(
+            &mut out,
+            "The formula of the unknown",
+            &formulas::section(discovery),
+        );
     }
     section(&mut out, "The model", &model::equations(input));
     section(

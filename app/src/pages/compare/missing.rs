@@ -64,7 +64,6 @@ impl Compare {
                 }
             }
         });
-        self.unknown_ui(ui, targets, commands);
         plot_ui(part, TALL, ui);
         ui.small(tr("Steps over one axis, with bars of two standard errors."));
     }

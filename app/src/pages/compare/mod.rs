@@ -12,6 +12,7 @@ mod export;
 mod fingerprint;
 mod form;
 mod formula;
+mod formulas;
 mod guess;
 mod hand;
 mod hint;
@@ -34,6 +35,8 @@ mod state;
 mod unknown;
 mod waterfall;
 mod welcome;
+
+use hysteron_core::diagnosis::Discovery;
 
 use crate::desk::Desk;
 use crate::export::Table;
@@ -92,9 +95,9 @@ impl Compare {
             None => {}
         }
         self.take_search();
-        self.take_discovery();
         self.take_by_hand();
         self.take_earlier(ctx);
+        self.take_discovery(ctx);
         if let Some(sealed) = &mut self.sealed {
             sealed.update(self.shown.as_deref().unwrap_or_default());
         }
@@ -213,6 +216,7 @@ impl Compare {
             return;
         }
         if self.look == Look::Time {
+            self.formulas_ui(ui, targets, commands);
             self.missing_ui(ui, targets, commands);
         }
         match self.look {
@@ -264,7 +268,7 @@ impl Compare {
             }
             Command::Limit(limits) => self.limits = Some(limits),
             Command::Discover(true) => self.discover(ctx),
-            Command::Discover(false) => self.unknown = unknown::Unknown::default(),
+            Command::Discover(false) => self.stop_discovery(),
             Command::Search(index, limits) => self.search_again(ctx, index, limits),
             Command::SaveInput(index) => {
                 if let Some(document) = export::input(self, index) {
@@ -324,7 +328,11 @@ impl Compare {
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
             "next_experiment": report.and_then(|r| r.verdict.as_ref()).and_then(|v| v.next_experiment.clone()),
             "experiments": report.and_then(|r| r.verdict.as_ref()).map_or(0, |v| v.experiments.len()),
-            "formula": self.discovery().and_then(|d| d.found()).map(|f| f.formula.clone()),
+            "looks": self.unknown.is_busy(),
+            "formula": self.discovery().and_then(Discovery::found).map(|f| {
+                let values = f.parameters.iter().map(|p| (p.name.clone(), p.value.into()));
+                serde_json::json!({"text": f.formula, "values": values.collect::<serde_json::Map<_, _>>()})
+            }),
             "steps": self.way_errors(),
             "undone": self.undone,
             "fingerprint": self.chosen(),

@@ -220,6 +220,7 @@ impl Compare {
     /// Shows the step of the present effects: at once if it is known, else by a job.
     pub(super) fn start(&mut self, ctx: &egui::Context) {
         self.job = None;
+        self.unknown.follow(&self.effects);
         let earlier = self.earlier.take();
         if self.reports.contains_key(&self.effects) {
             self.shown = Some(self.effects.clone());

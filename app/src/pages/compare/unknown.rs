@@ -1,45 +1,53 @@
-//! The formula of what no effect explains: looked for beside the page, shown by its length, added by a click.
+//! The formula of what no effect explains: the search beside the page, and what it found.
 
-use egui_plot::{Line, PlotPoints, Points};
-use hysteron_core::diagnosis::{Discovery, FoundFormula};
-use hysteron_core::effect::EffectId;
-use hysteron_core::uncertain::brief;
+use hysteron_core::diagnosis::{Candidate, Discovery, FoundFormula, NextExperiment, Reach};
+use hysteron_core::effect::{EffectId, find};
 use hysteron_work::tasks::DiscoveryTask;
 
 use super::command::Command;
 use super::formula::Typed;
 use super::state::Compare;
-use crate::hook::Targets;
 use crate::jobs::Job;
-use crate::language::tr;
-use crate::theme;
-use crate::widgets::chart::Chart;
-
-/// Formulas that are buttons.
-const MOST: usize = 6;
-
-/// Height of the plot, and width of its labels of y, points.
-const HEIGHT: f32 = 150.0;
-const AXIS_WIDTH: f32 = 60.0;
 
 /// A search beside the model with these effects, and how far it is.
 pub(super) struct Searching {
     effects: Vec<EffectId>,
     job: Job<DiscoveryTask>,
-    progress: (f64, String),
+    pub(super) progress: (f64, String),
 }
 
-/// What was looked for, and what was found.
+/// What is looked for, and what was found.
 #[derive(Default)]
 pub(super) struct Unknown {
-    searching: Option<Searching>,
+    pub(super) searching: Option<Searching>,
     found: Vec<(Vec<EffectId>, Discovery)>,
+    /// Models beside which nothing is looked for unless it is asked for: someone cancelled it, or it failed.
+    left: Vec<Vec<EffectId>>,
 }
 
 impl Unknown {
     /// Whether it looks for a formula.
     pub fn is_busy(&self) -> bool {
         self.searching.is_some()
+    }
+
+    /// Stops looking beside another model than this: its own work goes first.
+    pub fn follow(&mut self, effects: &[EffectId]) {
+        self.searching.take_if(|s| s.effects != effects);
+    }
+
+    /// Forgets what was found beside effects of the user's own: their formulas have changed.
+    pub fn forget_own(&mut self) {
+        let library = |effects: &[EffectId]| effects.iter().all(|e| find(*e).is_some());
+        self.searching.take_if(|s| !library(&s.effects));
+        self.found.retain(|(effects, _)| library(effects));
+        self.left.retain(|effects| library(effects));
+    }
+
+    /// What was found beside the model with these effects.
+    pub fn beside(&self, effects: &[EffectId]) -> Option<&Discovery> {
+        let found = self.found.iter().find(|(e, _)| e == effects);
+        found.map(|(_, discovery)| discovery)
     }
 }
 
@@ -57,132 +65,102 @@ impl Compare {
         self.unknown.searching = Some(Searching {
             effects: effects.clone(),
             job: Job::run(ctx, task),
-            progress: (0.0, String::new()),
+            progress: (0.0, "Looking for a formula".to_owned()),
         });
     }
 
-    /// Takes what was found.
-    pub(super) fn take_discovery(&mut self) {
-        let Some(searching) = &mut self.unknown.searching else {
-            return;
-        };
-        let progress = &mut searching.progress;
-        let Some(end) = searching.job.end(|share, text| *progress = (share, text)) else {
-            return;
-        };
-        let effects = std::mem::take(&mut searching.effects);
-        self.unknown.searching = None;
-        match end {
-            Ok(found) => self.unknown.found.push((effects, found)),
-            Err(text) => self.message = Some(text),
+    /// Stops looking.
+    pub(super) fn stop_discovery(&mut self) {
+        let searching = self.unknown.searching.take();
+        self.unknown.left.extend(searching.map(|s| s.effects));
+    }
+
+    /// Takes what was found, and begins by itself where a diagnosis has ended as unknown and nothing else is to be done.
+    pub(super) fn take_discovery(&mut self, ctx: &egui::Context) {
+        if let Some(searching) = &mut self.unknown.searching {
+            let progress = &mut searching.progress;
+            let Some(end) = searching.job.end(|share, text| *progress = (share, text)) else {
+                return;
+            };
+            let effects = std::mem::take(&mut searching.effects);
+            self.unknown.searching = None;
+            match end {
+                Ok(found) => self.unknown.found.push((effects, found)),
+                Err(text) => {
+                    self.unknown.left.push(effects);
+                    self.message = Some(text);
+                }
+            }
+        } else if self.begins_by_itself() {
+            self.discover(ctx);
         }
+    }
+
+    fn begins_by_itself(&self) -> bool {
+        let idle = self.job.is_none()
+            && self.opening.is_none()
+            && self.earlier.is_none()
+            && self.search.is_none()
+            && self.hand.is_none()
+            && !self.is_behind();
+        let (Some(shown), true) = (&self.shown, idle) else {
+            return false;
+        };
+        self.is_unknown() && self.discovery().is_none() && !self.unknown.left.contains(shown)
+    }
+
+    /// Whether the diagnosis has ended without an explanation of what the model on screen leaves.
+    pub(super) fn is_unknown(&self) -> bool {
+        self.report().is_some_and(|report| {
+            let verdict = report.verdict.as_ref();
+            let unknown = verdict.is_some_and(|v| v.unknown && v.contradicted.is_empty());
+            unknown && report.needless.is_empty()
+        })
+    }
+
+    /// Whether a formula of what is left may be wanted: no effect takes most of it.
+    pub(super) fn may_discover(&self) -> bool {
+        let Some(report) = self.report() else {
+            return false;
+        };
+        let suggested = report.suggestion.filter(|_| !self.is_guessing());
+        let leads = |c: &&Candidate| c.effects.first().copied() == suggested;
+        let best = report.step.candidates.iter().find(leads);
+        let little = best.is_some_and(|c| report.reach_of(c) != Reach::Most);
+        self.is_unknown() || suggested.is_some() && little
     }
 
     /// What was found beside the model on screen.
     pub(super) fn discovery(&self) -> Option<&Discovery> {
+        self.unknown.beside(self.shown.as_ref()?)
+    }
+
+    /// What was found on the way to the model on screen, the last of it.
+    pub(super) fn discovery_on_the_way(&self) -> Option<&Discovery> {
         let shown = self.shown.as_ref()?;
-        let mut all = self.unknown.found.iter().rev();
-        all.find(|(effects, _)| effects == shown).map(|(_, d)| d)
+        let mut ways = (0..=shown.len()).rev().map(|n| &shown[..n]);
+        ways.find_map(|way| self.unknown.beside(way))
     }
 
-    /// The search, or what it found.
-    pub(super) fn unknown_ui(
-        &self,
-        ui: &mut egui::Ui,
-        targets: &mut Targets,
-        commands: &mut Vec<Command>,
-    ) {
-        if let Some(searching) = &self.unknown.searching {
-            let (share, text) = &searching.progress;
-            ui.add(egui::ProgressBar::new(*share as f32).text(tr(text)));
-            if ui.button(tr("Cancel")).clicked() {
-                commands.push(Command::Discover(false));
-            }
-            return;
+    /// The experiments that are proposed: of classes of effects, and then of formulas.
+    pub(super) fn proposals(&self) -> impl Iterator<Item = &NextExperiment> {
+        let verdict = self.report().and_then(|r| r.verdict.as_ref());
+        let of_effects = verdict.into_iter().flat_map(|v| &v.experiments);
+        of_effects.chain(self.discovery().and_then(|d| d.experiment.as_ref()))
+    }
+
+    /// Adds a formula to the model as an effect of the user's own, or the same one again.
+    pub(super) fn adding(&self, found: &FoundFormula) -> Option<Command> {
+        let kind = self.measurement.as_ref()?.kind;
+        let same = |line: &&String| **line == found.typed;
+        if self.own.iter().any(|line| same(&line)) {
+            return EffectId::own(&found.name).map(Command::Add);
         }
-        let Some(discovery) = self.discovery() else {
-            let look = ui
-                .add_enabled(
-                    self.job.is_none(),
-                    egui::Button::new(tr("Look for a formula")),
-                )
-                .on_hover_text(tr(
-                    "Tries sums of up to three terms in the equation of motion; it takes a minute",
-                ));
-            targets.note("discover", ui, &look);
-            if look.clicked() {
-                commands.push(Command::Discover(true));
-            }
-            return;
-        };
-        ui.strong(tr("The formula of the unknown"));
-        ui.label(tr(&discovery.text));
-        let listed = discovery
-            .class()
-            .chain(front(discovery).filter(|f| !f.in_class));
-        ui.horizontal_wrapped(|ui| {
-            for formula in listed.take(MOST) {
-                self.formula_button(formula, ui, targets, commands);
-            }
-        });
-        front_ui(discovery, ui);
+        let (_, typed) = found.typed.split_once(':')?;
+        Some(Command::AddOwn(Typed {
+            kind,
+            name: self.free_name(&found.name),
+            formula: typed.trim().to_owned(),
+        }))
     }
-
-    fn formula_button(
-        &self,
-        found: &FoundFormula,
-        ui: &mut egui::Ui,
-        targets: &mut Targets,
-        commands: &mut Vec<Command>,
-    ) {
-        let Some(measurement) = &self.measurement else {
-            return;
-        };
-        let title = format!("{}  ({})", found.formula, brief(found.error));
-        let add = ui
-            .add_enabled(self.job.is_none(), egui::Button::new(title))
-            .on_hover_text(tr("Add this force and fit it"));
-        targets.note(format!("discovered:{}", found.name), ui, &add);
-        if add.clicked() {
-            let (_, typed) = found.typed.split_once(':').unwrap_or_default();
-            commands.push(Command::AddOwn(Typed {
-                kind: measurement.kind,
-                name: self.free_name(&found.name),
-                formula: typed.trim().to_owned(),
-            }));
-        }
-    }
-}
-
-/// Formulas that leave less than every shorter one.
-fn front(discovery: &Discovery) -> impl Iterator<Item = &FoundFormula> {
-    discovery.formulas.iter().filter(|f| f.on_front)
-}
-
-/// Error against length: all that were tried, and the front.
-fn front_ui(discovery: &Discovery, ui: &mut egui::Ui) {
-    if discovery.formulas.is_empty() {
-        return;
-    }
-    let at = |f: &FoundFormula| [f.length as f64, f.error];
-    let tried: Vec<[f64; 2]> = discovery.formulas.iter().map(at).collect();
-    let mut line = vec![[0.0, discovery.before]];
-    line.extend(front(discovery).map(at));
-    let axes = ["length of the formula", "error [noise]"];
-    let chart = Chart::new("formulas", axes, HEIGHT, AXIS_WIDTH).still();
-    chart.show(ui, |plot| {
-        plot.line(
-            Line::new("", PlotPoints::from(line))
-                .color(theme::MODEL)
-                .width(1.5),
-        );
-        plot.points(
-            Points::new("", PlotPoints::from(tried))
-                .color(theme::RESIDUAL)
-                .radius(3.0),
-        );
-    });
-    ui.small(tr(
-        "Every formula that was simulated, by the names, numbers and signs in it; the line joins those that leave least for their length.",
-    ));
 }
