@@ -17,9 +17,9 @@ fn error(harness: &App) -> f64 {
 }
 
 #[test]
-fn the_welcome_of_compare_offers_three_measurements() {
+fn the_welcome_of_compare_offers_its_measurements() {
     let mut harness = app("compare");
-    for id in ["drive-02", "drive-12", "process-02"] {
+    for id in ["drive-02", "drive-12", "drive-15", "process-02"] {
         harness.get_by_label(&format!("Open {id}"));
     }
     picture(&mut harness, "compare_welcome");

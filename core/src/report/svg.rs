@@ -184,7 +184,8 @@ impl Chart {
             let _ = match mark {
                 Mark::Ring => write!(
                     self.body,
-                    "<circle class=\"estimate\" fill=\"none\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\"/>"
+                    "<path class=\"estimate\" d=\"M{:.1} {y:.1}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0\"/>",
+                    x - 3.0
                 ),
                 Mark::Diamond => write!(
                     self.body,

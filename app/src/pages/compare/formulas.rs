@@ -139,7 +139,11 @@ impl Compare {
         if others.is_empty() {
             return;
         }
-        ui.collapsing(tr("Shorter and longer formulas"), |ui| {
+        let title = match discovery.answer {
+            Some(_) => "Shorter and longer formulas",
+            None => "The best formula of each length",
+        };
+        ui.collapsing(tr(title), |ui| {
             for formula in others.into_iter().take(MOST_OTHERS) {
                 self.row_ui(formula, ui, targets, commands);
             }
