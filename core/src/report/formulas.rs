@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use super::html::{Cell, escape, figure, legend, table};
+use super::input::shell_word;
 use super::model::experiments;
-use super::svg::{Axis, Chart, range};
-use super::{shell_word, svg};
+use super::svg::{Axis, Chart, Mark, range};
 use crate::diagnosis::{Discovery, FoundFormula};
 use crate::uncertain::{brief, interval, with_error};
 
@@ -112,7 +112,7 @@ fn picture(discovery: &Discovery, front: &[&FoundFormula]) -> String {
     );
     chart.level(1.0, "noise");
     chart.line(&line, "model");
-    chart.points(&all, svg::Mark::Ring);
-    chart.points(&class, svg::Mark::Diamond);
+    chart.points(&all, Mark::Ring);
+    chart.points(&class, Mark::Diamond);
     chart.finish("Error of the formulas against their length")
 }

@@ -37,3 +37,13 @@ pub struct ReportInput<'a> {
     /// Where it comes from.
     pub provenance: &'a Provenance,
 }
+
+/// A word of a command line, quoted if a shell would take it apart.
+pub fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}

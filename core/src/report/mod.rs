@@ -18,7 +18,7 @@ use crate::measurement::Kind;
 use crate::uncertain::brief;
 use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
-pub use input::{Provenance, ReportInput};
+pub use input::{Provenance, ReportInput, shell_word};
 pub use model::baseline;
 pub use sha256::sha256;
 
@@ -232,14 +232,4 @@ fn reproduce(input: &ReportInput) -> String {
         );
     }
     out
-}
-
-/// A word of a command line, quoted if a shell would take it apart.
-pub fn shell_word(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', "'\\''"))
-    }
 }

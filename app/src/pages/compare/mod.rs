@@ -7,6 +7,7 @@ mod built_in;
 mod by_hand;
 mod choice;
 mod command;
+mod discover;
 mod experiment;
 mod export;
 mod fingerprint;
