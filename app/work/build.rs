@@ -17,9 +17,16 @@ const LEVEL: u8 = 10;
 const TURNS: std::ops::RangeInclusive<i32> = 8..=26;
 
 /// Significant digits of what was measured.
-const DIGITS: std::ops::RangeInclusive<usize> = 5..=9;
+const DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
 
-const NAMES: [&str; 5] = ["drive-02", "drive-03", "drive-10", "drive-12", "process-02"];
+const NAMES: [&str; 6] = [
+    "drive-02",
+    "drive-03",
+    "drive-10",
+    "drive-12",
+    "drive-15",
+    "process-02",
+];
 
 fn main() -> Result<()> {
     println!("cargo::rerun-if-changed=src/packed.rs");
@@ -155,10 +162,15 @@ fn column_as(fields: &[&str], kind: Kind) -> Result<Option<Vec<u8>>> {
 
 /// A number in units of its last of `digits` decimals, and what stands behind it.
 fn split(value: f64, digits: usize) -> (i64, i64) {
-    // The least that is not lost by rounding.
-    let whole = (value.abs() * ten(digits) + 1e-9).floor();
+    // The least that is not lost by rounding, of a number of any size.
+    let scaled = value.abs() * ten(digits);
+    let whole = (scaled * (1.0 + 2.0 * f64::EPSILON) + 1e-9).floor();
     let number = whole as i64 * value.signum() as i64;
     let more = more_digits(number, digits);
+    if more == 0 {
+        // Nothing is kept behind it.
+        return (number, 0);
+    }
     let all = (value.abs() * ten(digits + more)).round();
     (number, (all - whole * ten(more)) as i64)
 }

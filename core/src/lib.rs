@@ -46,6 +46,7 @@ pub mod effect;
 pub mod explore;
 mod exponential;
 pub mod figures;
+mod fourier;
 pub mod hunting;
 pub mod limit_cycle;
 pub mod maps;

@@ -177,6 +177,47 @@ fn an_effect_of_ones_own_is_named_as_one_writes() {
 }
 
 #[test]
+fn what_no_effect_explains_comes_out_as_a_formula_that_one_click_adds() {
+    let mut harness = opened("../../assets/measurements/drive-15", WIDE);
+    // It was looked for without being asked.
+    let formula = state(&harness)["formula"].clone();
+    assert_eq!(formula["text"], "-a*exp(-((x-c)/w)^2)");
+    harness.get_by_label_contains("but a formula does: F\u{a0}= -a*exp(-((x-c)/w)^2)");
+    let said = texts(&harness);
+    assert!(said.iter().any(|t| t.starts_with("95 %: 0.79")), "{said:?}");
+    says(&harness, "A formula explains what is left: add it");
+    picture(&mut harness, "compare_formula");
+    press(&mut harness, "Add formula_1");
+    let error = |harness: &App| state(harness)["error"].as_f64();
+    assert!(error(&harness).is_some_and(|e| e < 1.15));
+    assert_eq!(state(&harness)["effects"][1], "formula_1");
+    says(&harness, "Nothing more is missing");
+    // It goes wherever an effect of one's own goes.
+    let link = state(&harness)["link"].as_str().expect("a link").to_owned();
+    assert!(
+        link.contains("compare.own=") && link.contains("formula_1"),
+        "{link}"
+    );
+    let mut there = app("compare", WIDE);
+    show(&mut there, &link);
+    assert_eq!(error(&there), error(&harness));
+    // Back again, and by what the page says to do next.
+    press(&mut harness, "Baseline");
+    assert_eq!(state(&harness)["formula"], formula);
+    press(&mut harness, "Try it");
+    assert_eq!(state(&harness)["effects"][1], "formula_1");
+    assert!(error(&harness).is_some_and(|e| e < 1.15));
+}
+
+#[test]
+fn a_narrow_window_shows_the_formula_too() {
+    let mut harness = opened("../../assets/measurements/drive-15", NARROW);
+    harness.get_by_label("Add formula_1").scroll_to_me();
+    finish(&mut harness);
+    picture(&mut harness, "compare_formula_narrow");
+}
+
+#[test]
 fn in_a_low_window_each_plot_is_scrolled_to_with_its_axis() {
     let size = [1000.0, 700.0];
     let mut harness = opened("drive-05", size);

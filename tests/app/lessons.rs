@@ -267,6 +267,20 @@ fn why_does_it_drift() {
 }
 
 #[test]
+fn find_the_formula() {
+    let mut harness = open("unknown");
+    assert_eq!(state(&harness)["file"], "drive-15");
+    assert!(shown(&harness, "error") > 100.0);
+    answer(&mut harness, "0.5");
+    assert!(!solved(&harness, "unknown"));
+    let place = shown(&harness, "formula.values.c").to_string();
+    answer(&mut harness, &place);
+    assert!(solved(&harness, "unknown"), "{place}");
+    follow(&mut harness, "Add formula_1");
+    assert!(shown(&harness, "error") < 1.15);
+}
+
+#[test]
 fn which_effect_is_missing() {
     let mut harness = open("mystery");
     assert_eq!(state(&harness)["file"], "drive-02");

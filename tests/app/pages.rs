@@ -17,9 +17,9 @@ fn error(harness: &App) -> f64 {
 }
 
 #[test]
-fn the_welcome_of_compare_offers_three_measurements() {
+fn the_welcome_of_compare_offers_its_measurements() {
     let mut harness = app("compare");
-    for id in ["drive-02", "drive-12", "process-02"] {
+    for id in ["drive-02", "drive-12", "drive-15", "process-02"] {
         harness.get_by_label(&format!("Open {id}"));
     }
     picture(&mut harness, "compare_welcome");
@@ -183,10 +183,29 @@ fn an_effect_of_ones_own_can_be_undone_and_done_again() {
     }
 }
 
+/// Waits until a formula is looked for, which begins by itself, and stops that: then only who asks for one gets it.
+fn stop_looking(harness: &mut App) {
+    while state(harness)["looks"] != true {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        harness.step();
+    }
+    assert_eq!(
+        state(harness)["hint"],
+        "Nothing in the library fits: a formula is being looked for."
+    );
+    harness.step();
+    harness.get_by_label("Cancel").click();
+    finish(harness);
+    assert_eq!(state(harness)["looks"], false);
+    assert_eq!(state(harness)["formula"], serde_json::Value::Null);
+}
+
 #[test]
 fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
     let rig = rig::DriveRig {
         excitation: rig::Excitation::Multisine { amplitude: 0.08 },
+        samples: 3000,
+        sampling: 1e-3,
         stranger: Some(rig::Stranger::SpeedBump {
             torque: 0.05,
             centre: 3.0,
@@ -198,7 +217,7 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
     let ctx = harness.ctx.clone();
     let csv = rig.measure().to_csv();
     harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
-    finish(&mut harness);
+    stop_looking(&mut harness);
     harness.get_by_label("What is missing, estimated without a model");
     harness.get_by_label_contains("A force that depends on the velocity alone");
     picture(&mut harness, "compare_missing_force");
@@ -214,6 +233,14 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
         "No effect explains the rest: write one of your own."
     );
     assert!(harness.query_by_label("Try it").is_none());
+    harness.get_by_label("Over time").click();
+    finish(&mut harness);
+    harness.get_by_label("Look for a formula").click();
+    finish(&mut harness);
+    // A drag to both sides at one speed is none of the forms that are tried.
+    harness.get_by_label_contains("No formula of up to three terms explains more than it leaves");
+    assert_eq!(state(&harness)["formula"], serde_json::Value::Null);
+    picture(&mut harness, "compare_formula_none");
 }
 
 /// Where two effects hide each other, either alone may be chance: it is offered as that, and the way goes on from there.
@@ -233,7 +260,7 @@ fn what_may_help_is_offered_though_chance_is_not_ruled_out() {
     let ctx = harness.ctx.clone();
     let csv = rig.measure().to_csv();
     harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
-    finish(&mut harness);
+    stop_looking(&mut harness);
     harness.get_by_label("Perhaps, but it may be chance");
     let state = state(&harness);
     let hint = state["hint"].as_str().expect("a hint");

@@ -1,7 +1,9 @@
 //! The report stands alone: well-formed, without scripts or requests, and it says what the diagnosis says.
 
 use hysteron_core::criticism::DiagnosisJob;
-use hysteron_core::diagnosis::{Diagnosis, StepReport};
+use hysteron_core::diagnosis::{
+    Diagnosis, Discovery, DiscoveryEnd, FoundFormula, Parameter, Status, StepReport,
+};
 use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::progress::Progress;
 use hysteron_core::report::{Provenance, ReportInput, html, sha256};
@@ -25,6 +27,14 @@ fn diagnose(measurement: &Measurement) -> (Diagnosis, StepReport, StepReport) {
 }
 
 fn page(measurement: &Measurement, command: &str) -> (Diagnosis, String) {
+    page_with(measurement, command, None)
+}
+
+fn page_with(
+    measurement: &Measurement,
+    command: &str,
+    discovery: Option<&Discovery>,
+) -> (Diagnosis, String) {
     let (diagnosis, first, last) = diagnose(measurement);
     assert_eq!(
         last.step.effects,
@@ -37,6 +47,7 @@ fn page(measurement: &Measurement, command: &str) -> (Diagnosis, String) {
         first_atlas: &first.atlas,
         last: &last,
         verdict: Some(&diagnosis.verdict),
+        discovery,
         model: None,
         provenance: &Provenance {
             command: command.to_owned(),
@@ -150,4 +161,55 @@ fn text_from_a_file_never_becomes_markup() {
     let (_, page) = page(&measurement, hostile);
     check_well_formed(&page);
     check_self_contained(&page);
+}
+
+#[test]
+fn a_formula_that_was_looked_for_has_its_section() {
+    let formula = |length, error, in_class| FoundFormula {
+        name: format!("formula_{length}"),
+        formula: format!("-a*y^{length}"),
+        length,
+        error,
+        on_front: true,
+        in_class,
+        parameters: vec![Parameter {
+            effect: None,
+            name: "a".to_owned(),
+            label: "a".to_owned(),
+            value: 2.0,
+            std_error: 0.1,
+            unit: "1".to_owned(),
+            status: Status::Free,
+        }],
+        body: Vec::new(),
+        typed: format!("formula_{length}: -a*y^{length}; a = 2"),
+    };
+    let discovery = Discovery {
+        end: DiscoveryEnd::Explained,
+        before: 25.0,
+        answer: Some(1),
+        formulas: vec![formula(3, 7.0, false), formula(5, 1.01, true)],
+        curve: None,
+        experiment: None,
+        text: "Input = -a*y^5 & no <b>more</b>.".to_owned(),
+    };
+    let measurement = import_csv("process-02.csv", &bytes("process-02"), None).unwrap();
+    let (_, without) = page(&measurement, "hysteron");
+    assert!(!without.contains("The formula of the unknown"));
+    let (_, page) = page_with(&measurement, "hysteron", Some(&discovery));
+    check_well_formed(&page);
+    check_self_contained(&page);
+    for text in [
+        "<h2>The formula of the unknown</h2>",
+        "Input = -a*y^5 &amp; no &lt;b&gt;more&lt;/b&gt;.",
+        "<code>-a*y^3</code>",
+        "<code>-a*y^5</code>",
+        "a = 2.0 ± 5 % (95 %: 1.80 to 2.20)",
+        "length of the formula",
+        "--effect &#39;formula_5: -a*y^5; a = 2&#39;",
+    ] {
+        assert!(page.contains(text), "'{text}' is missing");
+    }
+    assert_eq!(page.matches("class=\"diamond\"").count(), 1);
+    assert_eq!(page.matches("a3 3 0 1 0 6 0").count(), 2);
 }

@@ -23,7 +23,7 @@ use imports::{Imports, circles, imports as imports_of};
 use tree::{Tree, crates_in};
 
 /// Rooms of core, lowest first, then those of the app: a file imports from its own room and from rooms before it.
-const ROOMS: [&str; 39] = [
+const ROOMS: [&str; 40] = [
     // small numerics, no physics
     "order",
     "sums",
@@ -32,6 +32,7 @@ const ROOMS: [&str; 39] = [
     "random",
     "curve",
     "exponential",
+    "fourier",
     "crew",
     "packed",
     "progress",

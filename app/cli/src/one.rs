@@ -171,6 +171,7 @@ pub fn of(
                         first_atlas: &first.atlas,
                         last,
                         verdict: Some(&diagnosis.verdict),
+                        discovery: discovery.as_ref(),
                         model: (given != blank()).then_some(&given),
                         provenance: &provenance(source.0, arguments, source.1),
                     }))

@@ -38,7 +38,7 @@ macro_rules! texts {
 }
 
 /// The texts, in the order of the course, by their ids.
-const SOURCES: [(&str, Texts); 9] = [
+const SOURCES: [(&str, Texts); 10] = [
     texts!("relay"),
     texts!("oscillation"),
     texts!("exact"),
@@ -48,6 +48,7 @@ const SOURCES: [(&str, Texts); 9] = [
     texts!("drift"),
     texts!("hunting"),
     texts!("mystery"),
+    texts!("unknown"),
 ];
 
 /// A lesson.

@@ -30,10 +30,11 @@ pub const DRIVE_02: Enclosed = enclosed!(Drive, "drive-02");
 pub const DRIVE_03: Enclosed = enclosed!(Drive, "drive-03");
 pub const DRIVE_10: Enclosed = enclosed!(Drive, "drive-10");
 pub const DRIVE_12: Enclosed = enclosed!(Drive, "drive-12");
+pub const DRIVE_15: Enclosed = enclosed!(Drive, "drive-15");
 pub const PROCESS_02: Enclosed = enclosed!(Process, "process-02");
 
 /// All of them.
-const ALL: [Enclosed; 5] = [DRIVE_02, DRIVE_03, DRIVE_10, DRIVE_12, PROCESS_02];
+const ALL: [Enclosed; 6] = [DRIVE_02, DRIVE_03, DRIVE_10, DRIVE_12, DRIVE_15, PROCESS_02];
 
 /// Whether a measurement of this name comes with the app.
 pub fn is_enclosed(name: &str) -> bool {

@@ -18,8 +18,9 @@ mod web {
     use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
     use hysteron_work::tasks::{
-        ExperimentTask, GapTask, HandTask, MapTask, MeasuredTask, MysteryTask, News, OnOffTask,
-        READY, ReadTask, RevealTask, ScenarioTask, ServoTask, StepTask, Task as _, TuneTask,
+        DiscoveryTask, ExperimentTask, GapTask, HandTask, MapTask, MeasuredTask, MysteryTask, News,
+        OnOffTask, READY, ReadTask, RevealTask, ScenarioTask, ServoTask, StepTask, Task as _,
+        TuneTask,
     };
     use hysteron_work::wire::{pack, unpack};
     use hysteron_work::work::Work;
@@ -64,6 +65,7 @@ mod web {
         match name.as_str() {
             ReadTask::NAME => run::<ReadTask>(scope, &task),
             StepTask::NAME => run::<StepTask>(scope, &task),
+            DiscoveryTask::NAME => run::<DiscoveryTask>(scope, &task),
             ExperimentTask::NAME => run::<ExperimentTask>(scope, &task),
             HandTask::NAME => run::<HandTask>(scope, &task),
             MapTask::NAME => run::<MapTask>(scope, &task),

@@ -3,7 +3,7 @@
 
 use hysteron_core::backlash::GapEstimate;
 use hysteron_core::by_hand::HandReplay;
-use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, StepReport};
+use hysteron_core::diagnosis::{Discovery, FittedModel, Limits, NextExperiment, StepReport};
 use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
 use hysteron_core::explore::ExploreInput;
@@ -105,6 +105,22 @@ pub struct StepTask {
 impl Task for StepTask {
     const NAME: &'static str = "step";
     type Report = StepReport;
+}
+
+/// Looks for a formula of what a model leaves.
+#[derive(Serialize, Deserialize)]
+pub struct DiscoveryTask {
+    /// The measurement.
+    pub measurement: Box<Measurement>,
+    /// Effects on top of the baseline.
+    pub effects: Vec<EffectId>,
+    /// What the user knows of the model.
+    pub model: Option<UserModel>,
+}
+
+impl Task for DiscoveryTask {
+    const NAME: &'static str = "discovery";
+    type Report = Discovery;
 }
 
 /// Replays a fitted model with values that are set by hand.

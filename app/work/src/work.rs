@@ -7,8 +7,8 @@ use std::fmt;
 use hysteron_core::backlash::estimate_gap;
 use hysteron_core::by_hand::{ByHand, HandReplay};
 use hysteron_core::crew::Crew;
-use hysteron_core::criticism::{ExperimentJob, StepJob};
-use hysteron_core::diagnosis::{NextExperiment, StepReport};
+use hysteron_core::criticism::{DiscoveryJob, ExperimentJob, StepJob};
+use hysteron_core::diagnosis::{Discovery, NextExperiment, StepReport};
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
 use hysteron_core::measurement::{ImportError, Measurement, Problem, columns, import};
@@ -21,8 +21,8 @@ use hysteron_core::user_model::UserModel;
 use crate::content::Content;
 use crate::packed::unpack;
 use crate::tasks::{
-    ExperimentTask, GapReport, GapTask, HandTask, Made, MapTask, MysteryTask, News, Opened,
-    ReadReport, ReadTask, RevealTask, Source, StepTask, Task, TuneTask,
+    DiscoveryTask, ExperimentTask, GapReport, GapTask, HandTask, Made, MapTask, MysteryTask, News,
+    Opened, ReadReport, ReadTask, RevealTask, Source, StepTask, Task, TuneTask,
 };
 
 /// Where a task says its news; false when nobody listens any more and it should end.
@@ -152,6 +152,23 @@ impl Work for StepTask {
                 Some(error) => News::Failed(error.to_string()),
                 None => News::Report(Box::new(report)),
             });
+        }
+    }
+}
+
+impl Work for DiscoveryTask {
+    fn run(self, say: Say<'_, Discovery>) {
+        let blank = UserModel::blank(self.measurement.kind);
+        let model = self.model.as_ref().unwrap_or(&blank);
+        let mut job = match DiscoveryJob::new(&self.measurement, &self.effects, model) {
+            Ok(job) => job.with_crew(&crew()),
+            Err(error) => {
+                say(News::Failed(error.to_string()));
+                return;
+            }
+        };
+        if let Some(discovery) = finish(|| job.advance(), say) {
+            say(News::Report(Box::new(discovery)));
         }
     }
 }

@@ -113,7 +113,7 @@ svg .grid { stroke: var(--line); stroke-width: .6; } svg .frame { stroke: var(--
 svg path { fill: none; stroke-linejoin: round; } svg .measured { stroke: var(--measured); stroke-width: 2.6; }
 svg .model { stroke: var(--model); stroke-width: 1.5; stroke-dasharray: 6 3; } svg .residual { stroke: var(--residual); stroke-width: 1.3; }
 svg .before { stroke: var(--model); stroke-width: 1.6; stroke-dasharray: 2 3; } svg .noise { stroke: var(--noise); stroke-width: 1.3; stroke-dasharray: 5 4; }
-svg .estimate { stroke: var(--residual); stroke-width: 2; } svg .band { fill: var(--residual); opacity: .25; stroke: none; }
+svg .estimate { stroke: var(--residual); stroke-width: 2; } svg path.diamond { fill: var(--measured); } svg .band { fill: var(--residual); opacity: .25; stroke: none; }
 svg rect.bar { fill: var(--model); } svg rect.floor { fill: var(--noise); } svg rect.shade { fill: var(--band); opacity: .18; }
 "#;
 

@@ -1,6 +1,6 @@
 //! What a report is made from.
 
-use crate::diagnosis::{Profile, Step, StepReport, Verdict};
+use crate::diagnosis::{Discovery, Profile, Step, StepReport, Verdict};
 use crate::measurement::Measurement;
 use crate::user_model::UserModel;
 
@@ -30,8 +30,20 @@ pub struct ReportInput<'a> {
     pub last: &'a StepReport,
     /// What the data say, if they have been heard to the end.
     pub verdict: Option<&'a Verdict>,
+    /// What a search for a formula of the rest found, if there was one.
+    pub discovery: Option<&'a Discovery>,
     /// The model that the user brought, if any.
     pub model: Option<&'a UserModel>,
     /// Where it comes from.
     pub provenance: &'a Provenance,
+}
+
+/// A word of a command line, quoted if a shell would take it apart.
+pub fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
 }

@@ -3,6 +3,7 @@
 //! The page is made from finished data alone, so that the command line, the app and a batch write the
 //! same one. Everything that comes from a file is escaped.
 
+mod formulas;
 mod html;
 mod input;
 mod model;
@@ -17,7 +18,7 @@ use crate::measurement::Kind;
 use crate::uncertain::brief;
 use crate::user_model::UserModel;
 use html::{escape, figure, legend, section};
-pub use input::{Provenance, ReportInput};
+pub use input::{Provenance, ReportInput, shell_word};
 pub use model::baseline;
 pub use sha256::sha256;
 
@@ -42,6 +43,13 @@ pub fn html(input: &ReportInput) -> String {
     section(&mut out, "Where the models fail", &places(input));
     if !input.last.missing.is_empty() {
         section(&mut out, "What is missing", &missing(input));
+    }
+    if let Some(discovery) = input.discovery {
+        section(
+            &mut out,
+            "The formula of the unknown",
+            &formulas::section(discovery),
+        );
     }
     section(&mut out, "The model", &model::equations(input));
     section(
@@ -224,14 +232,4 @@ fn reproduce(input: &ReportInput) -> String {
         );
     }
     out
-}
-
-/// A word of a command line, quoted if a shell would take it apart.
-pub fn shell_word(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:+,%@".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', "'\\''"))
-    }
 }

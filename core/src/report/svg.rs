@@ -126,6 +126,13 @@ fn tick_text(value: f64, step: f64) -> String {
     format!("{value:.digits$}")
 }
 
+/// How a place in a chart is marked: the shape tells it where colours cannot.
+#[derive(Clone, Copy)]
+pub(super) enum Mark {
+    Ring,
+    Diamond,
+}
+
 /// A chart that is drawn piece by piece.
 pub(super) struct Chart {
     width: f64,
@@ -168,6 +175,25 @@ impl Chart {
             }
         }
         let _ = write!(self.body, "<path class=\"{class}\" d=\"{path}\"/>");
+    }
+
+    /// Places, each with a mark.
+    pub fn points(&mut self, points: &[[f64; 2]], mark: Mark) {
+        for [x, y] in points.iter().filter(|p| p.iter().all(|v| v.is_finite())) {
+            let (x, y) = (self.at_x(*x), self.at_y(*y));
+            let _ = match mark {
+                Mark::Ring => write!(
+                    self.body,
+                    "<path class=\"estimate\" d=\"M{:.1} {y:.1}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0\"/>",
+                    x - 3.0
+                ),
+                Mark::Diamond => write!(
+                    self.body,
+                    "<path class=\"diamond\" d=\"M{x:.1} {:.1}l6 6l-6 6l-6 -6Z\"/>",
+                    y - 6.0
+                ),
+            };
+        }
     }
 
     /// A level.

@@ -1,7 +1,8 @@
 //! The page's answer, where the model fails, and messages, in words.
 
-use hysteron_core::diagnosis::StepReport;
+use hysteron_core::diagnosis::{DiscoveryEnd, StepReport};
 use hysteron_core::effect::EffectId;
+use hysteron_core::measurement::Kind;
 use hysteron_core::uncertain::brief;
 use hysteron_core::user_model::UserModel;
 
@@ -45,11 +46,11 @@ impl Compare {
                 let [error, fitted] = [error, report.step.error].map(times_noise);
                 format!("By hand the error is {about}{error} × the noise; the fit leaves {fitted}.")
             }
-            Some(report) => {
+            Some(report) => self.explained().unwrap_or_else(|| {
                 let present = self.model.as_ref().map(UserModel::present);
                 let verdict = report.verdict.as_ref();
                 report.answer(verdict, &present.unwrap_or_default(), self.is_noise(report))
-            }
+            }),
         };
         let before = self.report().is_some() && self.job.is_some();
         if before && self.shown.as_ref() != Some(&self.effects) {
@@ -59,6 +60,25 @@ impl Compare {
         }
         for noise in self.report().iter().flat_map(|report| &report.noise) {
             ui.weak(tr(noise.words()));
+        }
+    }
+
+    /// What explains the rest where no effect does.
+    fn explained(&self) -> Option<String> {
+        let discovery = self.discovery().filter(|_| self.is_unknown())?;
+        let whole = discovery.end == DiscoveryEnd::Explained;
+        let formula = &discovery.found().filter(|_| whole)?.formula;
+        let symbol = self.force_symbol();
+        Some(format!(
+            "No effect in the library explains the rest, but a formula does: {symbol} = {formula}"
+        ))
+    }
+
+    /// What a formula gives.
+    pub(super) fn force_symbol(&self) -> &'static str {
+        match self.measurement.as_ref().map(|m| m.kind) {
+            Some(Kind::Process) => "Input",
+            _ => "F",
         }
     }
 

@@ -9,7 +9,7 @@ pub(super) struct BuiltIn {
     pub story: &'static str,
 }
 
-pub(super) const BUILT_IN: [BuiltIn; 3] = [
+pub(super) const BUILT_IN: [BuiltIn; 4] = [
     BuiltIn {
         file: enclosed::DRIVE_02,
         title: "A drive that loses its swing",
@@ -19,6 +19,11 @@ pub(super) const BUILT_IN: [BuiltIn; 3] = [
         file: enclosed::DRIVE_12,
         title: "A drive that answers late",
         story: "The same rig with another amplifier and older bearings. One effect is not enough.",
+    },
+    BuiltIn {
+        file: enclosed::DRIVE_15,
+        title: "A drive with something in its way",
+        story: "Nothing in the library explains it. Let the data say what the force looks like.",
     },
     BuiltIn {
         file: enclosed::PROCESS_02,

@@ -35,6 +35,8 @@ pub(super) enum Command {
     Limit(Limits),
     /// Looks for a proposal again, within these limits.
     Search(usize, Limits),
+    /// Looks for a formula of what is left, or stops looking.
+    Discover(bool),
     /// Saves the input of a proposal.
     SaveInput(usize),
     /// The word that opens the seal is being typed, and whether it can be read.

@@ -100,13 +100,7 @@ fn opening_ui(
         return;
     }
     let Program::Relay { gains, .. } = &proposal.program else {
-        let save = ui.button(tr("Save the input as CSV")).on_hover_text(tr(
-            "Time and input, sample by sample, to play back on the rig",
-        ));
-        targets.note(format!("experiment:{index}:save"), ui, &save);
-        if save.clicked() {
-            commands.push(Command::SaveInput(index));
-        }
+        save_ui(index, ui, targets, commands);
         return;
     };
     for (k, model) in proposal.models.iter().enumerate() {
@@ -128,8 +122,24 @@ fn opening_ui(
     }
 }
 
+/// Saves the input of a proposal.
+pub(super) fn save_ui(
+    index: usize,
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    let save = ui.button(tr("Save the input as CSV")).on_hover_text(tr(
+        "Time and input, sample by sample, to play back on the rig",
+    ));
+    targets.note(format!("experiment:{index}:save"), ui, &save);
+    if save.clicked() {
+        commands.push(Command::SaveInput(index));
+    }
+}
+
 /// How well each kind of experiment would do, as bars.
-fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::Ui) {
+pub(super) fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::Ui) {
     let trials: Vec<Trial> = std::iter::once(proposal.trial())
         .chain(proposal.others.iter().cloned())
         .collect();

@@ -26,6 +26,7 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
         first_atlas: first.map_or(&[], |r| r.atlas.as_slice()),
         last,
         verdict: last.verdict.as_ref(),
+        discovery: page.discovery_on_the_way(),
         model: page.model.as_ref(),
         provenance: &Provenance {
             command: command(page, &measurement.name),
@@ -71,7 +72,7 @@ pub(super) fn model(page: &Compare) -> Option<Document> {
 /// The input of a proposed experiment, sample by sample; `None` where it follows from what is measured.
 pub(super) fn input(page: &Compare, index: usize) -> Option<Document> {
     let measurement = page.measurement.as_ref()?;
-    let proposal = page.report()?.verdict.as_ref()?.experiments.get(index)?;
+    let proposal = page.proposals().nth(index)?;
     let samples = (proposal.duration / proposal.step).min(MOST_SAMPLES) as usize;
     let open = !matches!(proposal.program, Program::Relay { .. });
     open.then(|| {

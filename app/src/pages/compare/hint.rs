@@ -1,6 +1,6 @@
 //! What to try next: it follows from what is open, and from what was found.
 
-use hysteron_core::diagnosis::{Candidate, Reach, StepReport, Verdict};
+use hysteron_core::diagnosis::{Candidate, DiscoveryEnd, Reach, StepReport, Verdict};
 use hysteron_core::effect::{EffectId, name_of};
 
 use super::experiment;
@@ -71,6 +71,10 @@ impl Compare {
             };
         }
         if !verdict.complete {
+            let explained = self.discovery().map(|d| d.end) == Some(DiscoveryEnd::Explained);
+            if explained || self.unknown.is_busy() {
+                return self.formula_hint().unwrap_or_else(|| self.where_it_fails());
+            }
             // Two effects may hide each other: the second shows when the first is in the model.
             let perhaps = report.step.candidates.iter().find(|c| c.promising);
             if let Some(effect) = perhaps.and_then(|c| c.effects.first()) {
@@ -81,7 +85,7 @@ impl Compare {
                     &with,
                 );
             }
-            return self.where_it_fails();
+            return self.formula_hint().unwrap_or_else(|| self.where_it_fails());
         }
         if self.sealed.as_ref().is_some_and(|s| !s.is_revealed()) {
             if self.look == Look::Reveal {
@@ -94,6 +98,34 @@ impl Compare {
             return self.another();
         }
         self.beside()
+    }
+
+    /// What is looked for, or was found, where no effect explains the rest.
+    fn formula_hint(&self) -> Option<Hint> {
+        if self.unknown.is_busy() {
+            let sentence = "Nothing in the library fits: a formula is being looked for.";
+            return Some(Hint::say(sentence));
+        }
+        let discovery = self.discovery()?;
+        let found = discovery.found()?;
+        let whole = discovery.end == DiscoveryEnd::Explained;
+        let share = if whole { "" } else { "a part of " };
+        let sentence = format!("A formula explains {share}what is left: add it.");
+        let Some(super::command::Command::AddOwn(typed)) = self.adding(found) else {
+            let with = [self.effects.as_slice(), &[EffectId::own(&found.name)?]].concat();
+            return Some(set_effects(sentence, &with));
+        };
+        let own = [self.own.as_slice(), &[typed.line()]].concat();
+        let mut ids: Vec<String> = self.effects.iter().map(|e| e.as_str().to_owned()).collect();
+        ids.push(typed.id());
+        let set = |field, value| Command::Set("compare", field, value);
+        Some(Hint {
+            sentence,
+            commands: vec![
+                set("own", serde_json::json!(own)),
+                set("effects", serde_json::json!(ids)),
+            ],
+        })
     }
 
     /// The step before beside this one, in plots that can show both.

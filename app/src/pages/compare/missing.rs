@@ -69,7 +69,7 @@ impl Compare {
     }
 
     /// A name that no effect of the user's has yet.
-    fn free_name(&self, name: &str) -> String {
+    pub(super) fn free_name(&self, name: &str) -> String {
         let taken = |name: &str| {
             self.own
                 .iter()

@@ -7,11 +7,13 @@ mod built_in;
 mod by_hand;
 mod choice;
 mod command;
+mod discover;
 mod experiment;
 mod export;
 mod fingerprint;
 mod form;
 mod formula;
+mod formulas;
 mod guess;
 mod hand;
 mod hint;
@@ -31,8 +33,11 @@ mod sealed;
 mod settings;
 mod side;
 mod state;
+mod unknown;
 mod waterfall;
 mod welcome;
+
+use hysteron_core::diagnosis::Discovery;
 
 use crate::desk::Desk;
 use crate::export::Table;
@@ -76,7 +81,7 @@ impl Compare {
         if let Some(text) = self.saved.1.try_iter().last() {
             self.message = Some(text);
         }
-        if self.job.is_some() || self.opening.is_some() {
+        if self.job.is_some() || self.opening.is_some() || self.unknown.is_busy() {
             // The page shows that it lives, also where the job says nothing new for a while.
             ctx.request_repaint_after(ALIVE);
         }
@@ -93,6 +98,7 @@ impl Compare {
         self.take_search();
         self.take_by_hand();
         self.take_earlier(ctx);
+        self.take_discovery(ctx);
         if let Some(sealed) = &mut self.sealed {
             sealed.update(self.shown.as_deref().unwrap_or_default());
         }
@@ -211,6 +217,7 @@ impl Compare {
             return;
         }
         if self.look == Look::Time {
+            self.formulas_ui(ui, targets, commands);
             self.missing_ui(ui, targets, commands);
         }
         match self.look {
@@ -261,6 +268,8 @@ impl Compare {
                 self.look = Look::Fingerprint;
             }
             Command::Limit(limits) => self.limits = Some(limits),
+            Command::Discover(true) => self.discover(ctx),
+            Command::Discover(false) => self.stop_discovery(),
             Command::Search(index, limits) => self.search_again(ctx, index, limits),
             Command::SaveInput(index) => {
                 if let Some(document) = export::input(self, index) {
@@ -307,7 +316,7 @@ impl Compare {
         serde_json::json!({
             "guessing": self.is_guessing(),
             "by_hand": self.hand_error().map(|(error, exact)| serde_json::json!({"error": error, "exact": exact})),
-            "busy": self.is_behind() || self.hand.as_ref().is_some_and(by_hand::Hand::is_busy) || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
+            "busy": self.is_behind() || self.hand.as_ref().is_some_and(by_hand::Hand::is_busy) || self.opening.is_some() || self.job.is_some() || self.search.is_some() || self.unknown.is_busy() || self.earlier.is_some() || self.sealed.as_ref().is_some_and(Sealed::is_busy),
             "progress": self.progress.0,
             "mapping": self.form.as_ref().map(Form::hook_state),
             "file": self.measurement.as_ref().map(|m| m.name.clone()),
@@ -320,6 +329,11 @@ impl Compare {
             "verdict": report.and_then(|r| r.verdict.as_ref()).map(|v| v.text.clone()),
             "next_experiment": report.and_then(|r| r.verdict.as_ref()).and_then(|v| v.next_experiment.clone()),
             "experiments": report.and_then(|r| r.verdict.as_ref()).map_or(0, |v| v.experiments.len()),
+            "looks": self.unknown.is_busy(),
+            "formula": self.discovery().and_then(Discovery::found).map(|f| {
+                let values = f.parameters.iter().map(|p| (p.name.clone(), p.value.into()));
+                serde_json::json!({"text": f.formula, "values": values.collect::<serde_json::Map<_, _>>()})
+            }),
             "steps": self.way_errors(),
             "undone": self.undone,
             "fingerprint": self.chosen(),

@@ -12,6 +12,7 @@ use super::look::Look;
 use super::opening::Opening;
 use super::sealed::Sealed;
 use super::state::Compare;
+use super::unknown::Unknown;
 use crate::files::Held;
 use crate::jobs::Job;
 use hysteron_work::content::Content;
@@ -210,6 +211,7 @@ impl Compare {
         self.lost.clear();
         self.limits = None;
         self.search = None;
+        self.unknown = Unknown::default();
         self.hand = None;
         self.guess = Guess::default();
         self.finding = 0;
@@ -218,6 +220,7 @@ impl Compare {
     /// Shows the step of the present effects: at once if it is known, else by a job.
     pub(super) fn start(&mut self, ctx: &egui::Context) {
         self.job = None;
+        self.unknown.follow(&self.effects);
         let earlier = self.earlier.take();
         if self.reports.contains_key(&self.effects) {
             self.shown = Some(self.effects.clone());

@@ -18,7 +18,7 @@ use crate::widgets::equation::equation_ui;
 const BAR: egui::Vec2 = egui::vec2(70.0, 12.0);
 
 /// Standard errors on either side of a 95 % interval.
-const INTERVAL: f64 = 1.96;
+pub(super) const INTERVAL: f64 = 1.96;
 
 pub(super) fn ui(
     page: &Compare,

@@ -174,6 +174,7 @@ impl Compare {
             self.reports
                 .retain(|effects, _| effects.iter().all(|e| effect::find(*e).is_some()));
             self.own.clone_from(&settings.own);
+            self.unknown.forget_own();
         }
         self.model = meant.model;
         self.model_file.clone_from(&settings.model);

@@ -19,6 +19,7 @@ use super::look::Look;
 use super::opening::Opening;
 use super::parts::{Part, Parts};
 use super::sealed::Sealed;
+use super::unknown::Unknown;
 use crate::files::Files;
 use crate::jobs::Job;
 
@@ -62,6 +63,8 @@ pub struct Compare {
     pub(super) limits: Option<Limits>,
     /// A search within other limits: for which model, and the number of the proposal.
     pub(super) search: Option<(Vec<EffectId>, usize, Job<ExperimentTask>)>,
+    /// Formulas of what no effect explains.
+    pub(super) unknown: Unknown,
     /// A step of the way that is computed beside: a link brings the last one alone.
     pub(super) earlier: Option<(Vec<EffectId>, Job)>,
     /// Steps of the way that cannot be computed.
@@ -105,6 +108,7 @@ impl Default for Compare {
             fingerprint: None,
             limits: None,
             search: None,
+            unknown: Unknown::default(),
             earlier: None,
             lost: HashSet::new(),
             guess_first: false,

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
-use rustfft::FftPlanner;
 
 use super::equations::{solved, spans_stride};
 use super::{BASE, Probe};
 use crate::effect::spec::SEEN_TURN;
+use crate::fourier::transform;
 use crate::order::median;
 use crate::sums::dot;
 
@@ -122,7 +122,7 @@ impl Probe {
             way[cell % cells] += pull * (1.0 - share);
             way[(cell + 1) % cells] += pull * share;
         }
-        FftPlanner::new().plan_fft_forward(cells).process(&mut way);
+        transform(&mut way);
         way.iter().take(count).map(Complex64::norm_sqr).collect()
     }
 

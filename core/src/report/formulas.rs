@@ -1,0 +1,118 @@
+//! The formula of what no effect explains.
+
+use std::fmt::Write as _;
+
+use super::html::{Cell, escape, figure, legend, table};
+use super::input::shell_word;
+use super::model::experiments;
+use super::svg::{Axis, Chart, Mark, range};
+use crate::diagnosis::{Discovery, FoundFormula};
+use crate::uncertain::{brief, interval, with_error};
+
+/// Size of the picture.
+const WIDE: f64 = 920.0;
+const TALL: f64 = 230.0;
+
+/// Standard errors on either side of a 95 % interval.
+const INTERVAL: f64 = 1.96;
+
+/// What was found, and what it was chosen from.
+pub(super) fn section(discovery: &Discovery) -> String {
+    let mut out = format!("<p>{}</p>\n", escape(&discovery.text));
+    if discovery.formulas.is_empty() {
+        return out;
+    }
+    let front = |f: &&FoundFormula| f.on_front;
+    let fronts: Vec<&FoundFormula> = discovery.formulas.iter().filter(front).collect();
+    legend(
+        &mut out,
+        &[
+            ("model", "least error for its length"),
+            ("measured", "this record cannot tell them apart"),
+            ("estimate", "tried"),
+            ("noise", "noise"),
+        ],
+    );
+    figure(
+        &mut out,
+        &picture(discovery, &fronts),
+        "Every formula that was simulated: its length in names, numbers and signs, and what it leaves of blocks that its fit \
+         did not see, in units of the noise.",
+    );
+    let others = fronts.into_iter().filter(|f| !f.in_class);
+    let rows: Vec<Vec<Cell>> = discovery.class().chain(others).map(row).collect();
+    table(
+        &mut out,
+        &["Formula", "Length", "Error (× noise)", "Parameters", ""],
+        &rows,
+    );
+    if let Some(experiment) = &discovery.experiment {
+        let _ = writeln!(
+            out,
+            "<p class=\"next\"><strong>What would tell them apart:</strong> {}</p>",
+            escape(&experiment.text)
+        );
+        out.push_str(&experiments(experiment));
+    }
+    if let Some(found) = discovery.found() {
+        let _ = writeln!(
+            out,
+            "<p class=\"small\">The same formula again:</p>\n<pre><code>--effect {}</code></pre>",
+            escape(&shell_word(&found.typed))
+        );
+    }
+    out
+}
+
+/// A formula as a row of the table.
+fn row(formula: &FoundFormula) -> Vec<Cell> {
+    let parameters = formula.parameters.iter().map(|p| {
+        let value = with_error(p.value, p.std_error, &p.unit);
+        if p.is_told() && p.std_error > 0.0 {
+            let interval = interval(p.value, p.std_error, INTERVAL, &p.unit);
+            format!("{} = {value} (95 %: {interval})", p.name)
+        } else {
+            format!("{} = {value}", p.name)
+        }
+    });
+    let parameters: Vec<String> = parameters.collect();
+    let class = if formula.in_class {
+        "not told from the best"
+    } else {
+        ""
+    };
+    vec![
+        Cell::Code(formula.formula.clone()),
+        Cell::Number(formula.length.to_string()),
+        Cell::Number(brief(formula.error)),
+        Cell::Text(parameters.join("; ")),
+        Cell::Text(class.to_owned()),
+    ]
+}
+
+/// Error against length, and the front.
+fn picture(discovery: &Discovery, front: &[&FoundFormula]) -> String {
+    let at = |f: &FoundFormula| [f.length as f64, f.error];
+    let mut line = vec![[0.0, discovery.before]];
+    line.extend(front.iter().map(|f| at(f)));
+    let all: Vec<[f64; 2]> = discovery.formulas.iter().map(at).collect();
+    let class: Vec<[f64; 2]> = discovery.class().map(at).collect();
+    let ends = |k: usize| range(all.iter().chain(&line).map(|p| p[k]));
+    let lengths = ends(0).unwrap_or((0.0, 1.0));
+    let errors = range(
+        [1.0]
+            .into_iter()
+            .chain(all.iter().chain(&line).map(|p| p[1])),
+    );
+    let mut chart = Chart::new(
+        WIDE,
+        TALL,
+        Axis::new("length of the formula", "1", (0.0, lengths.1 + 1.0)),
+        Axis::sized("error / noise", "1", errors.unwrap_or((0.0, 1.0))),
+    );
+    chart.level(1.0, "noise");
+    chart.line(&line, "model");
+    chart.points(&all, Mark::Ring);
+    chart.points(&class, Mark::Diamond);
+    chart.finish("Error of the formulas against their length")
+}
