@@ -24,11 +24,17 @@ pub(super) fn section(discovery: &Discovery) -> String {
     }
     let front = |f: &&FoundFormula| f.on_front;
     let fronts: Vec<&FoundFormula> = discovery.formulas.iter().filter(front).collect();
+    let alone = discovery.class().count() < 2;
+    let class = if alone {
+        "the answer"
+    } else {
+        "not told apart by this record"
+    };
     legend(
         &mut out,
         &[
             ("model", "least error for its length"),
-            ("measured", "this record cannot tell them apart"),
+            ("measured", class),
             ("estimate", "tried"),
             ("noise", "noise"),
         ],
@@ -40,7 +46,11 @@ pub(super) fn section(discovery: &Discovery) -> String {
          did not see, in units of the noise.",
     );
     let others = fronts.into_iter().filter(|f| !f.in_class);
-    let rows: Vec<Vec<Cell>> = discovery.class().chain(others).map(row).collect();
+    let rows: Vec<Vec<Cell>> = discovery
+        .class()
+        .chain(others)
+        .map(|formula| row(formula, class))
+        .collect();
     table(
         &mut out,
         &["Formula", "Length", "Error (× noise)", "Parameters", ""],
@@ -64,8 +74,8 @@ pub(super) fn section(discovery: &Discovery) -> String {
     out
 }
 
-/// A formula as a row of the table.
-fn row(formula: &FoundFormula) -> Vec<Cell> {
+/// A formula as a row of the table, and what is said of those that this record cannot tell from the answer.
+fn row(formula: &FoundFormula, class: &str) -> Vec<Cell> {
     let parameters = formula.parameters.iter().map(|p| {
         let value = with_error(p.value, p.std_error, &p.unit);
         if p.is_told() && p.std_error > 0.0 {
@@ -76,11 +86,7 @@ fn row(formula: &FoundFormula) -> Vec<Cell> {
         }
     });
     let parameters: Vec<String> = parameters.collect();
-    let class = if formula.in_class {
-        "not told from the best"
-    } else {
-        ""
-    };
+    let class = if formula.in_class { class } else { "" };
     vec![
         Cell::Code(formula.formula.clone()),
         Cell::Number(formula.length.to_string()),

@@ -58,7 +58,8 @@ impl Glimpse {
             let (Some(t), Some(u), Some(y)) = (fields.next(), fields.next(), fields.last()) else {
                 break;
             };
-            switches += usize::from(glimpse.input.last().is_some_and(|last| *last != u));
+            let passes = |last: &f32| (*last > 0.0) != (u > 0.0);
+            switches += usize::from(glimpse.input.last().is_some_and(passes));
             if switches > GLIMPSE_SWITCHES {
                 break;
             }
