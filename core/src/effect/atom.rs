@@ -12,10 +12,19 @@
 pub type BodyStart = ([f64; 2], Vec<f64>);
 
 /// Values of what enters an atom nonlinearly, such as a dead time or a Stribeck speed; what it does not need is 0.
-pub type Shape = [f64; 3];
+pub type Shape = [f64; 5];
 
 /// The shape of an atom that has none.
-pub const NO_SHAPE: Shape = [0.0; 3];
+pub const NO_SHAPE: Shape = [0.0; 5];
+
+/// The shape with these numbers.
+pub fn shape<const N: usize>(numbers: [f64; N]) -> Shape {
+    let mut shape = NO_SHAPE;
+    for (own, number) in shape.iter_mut().zip(numbers) {
+        *own = number;
+    }
+    shape
+}
 
 /// One sample of a record, its noise smoothed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,8 +95,10 @@ pub enum Part {
     Force(fn(&Moment, &Shape) -> f64),
     /// What becomes of the input on its way. It takes the place of the input and has no coefficient.
     Input(fn(&Track, &Shape) -> Vec<f64>),
-    /// Columns that depend on the course of the motion, such as the force that a second body needs.
+    /// Columns that depend on the course of the motion.
     Motion(fn(&Track, &Shape) -> Vec<Series>),
+    /// The force that a second body needs: the coefficient of the first column is its inertia.
+    Body(fn(&Track, &Shape) -> Vec<Series>),
     /// One column: a force of a user's own formula.
     Own(Own),
 }
@@ -174,7 +185,7 @@ pub fn geometric(first: f64, last: f64, count: usize) -> Vec<Shape> {
     }
     let ratio = libm::log(last / first) / (count - 1) as f64;
     let at = |k: usize| first * libm::exp(ratio * k as f64);
-    (0..count).map(|k| [at(k), 0.0, 0.0]).collect()
+    (0..count).map(|k| shape([at(k)])).collect()
 }
 
 /// The same at equal distances.
@@ -184,7 +195,7 @@ pub fn even(first: f64, last: f64, count: usize) -> Vec<Shape> {
     }
     let distance = (last - first) / (count - 1) as f64;
     (0..count)
-        .map(|k| [first + distance * k as f64, 0.0, 0.0])
+        .map(|k| shape([first + distance * k as f64]))
         .collect()
 }
 

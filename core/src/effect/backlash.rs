@@ -6,14 +6,14 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::atom::{Values, geometric};
-use super::driven_load::{load_columns, load_values};
+use super::driven_load::LEAST_LOAD;
 use super::probe::Bounces;
 use super::{
     Atom, BodyStart, Dimension, Effect, EffectId, GapLoad, ParameterSpec, Part, Probe, Range,
-    SeenGap, Track, joint_compliance,
+    SeenGap, Series, Shape, Track, joint_compliance,
 };
 use crate::measurement::Kind;
-use crate::model::{Coupling, Load, Model};
+use crate::model::{Coupling, Load, Model, load_torque};
 use crate::simplex::minimise;
 
 pub(super) struct Backlash;
@@ -319,34 +319,27 @@ fn promising(scanned: &[Trial], share: f64) -> Vec<f64> {
 /// Half gaps that a regression tries: from the first to the second of these shares of the travel, so many; each with these
 /// rates of a free load's decay, in typical accelerations per typical speed, and dry decelerations, in typical accelerations.
 const SCREENED_GAPS: [f64; 2] = [1.0 / 400.0, 1.0 / 6.0];
-const GAPS: usize = 18;
-const RATES: [f64; 3] = [0.03, 0.15, 0.6];
-const DRY: [f64; 3] = [0.0, 0.05, 0.2];
+const GAPS: usize = 14;
+const RATES: [f64; 2] = [0.05, 0.3];
+const DRY: [f64; 2] = [0.01, 0.15];
 
-/// Position of a load that follows the measured motion through a gap with rigid contacts that do not bounce, and between
-/// them flies on, slowed at a `rate` (1/s) and by a `dry` deceleration: equation (10) of the paper with free flight.
-fn free_flight(track: &Track, half_gap: f64, rate: f64, dry: f64) -> Vec<f64> {
-    let (step, decay) = (track.step, libm::exp(-rate * track.step));
-    let mut at = track.position.first().copied().unwrap_or(0.0);
-    let mut speed: f64 = 0.0;
-    let mut follow = |motor: f64| {
-        speed *= decay;
-        speed = speed.signum() * (speed.abs() - dry * step).max(0.0);
-        let before = at;
-        at += speed * step;
-        let held = at.clamp(motor - half_gap, motor + half_gap);
-        if held != at {
-            let pushed = (held - before) / step;
-            speed = if held > at {
-                speed.max(pushed)
-            } else {
-                speed.min(pushed)
-            };
-            at = held;
-        }
-        at
+/// Force on the motor from a load of unit inertia that follows the measured motion through a gap, at every sample.
+fn pushed_back(track: &Track, numbers: &Shape) -> Vec<f64> {
+    let [half_gap, viscous, dry_friction, stiffness, damping] = *numbers;
+    let coupling = Coupling {
+        half_gap,
+        stiffness,
+        damping,
     };
-    track.position.iter().map(|x| follow(*x)).collect()
+    let load = Load {
+        inertia: 1.0,
+        viscous,
+        dry_friction,
+        coupling,
+    };
+    let spans = [(0, track.position.len())];
+    let pushes = load_torque(&load, track.position, track.step, &spans);
+    pushes.iter().map(|force| -force).collect()
 }
 
 impl Effect for Backlash {
@@ -469,10 +462,13 @@ impl Effect for Backlash {
         std::iter::once(gap.error).chain(load).collect()
     }
 
-    /// The load follows the measured motion through the gap; what the motor gives it is linear in its inertia and friction.
+    /// A load of unit inertia follows the measured motion through the gap; what the motor gives it is linear in its inertia.
     fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Motion(|track, [half_gap, rate, dry]| {
-            load_columns(&free_flight(track, *half_gap, *rate, *dry), track.step)
+        const COLUMNS: &[Part] = &[Part::Body(|track, numbers| {
+            vec![Series {
+                derivative: 0,
+                values: pushed_back(track, numbers),
+            }]
         })];
         vec![Atom {
             parts: COLUMNS,
@@ -480,23 +476,24 @@ impl Effect for Backlash {
                 let slowest = extent.acceleration / extent.speed;
                 let [least, most] = SCREENED_GAPS;
                 let gaps = geometric(least * extent.travel, most * extent.travel, GAPS);
+                let stiffness = STIFFNESS[0] / (extent.step * extent.step);
+                let damping = 2.0 * DAMPING_RATIO * stiffness.sqrt();
                 let with = |gap: f64| {
                     let rates = RATES.map(|share| share * slowest).into_iter();
-                    rates
-                        .flat_map(move |rate| DRY.map(|dry| [gap, rate, dry * extent.acceleration]))
+                    rates.flat_map(move |rate| {
+                        DRY.map(|dry| [gap, rate, dry * extent.acceleration, stiffness, damping])
+                    })
                 };
                 gaps.into_iter().flat_map(|gap| with(gap[0])).collect()
             },
-            shapes: 3,
+            shapes: 5,
             values: Values::From(|solved| {
-                let [inertia, viscous, dry] = load_values(solved)?;
-                // Rigid contacts do not tell how hard they are: as hard as samples can tell.
-                let stiffness = inertia * (1.0 / solved.extent.step).powi(2);
-                let damping = 2.0 * DAMPING_RATIO * (stiffness * inertia).sqrt();
-                Some((
-                    solved.body,
-                    vec![solved.shape[0], inertia, viscous, dry, stiffness, damping],
-                ))
+                let [half_gap, viscous, dry, stiffness, damping] = solved.shape;
+                let inertia = solved.coefficients[0];
+                let loaded = inertia > LEAST_LOAD * solved.body[0] && solved.body[0] > 0.0;
+                let shares = [1.0, viscous, dry, stiffness, damping];
+                let load = shares.map(|share| inertia * share);
+                loaded.then(|| (solved.body, [&[half_gap], load.as_slice()].concat()))
             }),
         }]
     }

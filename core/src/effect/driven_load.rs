@@ -3,7 +3,7 @@
 use super::atom::{Series, Solved};
 
 /// Share of the body below which a load is nothing that a regression tells ([`Range::Sizeable`]).
-const LEAST_LOAD: f64 = 0.05;
+pub(super) const LEAST_LOAD: f64 = 0.05;
 
 /// What inertia, viscous and dry friction of a load at these positions ask of the motor.
 pub(super) fn load_columns(position: &[f64], step: f64) -> Vec<Series> {

@@ -1,6 +1,6 @@
 //! Joint compliance: a load behind an elastic joint.
 
-use super::atom::{Values, geometric};
+use super::atom::{Values, geometric, shape};
 use super::driven_load::{load_columns, load_values};
 use super::{
     Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Track, coulomb_friction,
@@ -244,7 +244,7 @@ impl Effect for JointCompliance {
 
     /// The load follows the measured motion through a spring; what the motor gives it is linear in its inertia and friction.
     fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Motion(|track, [frequency, ratio, _]| {
+        const COLUMNS: &[Part] = &[Part::Body(|track, [frequency, ratio, ..]| {
             load_columns(&on_spring(track, *frequency, *ratio), track.step)
         })];
         vec![Atom {
@@ -253,13 +253,13 @@ impl Effect for JointCompliance {
                 let slowest = TAU / extent.window;
                 let stiffest = FASTEST / extent.step;
                 let all = geometric(slowest, stiffest, FREQUENCIES).into_iter();
-                all.flat_map(|f| RATIOS.map(|ratio| [f[0], ratio, 0.0]))
+                all.flat_map(|f| RATIOS.map(|ratio| shape([f[0], ratio])))
                     .collect()
             },
             shapes: 2,
             values: Values::From(|solved| {
                 let [inertia, viscous, dry] = load_values(solved)?;
-                let [frequency, ratio, _] = solved.shape;
+                let [frequency, ratio, ..] = solved.shape;
                 let stiffness = inertia * frequency * frequency;
                 let damping = 2.0 * ratio * frequency * inertia;
                 Some((solved.body, vec![stiffness, damping, inertia, viscous, dry]))

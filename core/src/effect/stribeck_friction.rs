@@ -2,7 +2,7 @@
 //!
 //! It contains Coulomb friction (no excess) with its elastic contact, and replaces it.
 
-use super::atom::{Values, not_negative};
+use super::atom::{Values, not_negative, shape};
 use super::dry_friction::{DAMPING, LEVEL, LONG};
 use super::spec::HARD_CROSSINGS;
 use super::{
@@ -114,11 +114,7 @@ impl Effect for StribeckFriction {
         ];
         vec![Atom {
             parts: COLUMNS,
-            grid: |extent| {
-                SPEEDS
-                    .map(|share| [share * extent.speed, 0.0, 0.0])
-                    .to_vec()
-            },
+            grid: |extent| SPEEDS.map(|share| shape([share * extent.speed])).to_vec(),
             shapes: 1,
             values: Values::From(|solved| {
                 let (body, levels) = not_negative(solved)?;

@@ -21,6 +21,8 @@ pub(in crate::criticism) struct AtomColumns {
     pub tied: Option<Vec<f64>>,
     /// The rest, each with a coefficient.
     pub free: Vec<Vec<f64>>,
+    /// Whether the first of these is what the inertia of a second body needs.
+    pub has_body: bool,
 }
 
 impl<'a> Rows<'a> {
@@ -89,6 +91,7 @@ impl<'a> Rows<'a> {
         let mut columns = AtomColumns {
             tied: None,
             free: Vec::new(),
+            has_body: false,
         };
         for part in atom.parts {
             match part {
@@ -102,7 +105,8 @@ impl<'a> Rows<'a> {
                         acting.iter().zip(track.input).map(|(a, u)| a - u).collect();
                     columns.tied = Some(self.held(&change));
                 }
-                Part::Motion(series) => {
+                Part::Motion(series) | Part::Body(series) => {
+                    columns.has_body |= matches!(part, Part::Body(_));
                     let integrated = |s: Series| match s.derivative {
                         0 => self.force(s.values),
                         derivative => self.integrals(&s.values, derivative),

@@ -19,6 +19,8 @@ pub(super) struct Shaped {
     pub shape: Shape,
     pub tied: Option<usize>,
     pub free: Vec<usize>,
+    /// Whether the coefficient of the first free one is the inertia of a second body.
+    pub has_body: bool,
 }
 
 /// An atom that may be in a subset.
@@ -93,11 +95,20 @@ pub(super) fn found(kind: Kind, w: &[f64]) -> Found {
     }
 }
 
-/// By what a squared residual is divided to be one of the acceleration: one of a model whose atoms make up the input
-/// themselves, and need no body, is large.
-pub(super) fn unit(kind: Kind, w: &[f64]) -> f64 {
+/// By what a squared residual is divided to be one of the acceleration of all bodies: one of a model whose atoms make up the
+/// input themselves, and need no body, is large.
+pub(super) fn unit(kind: Kind, w: &[f64], atoms: &[&Shaped]) -> f64 {
     match kind {
-        Kind::Drive => (w[0] * w[0]).max(f64::MIN_POSITIVE),
+        Kind::Drive => {
+            let (mut inertia, mut first) = (w[0], 2);
+            for atom in atoms {
+                if atom.has_body {
+                    inertia += (-w[first]).max(0.0);
+                }
+                first += atom.free.len();
+            }
+            (inertia * inertia).max(f64::MIN_POSITIVE)
+        }
         Kind::Process => 1.0,
     }
 }

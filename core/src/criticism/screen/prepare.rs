@@ -1,14 +1,18 @@
 //! From signals to sums: which shapes of which atoms go into the subsets, and what each window counts.
 
 use super::gram::{AtomColumns, Gram, Halves, Reduced, Rows};
-use super::model::{BASE, Choice, Shaped, elements, found, unit};
+use super::model::{BASE, Choice, INPUT, Shaped, elements, found, unit};
 use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
-use super::tuning::{ATTENUATED, COARSE, DULL, EXACT, FINE, HUBER, KEPT_SHAPES, REFINED, ROUNDS};
+use super::tuning::{
+    ATTENUATED, BEYOND, COARSE, DULL, ENOUGH, EVALUATIONS, EXACT, FAR_BEYOND, FINE, GRID_NUMBERS,
+    HUBER, KEPT_SHAPES, REFINED, ROUNDS, SHOWN, SIDE, SIMPLEX_SAMPLES, SIMPLEXES, WIDE,
+};
 use super::window::Width;
 use crate::effect::{self, Atom, Effect, Extent, Shape, Solved};
 use crate::measurement::Kind;
 use crate::order::median;
+use crate::simplex::minimise;
 
 /// Sums and what they are of.
 pub(super) struct Prepared {
@@ -85,6 +89,7 @@ impl Builder<'_> {
         };
         Shaped {
             shape,
+            has_body: columns.has_body,
             tied: columns.tied.map(&mut add),
             free: columns.free.into_iter().map(add).collect(),
         }
@@ -168,6 +173,9 @@ impl Builder<'_> {
             let columns = self.rows.atom(atom, &shape);
             tried.push((self.left(atom, &shape, &columns, halves), shape));
         }
+        if atom.shapes > GRID_NUMBERS {
+            self.find_between(atom, halves, &mut tried);
+        }
         let mut kept: Vec<Shape> = Vec::new();
         for beside in 0..4 {
             let mut order: Vec<usize> = (0..tried.len()).collect();
@@ -181,11 +189,83 @@ impl Builder<'_> {
         kept
     }
 
+    /// Adds shapes of an atom with more numbers than a grid can be fine in: from the best ones of the grid, what a simplex finds in
+    /// their logarithms. It looks at the widest windows alone: in a narrow one a contact that is a little early or late is all or
+    /// nothing. Not where even the best explain next to nothing.
+    fn find_between(&self, atom: &Atom, halves: &Halves, tried: &mut Vec<([f64; 4], Shape)>) {
+        let widths = &self.rows.widths[self.rows.widths.len().saturating_sub(WIDE)..];
+        let rows = Rows::new(self.rows.signals, widths);
+        let from = self.rows.len() - rows.len();
+        let columns: Vec<&[f64]> = self
+            .columns
+            .iter()
+            .map(|c| &c[from..])
+            .take(halves.len())
+            .collect();
+        let weights = self.even_weights(from);
+        let wide = Halves::new(columns, &weights, &rows.blocks);
+        let grid: Vec<Shape> = tried.iter().map(|(_, shape)| *shape).collect();
+        let left = |shape: &Shape| self.left(atom, shape, &rows.atom(atom, shape), &wide);
+        let of_grid: Vec<([f64; 4], Shape)> =
+            grid.iter().map(|shape| (left(shape), *shape)).collect();
+        let samples = self.rows.signals.len().max(1);
+        let starts = (SIMPLEX_SAMPLES / (samples * EVALUATIONS)).clamp(1, SIMPLEXES);
+        let evaluations = (SIMPLEX_SAMPLES / samples).min(EVALUATIONS);
+        let within = Within::new(&grid);
+        for (beside, without) in self.left_without(&wide).into_iter().enumerate() {
+            let sum = |left: &[f64; 4]| left[2 * beside] + left[2 * beside + 1];
+            let shown = of_grid
+                .iter()
+                .filter(|(left, _)| sum(left) < SHOWN * without);
+            let mut order: Vec<&([f64; 4], Shape)> = shown.collect();
+            order.sort_by(|a, b| sum(&a.0).total_cmp(&sum(&b.0)));
+            for (_, from) in order.into_iter().take(starts) {
+                let share = |logs: &Shape| {
+                    let sum = sum(&left(&within.shape(logs)));
+                    if sum.is_finite() { sum / without } else { 1.0 }
+                };
+                let (logs, _) = minimise(share, from.map(libm::log), SIDE, evaluations, ENOUGH);
+                let shape = within.shape(&logs);
+                let columns = self.rows.atom(atom, &shape);
+                tried.push((self.left(atom, &shape, &columns, halves), shape));
+            }
+        }
+    }
+
+    /// Weights of the windows from one on with which all widths count alike.
+    fn even_weights(&self, from: usize) -> Vec<f64> {
+        let mut squares = vec![0.0; self.rows.widths.len()];
+        for k in from..self.rows.len() {
+            squares[self.rows.width_of[k]] += self.columns[INPUT][k].powi(2);
+        }
+        let of = |k: usize| 1.0 / squares[self.rows.width_of[k]].max(f64::MIN_POSITIVE);
+        (from..self.rows.len()).map(of).collect()
+    }
+
+    /// What the body leaves of the record, alone and beside all that is linear.
+    fn left_without(&self, halves: &Halves) -> [f64; 2] {
+        let sums = halves.with(&[]);
+        let left = |others: std::ops::Range<usize>| {
+            let mut all = elements(self.kind, &[]);
+            let target = all.pop()?;
+            all.extend(others.map(|c| vec![c]));
+            all.push(target);
+            let of_half = |sums: &Vec<f64>| {
+                let reduced = Reduced::new(sums, halves.len(), &all);
+                let w = reduced.coefficients(&reduced.solve(true)?);
+                Some(reduced.loss(&w) / unit(self.kind, &w, &[]))
+            };
+            Some(of_half(&sums[0])? + of_half(&sums[1])?)
+        };
+        [0..0, BASE..halves.len()].map(|others| left(others).unwrap_or(f64::INFINITY))
+    }
+
     /// What an atom leaves of either half of the record, beside the body and beside all that is linear.
     fn left(&self, kind_of: &Atom, shape: &Shape, atom: &AtomColumns, halves: &Halves) -> [f64; 4] {
         let first = halves.len();
         let shaped = Shaped {
             shape: *shape,
+            has_body: atom.has_body,
             tied: atom.tied.as_ref().map(|_| first),
             free: (0..atom.free.len())
                 .map(|k| first + usize::from(atom.tied.is_some()) + k)
@@ -210,7 +290,7 @@ impl Builder<'_> {
                 coefficients: &found.coefficients[..atom.free.len()],
             };
             kind_of.read(&solved)?;
-            let left = reduced.loss(&w) / unit(self.kind, &w);
+            let left = reduced.loss(&w) / unit(self.kind, &w, &[&shaped]);
             left.is_finite().then_some(left)
         };
         let [a, b] = &sums;
@@ -419,6 +499,7 @@ impl Builder<'_> {
                     .iter()
                     .map(|s| Shaped {
                         shape: s.shape,
+                        has_body: s.has_body,
                         tied: s.tied.map(place),
                         free: s.free.iter().map(|c| place(*c)).collect(),
                     })
@@ -453,6 +534,7 @@ impl Builder<'_> {
         let tied = usize::from(columns.tied.is_some());
         let own = Shaped {
             shape: *shape,
+            has_body: columns.has_body,
             tied: columns.tied.as_ref().map(|_| first),
             free: (0..columns.free.len()).map(|k| first + tied + k).collect(),
         };
@@ -477,7 +559,35 @@ impl Builder<'_> {
         if atom.read(&solved).is_none() {
             return f64::INFINITY;
         }
-        reduced.loss(&w) / unit(self.kind, &w)
+        reduced.loss(&w) / unit(self.kind, &w, &all)
+    }
+}
+
+/// How far the numbers of a shape may go.
+struct Within {
+    least: Shape,
+    most: Shape,
+}
+
+impl Within {
+    /// Somewhat beyond a grid; much farther where that has one value alone.
+    fn new(grid: &[Shape]) -> Self {
+        let (mut least, mut most) = ([f64::INFINITY; 5], [0.0_f64; 5]);
+        for shape in grid {
+            for (k, number) in shape.iter().enumerate() {
+                least[k] = least[k].min(*number);
+                most[k] = most[k].max(*number);
+            }
+        }
+        for (low, high) in least.iter_mut().zip(&mut most) {
+            let beyond = if low < high { BEYOND } else { FAR_BEYOND };
+            (*low, *high) = (*low / beyond, *high * beyond);
+        }
+        Self { least, most }
+    }
+
+    fn shape(&self, logs: &Shape) -> Shape {
+        std::array::from_fn(|k| libm::exp(logs[k]).clamp(self.least[k], self.most[k]))
     }
 }
 

@@ -64,7 +64,8 @@ impl<'a> Bench<'a> {
         let reduced = Reduced::new(sums, self.gram.size, &self.elements(members));
         let solution = reduced.solve(false)?;
         let w = reduced.coefficients(&solution);
-        Some((reduced.loss(&w) / unit(self.kind, &w), w))
+        let unit = unit(self.kind, &w, &self.shaped(members));
+        Some((reduced.loss(&w) / unit, w))
     }
 
     /// The shapes of these choices that leave least of these sums: one after the other, until none gets better.
@@ -113,9 +114,10 @@ impl<'a> Bench<'a> {
         for (half, sums) in self.halves.iter().enumerate() {
             let (members, w) = self.profiled(sums, choices)?;
             let elements = self.elements(&members);
+            let unit = unit(self.kind, &w, &self.shaped(&members));
             for (b, loss) in losses.iter_mut().enumerate().filter(|(b, _)| b % 2 != half) {
                 let reduced = Reduced::new(&self.gram.blocks[b], self.gram.size, &elements);
-                *loss = reduced.loss(&w) / unit(self.kind, &w);
+                *loss = reduced.loss(&w) / unit;
             }
         }
         losses.iter().all(|l| l.is_finite()).then_some(losses)

@@ -108,3 +108,24 @@ pub(super) const FINE: f64 = 0.004;
 
 /// Growth of a process over the widest window, as a logarithm, up to which it is no runaway: an integrating one has 0.
 pub(super) const GROWTH: f64 = 0.1;
+
+/// Numbers of a shape that a grid finds well enough: in more, it is coarse in each, and a simplex goes on from the best.
+pub(super) const GRID_NUMBERS: usize = 2;
+
+/// How many simplexes at most, beside the body alone and beside all that is linear; evaluations of each, and samples through which
+/// as many may go: some seconds of computing, whatever the record.
+pub(super) const SIMPLEXES: usize = 3;
+pub(super) const EVALUATIONS: usize = 200;
+pub(super) const SIMPLEX_SAMPLES: usize = 8_000_000;
+
+/// Side of a simplex, in logarithms, and the share of what is left without the atom that is not worth more of it.
+pub(super) const SIDE: f64 = 0.4;
+pub(super) const ENOUGH: f64 = 1e-5;
+
+/// Share of the squares that the best shape of the grid may leave for an atom to be worth a simplex.
+pub(super) const SHOWN: f64 = 0.9;
+
+/// Widths that a simplex looks at, the widest ones; and factors by which it may leave a grid, and one value.
+pub(super) const WIDE: usize = 2;
+pub(super) const BEYOND: f64 = 3.0;
+pub(super) const FAR_BEYOND: f64 = 100.0;
