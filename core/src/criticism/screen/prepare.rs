@@ -219,12 +219,18 @@ impl Builder<'_> {
                 .filter(|(left, _)| sum(left) < SHOWN * without);
             let mut order: Vec<&([f64; 4], Shape)> = shown.collect();
             order.sort_by(|a, b| sum(&a.0).total_cmp(&sum(&b.0)));
-            for (_, from) in order.into_iter().take(starts) {
-                let share = |logs: &Shape| {
-                    let sum = sum(&left(&within.shape(logs)));
-                    if sum.is_finite() { sum / without } else { 1.0 }
-                };
-                let (logs, _) = minimise(share, from.map(libm::log), SIDE, evaluations, ENOUGH);
+            let share = |logs: &Shape| {
+                let sum = sum(&left(&within.shape(logs)));
+                if sum.is_finite() { sum / without } else { 1.0 }
+            };
+            let from = |logs: Shape| minimise(share, logs, SIDE, evaluations, ENOUGH);
+            let order = order.into_iter().take(starts);
+            let mut found: Vec<(Shape, f64)> =
+                order.map(|(_, shape)| from(shape.map(libm::log))).collect();
+            found.sort_by(|a, b| a.1.total_cmp(&b.1));
+            // A simplex that has become flat goes on as a new one (Kelley 1999).
+            found.extend(found.first().map(|(logs, _)| from(*logs)));
+            for (logs, _) in found {
                 let shape = within.shape(&logs);
                 let columns = self.rows.atom(atom, &shape);
                 tried.push((self.left(atom, &shape, &columns, halves), shape));
