@@ -259,6 +259,9 @@ pub fn written_like(value: f64, (other, error): (f64, f64), unit: &str) -> Strin
     }
 }
 
+/// Standard errors on either side of a 95 % interval.
+pub const NORMAL_95: f64 = 1.96;
+
 /// The interval of so many errors on either side of a value, with their digits, as `1.80 to 2.20 N m`.
 pub fn interval(value: f64, error: f64, times: f64, unit: &str) -> String {
     let scale = Scale::of(value.abs().max(times * error), unit);

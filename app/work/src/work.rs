@@ -139,13 +139,9 @@ impl Work for StepTask {
     fn run(self, say: Say<'_, StepReport>) {
         let blank = UserModel::blank(self.measurement.kind);
         let model = self.model.as_ref().unwrap_or(&blank);
-        let mut job = match StepJob::with_model(&self.measurement, &self.effects, model) {
-            Ok(job) => job.with_crew(&crew()),
-            Err(error) => {
-                say(News::Failed(error.to_string()));
-                return;
-            }
-        };
+        let job = StepJob::with_model(&self.measurement, &self.effects, model);
+        let Some(job) = begun(job, say) else { return };
+        let mut job = job.with_crew(&crew());
         if let Some(report) = finish(|| job.advance(), say) {
             let wrong = report.step.checked().err();
             say(match wrong {
@@ -160,13 +156,9 @@ impl Work for DiscoveryTask {
     fn run(self, say: Say<'_, Discovery>) {
         let blank = UserModel::blank(self.measurement.kind);
         let model = self.model.as_ref().unwrap_or(&blank);
-        let mut job = match DiscoveryJob::new(&self.measurement, &self.effects, model) {
-            Ok(job) => job.with_crew(&crew()),
-            Err(error) => {
-                say(News::Failed(error.to_string()));
-                return;
-            }
-        };
+        let job = DiscoveryJob::new(&self.measurement, &self.effects, model);
+        let Some(job) = begun(job, say) else { return };
+        let mut job = job.with_crew(&crew());
         if let Some(discovery) = finish(|| job.advance(), say) {
             say(News::Report(Box::new(discovery)));
         }
@@ -195,12 +187,8 @@ impl Work for ExperimentTask {
             self.limits,
             self.today,
         );
-        let mut job = match job {
-            Ok(job) => job,
-            Err(error) => {
-                say(News::Failed(error.to_string()));
-                return;
-            }
+        let Some(mut job) = begun(job, say) else {
+            return;
         };
         match finish(|| job.advance(), say) {
             Some(Some(found)) => say(News::Report(Box::new(found))),
@@ -213,6 +201,12 @@ impl Work for ExperimentTask {
 /// What is said where nothing can be tried.
 const NO_ROOM: &str =
     "These limits leave no room for an experiment: allow a longer record or more motion.";
+
+/// A job; where there is none, why is said.
+fn begun<J, E: fmt::Display, R>(job: Result<J, E>, say: Say<'_, R>) -> Option<J> {
+    job.map_err(|error| say(News::Failed(error.to_string())))
+        .ok()
+}
 
 /// Advances a job to its end; `None` where nobody listens any more.
 fn finish<T, R>(mut advance: impl FnMut() -> Progress<T>, say: Say<'_, R>) -> Option<T> {
@@ -230,12 +224,8 @@ fn finish<T, R>(mut advance: impl FnMut() -> Progress<T>, say: Say<'_, R>) -> Op
 
 impl Work for MapTask {
     fn run(self, say: Say<'_, Tile>) {
-        let mut job = match MapJob::new(self.0) {
-            Ok(job) => job,
-            Err(error) => {
-                say(News::Failed(error.to_string()));
-                return;
-            }
+        let Some(mut job) = begun(MapJob::new(self.0), say) else {
+            return;
         };
         loop {
             let tile = advance(&mut job);

@@ -29,6 +29,7 @@ use crate::effect::{
     baseline::{self, Baseline},
 };
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
+use crate::uncertain::NORMAL_95;
 use crate::user_model::{Status, UserModel};
 
 /// A fit with its score.
@@ -86,7 +87,7 @@ const MOST_REMEMBERED: f64 = 2.0;
 const MOST_PUSHED: f64 = 2.5;
 
 /// Standard errors by which a parameter that tells of an effect must differ from 0: its 95 % interval leaves it out.
-pub(super) const TELLING: f64 = 1.96;
+pub(super) const TELLING: f64 = NORMAL_95;
 
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;

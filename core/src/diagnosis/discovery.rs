@@ -85,6 +85,11 @@ impl Discovery {
         self.formulas.get(self.answer?)
     }
 
+    /// Formulas that leave less than every shorter one.
+    pub fn front(&self) -> impl Iterator<Item = &FoundFormula> {
+        self.formulas.iter().filter(|f| f.on_front)
+    }
+
     /// Formulas that this record cannot tell from the best one, the answer first.
     pub fn class(&self) -> impl Iterator<Item = &FoundFormula> {
         let others = self.formulas.iter().enumerate();

@@ -4,7 +4,7 @@ use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::effect::EffectId;
-use crate::uncertain::is_told;
+use crate::uncertain::{NORMAL_95, interval, is_told};
 
 /// How well a parameter is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -50,6 +50,11 @@ impl Parameter {
     /// Whether the record tells its value: the standard error is no larger than that.
     pub fn is_told(&self) -> bool {
         is_told(self.value, self.std_error)
+    }
+
+    /// Its 95 % interval as text.
+    pub fn interval(&self) -> String {
+        interval(self.value, self.std_error, NORMAL_95, &self.unit)
     }
 }
 

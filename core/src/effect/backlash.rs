@@ -6,7 +6,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::atom::{Values, geometric};
-use super::driven_load::LEAST_LOAD;
+use super::driven_load::is_load;
 use super::probe::Bounces;
 use super::{
     Atom, BodyStart, Dimension, Effect, EffectId, GapLoad, ParameterSpec, Part, Probe, Range,
@@ -490,10 +490,10 @@ impl Effect for Backlash {
             values: Values::From(|solved| {
                 let [half_gap, viscous, dry, stiffness, damping] = solved.shape;
                 let inertia = solved.coefficients[0];
-                let loaded = inertia > LEAST_LOAD * solved.body[0] && solved.body[0] > 0.0;
                 let shares = [1.0, viscous, dry, stiffness, damping];
                 let load = shares.map(|share| inertia * share);
-                loaded.then(|| (solved.body, [&[half_gap], load.as_slice()].concat()))
+                is_load(inertia, solved)
+                    .then(|| (solved.body, [&[half_gap], load.as_slice()].concat()))
             }),
         }]
     }

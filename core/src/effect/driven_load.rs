@@ -3,7 +3,7 @@
 use super::atom::{Series, Solved};
 
 /// Share of the body below which a load is nothing that a regression tells ([`Range::Sizeable`]).
-pub(super) const LEAST_LOAD: f64 = 0.05;
+const LEAST_LOAD: f64 = 0.05;
 
 /// What inertia, viscous and dry friction of a load at these positions ask of the motor.
 pub(super) fn load_columns(position: &[f64], step: f64) -> Vec<Series> {
@@ -28,11 +28,15 @@ pub(super) fn load_columns(position: &[f64], step: f64) -> Vec<Series> {
         .collect()
 }
 
+/// Whether a load of this inertia is more than nothing beside its body.
+pub(super) fn is_load(inertia: f64, solved: &Solved) -> bool {
+    inertia > LEAST_LOAD * solved.body[0] && solved.body[0] > 0.0
+}
+
 /// Inertia, viscous and dry friction of a load; none where it is nothing.
 pub(super) fn load_values(solved: &Solved) -> Option<[f64; 3]> {
     let [inertia, viscous, dry] = *solved.coefficients else {
         return None;
     };
-    let loaded = inertia > LEAST_LOAD * solved.body[0] && solved.body[0] > 0.0;
-    loaded.then_some([inertia, viscous.max(0.0), dry.max(0.0)])
+    is_load(inertia, solved).then_some([inertia, viscous.max(0.0), dry.max(0.0)])
 }

@@ -7,14 +7,11 @@ use super::input::shell_word;
 use super::model::experiments;
 use super::svg::{Axis, Chart, Mark, range};
 use crate::diagnosis::{Discovery, FoundFormula};
-use crate::uncertain::{brief, interval, with_error};
+use crate::uncertain::{brief, with_error};
 
 /// Size of the picture.
 const WIDE: f64 = 920.0;
 const TALL: f64 = 230.0;
-
-/// Standard errors on either side of a 95 % interval.
-const INTERVAL: f64 = 1.96;
 
 /// What was found, and what it was chosen from.
 pub(super) fn section(discovery: &Discovery) -> String {
@@ -22,8 +19,7 @@ pub(super) fn section(discovery: &Discovery) -> String {
     if discovery.formulas.is_empty() {
         return out;
     }
-    let front = |f: &&FoundFormula| f.on_front;
-    let fronts: Vec<&FoundFormula> = discovery.formulas.iter().filter(front).collect();
+    let fronts: Vec<&FoundFormula> = discovery.front().collect();
     let alone = discovery.class().count() < 2;
     let class = if alone {
         "the answer"
@@ -79,8 +75,7 @@ fn row(formula: &FoundFormula, class: &str) -> Vec<Cell> {
     let parameters = formula.parameters.iter().map(|p| {
         let value = with_error(p.value, p.std_error, &p.unit);
         if p.is_told() && p.std_error > 0.0 {
-            let interval = interval(p.value, p.std_error, INTERVAL, &p.unit);
-            format!("{} = {value} (95 %: {interval})", p.name)
+            format!("{} = {value} (95 %: {})", p.name, p.interval())
         } else {
             format!("{} = {value}", p.name)
         }

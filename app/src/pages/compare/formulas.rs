@@ -2,11 +2,10 @@
 
 use egui_plot::{HLine, Line, LineStyle, MarkerShape, PlotPoints, Points};
 use hysteron_core::diagnosis::{Discovery, FoundFormula, Program};
-use hysteron_core::uncertain::{brief, interval, with_error};
+use hysteron_core::uncertain::{brief, with_error};
 
 use super::command::Command;
-use super::experiment::trials_ui;
-use super::parameters::INTERVAL;
+use super::experiment::{save_ui, trials_ui};
 use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
@@ -94,8 +93,7 @@ impl Compare {
                             with_error(p.value, p.std_error, &p.unit)
                         )));
                         if p.is_told() && p.std_error > 0.0 {
-                            let interval = interval(p.value, p.std_error, INTERVAL, &p.unit);
-                            ui.weak(tr(format!("95 %: {interval}")));
+                            ui.weak(tr(format!("95 %: {}", p.interval())));
                         }
                     });
                 }
@@ -135,7 +133,7 @@ impl Compare {
         targets: &mut Targets,
         commands: &mut Vec<Command>,
     ) {
-        let others: Vec<&FoundFormula> = front(discovery).filter(|f| !f.in_class).collect();
+        let others: Vec<&FoundFormula> = discovery.front().filter(|f| !f.in_class).collect();
         if others.is_empty() {
             return;
         }
@@ -167,16 +165,11 @@ impl Compare {
             ui.strong(tr("Try this experiment"));
             ui.label(tr(&experiment.text));
             if experiment.sufficient && !matches!(experiment.program, Program::Relay { .. }) {
-                super::experiment::save_ui(index, ui, targets, commands);
+                save_ui(index, ui, targets, commands);
             }
             trials_ui(index, experiment, ui);
         });
     }
-}
-
-/// Formulas that leave less than every shorter one.
-fn front(discovery: &Discovery) -> impl Iterator<Item = &FoundFormula> {
-    discovery.formulas.iter().filter(|f| f.on_front)
 }
 
 /// Error against length: all that were tried, and the front.
@@ -185,7 +178,7 @@ fn front_ui(discovery: &Discovery, ui: &mut egui::Ui) {
     let tried: Vec<[f64; 2]> = discovery.formulas.iter().map(at).collect();
     let class: Vec<[f64; 2]> = discovery.class().map(at).collect();
     let mut line = vec![[0.0, discovery.before]];
-    line.extend(front(discovery).map(at));
+    line.extend(discovery.front().map(at));
     let mut curves = vec![
         ("tried", theme::RESIDUAL, Shape::Circle),
         ("least error for its length", theme::MODEL, Shape::Line),

@@ -4,7 +4,7 @@ use hysteron_core::by_hand::ByHand;
 use hysteron_core::diagnosis::{Parameter, Status, StepReport};
 use hysteron_core::effect::{self, Effect, name_of};
 use hysteron_core::report::baseline;
-use hysteron_core::uncertain::{interval, quantity, with_error};
+use hysteron_core::uncertain::{NORMAL_95, quantity, with_error};
 
 use super::command::Command;
 use super::state::Compare;
@@ -16,9 +16,6 @@ use crate::widgets::equation::equation_ui;
 
 /// Size of the bar that shows an interval, points.
 const BAR: egui::Vec2 = egui::vec2(70.0, 12.0);
-
-/// Standard errors on either side of a 95 % interval.
-pub(super) const INTERVAL: f64 = 1.96;
 
 pub(super) fn ui(
     page: &Compare,
@@ -175,7 +172,7 @@ fn interval_ui(p: &Parameter, ui: &mut egui::Ui) {
     let faint = ui.visuals().weak_text_color();
     painter.hline(rect.x_range(), middle.y, (1.0, faint));
     painter.vline(rect.left(), rect.y_range(), (1.0, faint));
-    let share = INTERVAL * p.std_error / p.value.abs();
+    let share = NORMAL_95 * p.std_error / p.value.abs();
     if share.is_nan() {
         return;
     }
@@ -187,6 +184,5 @@ fn interval_ui(p: &Parameter, ui: &mut egui::Ui) {
     } else {
         painter.rect_filled(bar, 1.0, theme::MODEL);
     }
-    let interval = interval(p.value, p.std_error, INTERVAL, &p.unit);
-    response.on_hover_text(tr(format!("95 % interval: {interval}")));
+    response.on_hover_text(tr(format!("95 % interval: {}", p.interval())));
 }

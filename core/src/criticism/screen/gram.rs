@@ -25,6 +25,18 @@ pub(in crate::criticism) struct AtomColumns {
     pub has_body: bool,
 }
 
+impl AtomColumns {
+    /// The same from a row on.
+    pub fn rows_from(&self, row: usize) -> Self {
+        let rest = |column: &Vec<f64>| column[row..].to_vec();
+        Self {
+            tied: self.tied.as_ref().map(rest),
+            free: self.free.iter().map(rest).collect(),
+            has_body: self.has_body,
+        }
+    }
+}
+
 impl<'a> Rows<'a> {
     pub fn new(signals: &'a Signals, widths: &'a [Width]) -> Self {
         let (mut blocks, mut width_of) = (Vec::new(), Vec::new());

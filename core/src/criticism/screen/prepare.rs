@@ -1,5 +1,7 @@
 //! From signals to sums: which shapes of which atoms go into the subsets, and what each window counts.
 
+use std::ops::Range;
+
 use super::gram::{AtomColumns, Gram, Halves, Reduced, Rows};
 use super::model::{BASE, Choice, INPUT, Shaped, elements, found, unit};
 use super::signals::Signals;
@@ -168,20 +170,29 @@ impl Builder<'_> {
 
     /// Shapes of an atom that leave least of either half of the record.
     fn promising(&self, atom: &Atom, halves: &Halves) -> Vec<Shape> {
-        let mut tried: Vec<([f64; 4], Shape)> = Vec::new();
-        for shape in (atom.grid)(&self.extent) {
-            let columns = self.rows.atom(atom, &shape);
-            tried.push((self.left(atom, &shape, &columns, halves), shape));
-        }
+        let grid = (atom.grid)(&self.extent);
+        let columns: Vec<AtomColumns> = grid.iter().map(|s| self.rows.atom(atom, s)).collect();
+        let beside = [0..0, BASE..halves.len()];
+        let left = |shape: &Shape, columns: &AtomColumns| {
+            (
+                self.left(atom, shape, columns, halves, beside.clone()),
+                *shape,
+            )
+        };
+        let pairs = grid.iter().zip(&columns);
+        let mut tried: Vec<([[f64; 2]; 2], Shape)> = pairs.map(|(s, c)| left(s, c)).collect();
         if atom.shapes > GRID_NUMBERS {
-            self.find_between(atom, halves, &mut tried);
+            for shape in self.found_between(atom, halves.len(), &grid, &columns) {
+                tried.push(left(&shape, &self.rows.atom(atom, &shape)));
+            }
         }
+        let left = |k: usize, beside: usize| tried[k].0.as_flattened()[beside];
         let mut kept: Vec<Shape> = Vec::new();
         for beside in 0..4 {
             let mut order: Vec<usize> = (0..tried.len()).collect();
-            order.sort_by(|a, b| tried[*a].0[beside].total_cmp(&tried[*b].0[beside]));
+            order.sort_by(|a, b| left(*a, beside).total_cmp(&left(*b, beside)));
             for k in order.into_iter().take(KEPT_SHAPES) {
-                if tried[k].0[beside].is_finite() && !kept.contains(&tried[k].1) {
+                if left(k, beside).is_finite() && !kept.contains(&tried[k].1) {
                     kept.push(tried[k].1);
                 }
             }
@@ -189,125 +200,119 @@ impl Builder<'_> {
         kept
     }
 
-    /// Adds shapes of an atom with more numbers than a grid can be fine in: from the best ones of the grid, what a simplex finds in
-    /// their logarithms. It looks at the widest windows alone: in a narrow one a contact that is a little early or late is all or
-    /// nothing. Not where even the best explain next to nothing.
-    fn find_between(&self, atom: &Atom, halves: &Halves, tried: &mut Vec<([f64; 4], Shape)>) {
+    /// Shapes of an atom with more numbers than a grid can be fine in: from the best ones of the grid, what a simplex finds in their
+    /// logarithms, beside the body and beside all `linear` columns. It looks at the widest windows alone: in a narrow one a contact
+    /// that is a little early or late is all or nothing. None where even the best explain next to nothing.
+    fn found_between(
+        &self,
+        atom: &Atom,
+        linear: usize,
+        grid: &[Shape],
+        columns: &[AtomColumns],
+    ) -> Vec<Shape> {
         let widths = &self.rows.widths[self.rows.widths.len().saturating_sub(WIDE)..];
         let rows = Rows::new(self.rows.signals, widths);
         let from = self.rows.len() - rows.len();
-        let columns: Vec<&[f64]> = self
-            .columns
-            .iter()
-            .map(|c| &c[from..])
-            .take(halves.len())
-            .collect();
+        let stay = self.columns.iter().map(|c| &c[from..]).take(linear);
         let weights = self.even_weights(from);
-        let wide = Halves::new(columns, &weights, &rows.blocks);
-        let grid: Vec<Shape> = tried.iter().map(|(_, shape)| *shape).collect();
-        let left = |shape: &Shape| self.left(atom, shape, &rows.atom(atom, shape), &wide);
-        let of_grid: Vec<([f64; 4], Shape)> =
-            grid.iter().map(|shape| (left(shape), *shape)).collect();
+        let wide = Halves::new(stay.collect(), &weights, &rows.blocks);
+        let bare = wide.with(&[]);
         let samples = self.rows.signals.len().max(1);
         let starts = (SIMPLEX_SAMPLES / (samples * EVALUATIONS)).clamp(1, SIMPLEXES);
         let evaluations = (SIMPLEX_SAMPLES / samples).min(EVALUATIONS);
-        let within = Within::new(&grid);
-        for (beside, without) in self.left_without(&wide).into_iter().enumerate() {
-            let sum = |left: &[f64; 4]| left[2 * beside] + left[2 * beside + 1];
-            let shown = of_grid
-                .iter()
-                .filter(|(left, _)| sum(left) < SHOWN * without);
-            let mut order: Vec<&([f64; 4], Shape)> = shown.collect();
-            order.sort_by(|a, b| sum(&a.0).total_cmp(&sum(&b.0)));
-            let share = |logs: &Shape| {
-                let sum = sum(&left(&within.shape(logs)));
-                if sum.is_finite() { sum / without } else { 1.0 }
+        let within = Within::new(grid);
+        let mut all = Vec::new();
+        for others in [0..0, BASE..linear] {
+            let without = bare.each_ref().map(|sums| {
+                let found = self.regressed(sums, linear, &[], others.clone());
+                found.map_or(f64::INFINITY, |(_, left)| left)
+            });
+            let without: f64 = without.iter().sum();
+            let left = |shape: &Shape, columns: &AtomColumns| -> f64 {
+                let [halves] = self.left(atom, shape, columns, &wide, [others.clone()]);
+                halves.iter().sum()
             };
-            let from = |logs: Shape| minimise(share, logs, SIDE, evaluations, ENOUGH);
+            let of_grid = grid.iter().zip(columns);
+            let of_grid = of_grid.map(|(shape, c)| (left(shape, &c.rows_from(from)), shape));
+            let mut order: Vec<(f64, &Shape)> = of_grid
+                .filter(|(left, _)| *left < SHOWN * without)
+                .collect();
+            order.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let share = |logs: &Shape| {
+                let shape = within.shape(logs);
+                let left = left(&shape, &rows.atom(atom, &shape));
+                if left.is_finite() {
+                    left / without
+                } else {
+                    1.0
+                }
+            };
+            let best = |logs: Shape| minimise(share, logs, SIDE, evaluations, ENOUGH);
             let order = order.into_iter().take(starts);
             let mut found: Vec<(Shape, f64)> =
-                order.map(|(_, shape)| from(shape.map(libm::log))).collect();
+                order.map(|(_, shape)| best(shape.map(libm::log))).collect();
             found.sort_by(|a, b| a.1.total_cmp(&b.1));
             // A simplex that has become flat goes on as a new one (Kelley 1999).
-            found.extend(found.first().map(|(logs, _)| from(*logs)));
-            for (logs, _) in found {
-                let shape = within.shape(&logs);
-                let columns = self.rows.atom(atom, &shape);
-                tried.push((self.left(atom, &shape, &columns, halves), shape));
-            }
+            found.extend(found.first().map(|(logs, _)| best(*logs)));
+            all.extend(found.iter().map(|(logs, _)| within.shape(logs)));
         }
+        all
     }
 
-    /// Weights of the windows from one on with which all widths count alike.
+    /// Weights of the windows from the first of a width on with which all widths count alike.
     fn even_weights(&self, from: usize) -> Vec<f64> {
-        let mut squares = vec![0.0; self.rows.widths.len()];
-        for k in from..self.rows.len() {
-            squares[self.rows.width_of[k]] += self.columns[INPUT][k].powi(2);
-        }
-        let of = |k: usize| 1.0 / squares[self.rows.width_of[k]].max(f64::MIN_POSITIVE);
+        let powers = self.powers(&[INPUT]);
+        let of = |k: usize| 1.0 / powers[self.rows.width_of[k]].0.max(f64::MIN_POSITIVE);
         (from..self.rows.len()).map(of).collect()
     }
 
-    /// What the body leaves of the record, alone and beside all that is linear.
-    fn left_without(&self, halves: &Halves) -> [f64; 2] {
-        let sums = halves.with(&[]);
-        let left = |others: std::ops::Range<usize>| {
-            let mut all = elements(self.kind, &[]);
-            let target = all.pop()?;
-            all.extend(others.map(|c| vec![c]));
-            all.push(target);
-            let of_half = |sums: &Vec<f64>| {
-                let reduced = Reduced::new(sums, halves.len(), &all);
-                let w = reduced.coefficients(&reduced.solve(true)?);
-                Some(reduced.loss(&w) / unit(self.kind, &w, &[]))
-            };
-            Some(of_half(&sums[0])? + of_half(&sums[1])?)
-        };
-        [0..0, BASE..halves.len()].map(|others| left(others).unwrap_or(f64::INFINITY))
+    /// The regression of these sums on the body, atoms and other columns that are linear by themselves: coefficients, and the
+    /// squares that it leaves of the acceleration. What the others explain of a column is left out.
+    fn regressed(
+        &self,
+        sums: &[f64],
+        size: usize,
+        atoms: &[&Shaped],
+        others: Range<usize>,
+    ) -> Option<(Vec<f64>, f64)> {
+        let mut all = elements(self.kind, atoms);
+        let target = all.pop()?;
+        all.extend(others.map(|c| vec![c]));
+        all.push(target);
+        let reduced = Reduced::new(sums, size, &all);
+        let w = reduced.coefficients(&reduced.solve(true)?);
+        let left = reduced.loss(&w) / unit(self.kind, &w, atoms);
+        Some((w, left))
     }
 
-    /// What an atom leaves of either half of the record, beside the body and beside all that is linear.
-    fn left(&self, kind_of: &Atom, shape: &Shape, atom: &AtomColumns, halves: &Halves) -> [f64; 4] {
-        let first = halves.len();
-        let shaped = Shaped {
-            shape: *shape,
-            has_body: atom.has_body,
-            tied: atom.tied.as_ref().map(|_| first),
-            free: (0..atom.free.len())
-                .map(|k| first + usize::from(atom.tied.is_some()) + k)
-                .collect(),
-        };
-        let mut extra: Vec<&[f64]> = atom.tied.as_deref().into_iter().collect();
-        extra.extend(atom.free.iter().map(Vec::as_slice));
-        let size = first + extra.len();
+    /// What an atom leaves of either half of the record, beside the body and each of these other columns.
+    fn left<const N: usize>(
+        &self,
+        atom: &Atom,
+        shape: &Shape,
+        columns: &AtomColumns,
+        halves: &Halves,
+        others: [Range<usize>; N],
+    ) -> [[f64; 2]; N] {
+        let (shaped, extra) = behind(halves.len(), shape, columns);
         let sums = halves.with(&extra);
-        let beside = |sums: &[f64], others: std::ops::Range<usize>| {
-            let mut all = elements(self.kind, &[&shaped]);
-            let target = all.pop()?;
-            all.extend(others.map(|c| vec![c]));
-            all.push(target);
-            let reduced = Reduced::new(sums, size, &all);
-            let w = reduced.coefficients(&reduced.solve(true)?);
+        let beside = |sums: &Vec<f64>, others: &Range<usize>| {
+            let size = halves.len() + extra.len();
+            let (w, left) = self.regressed(sums, size, &[&shaped], others.clone())?;
             let found = found(self.kind, &w);
             let solved = Solved {
                 body: found.body,
                 shape: *shape,
                 extent: &self.extent,
-                coefficients: &found.coefficients[..atom.free.len()],
+                coefficients: &found.coefficients[..shaped.free.len()],
             };
-            kind_of.read(&solved)?;
-            let left = reduced.loss(&w) / unit(self.kind, &w, &[&shaped]);
+            atom.read(&solved)?;
             left.is_finite().then_some(left)
         };
-        let [a, b] = &sums;
-        let (none, everything) = (0..0, BASE..first);
-        let worst = f64::INFINITY;
-        [
-            beside(a, none.clone()).unwrap_or(worst),
-            beside(b, none).unwrap_or(worst),
-            beside(a, everything.clone()).unwrap_or(worst),
-            beside(b, everything).unwrap_or(worst),
-        ]
+        others.map(|others| {
+            let left = |sums| beside(sums, &others).unwrap_or(f64::INFINITY);
+            sums.each_ref().map(left)
+        })
     }
 
     /// Residual of each window, in the unit of the target.
@@ -421,20 +426,20 @@ impl Builder<'_> {
         }
     }
 
+    /// Squares of a sum of columns in the windows of each width, and how many these are.
+    fn powers(&self, sum: &[usize]) -> Vec<(f64, f64)> {
+        let mut squares = vec![(0.0, 0.0); self.rows.widths.len()];
+        for k in 0..self.rows.len() {
+            let value: f64 = sum.iter().map(|c| self.columns[*c][k]).sum();
+            let of_width = &mut squares[self.rows.width_of[k]];
+            *of_width = (of_width.0 + value.powi(2), of_width.1 + 1.0);
+        }
+        squares
+    }
+
     /// All widths count alike.
     fn scale_widths(&mut self, target: &[usize]) {
-        let mut squares = vec![(0.0, 0.0); self.rows.widths.len()];
-        let of = |k: usize| {
-            target
-                .iter()
-                .map(|c| self.columns[*c][k])
-                .sum::<f64>()
-                .powi(2)
-        };
-        for k in 0..self.rows.len() {
-            let sum = &mut squares[self.rows.width_of[k]];
-            *sum = (sum.0 + of(k), sum.1 + 1.0);
-        }
+        let squares = self.powers(target);
         for (k, weight) in self.weights.iter_mut().enumerate() {
             let (sum, count) = squares[self.rows.width_of[k]];
             let dull = self.dull[self.rows.width_of[k]];
@@ -536,21 +541,16 @@ impl Builder<'_> {
         halves: &Halves,
         others: &[Shaped],
     ) -> f64 {
-        let first = halves.len();
-        let tied = usize::from(columns.tied.is_some());
-        let own = Shaped {
-            shape: *shape,
-            has_body: columns.has_body,
-            tied: columns.tied.as_ref().map(|_| first),
-            free: (0..columns.free.len()).map(|k| first + tied + k).collect(),
-        };
-        let mut extra: Vec<&[f64]> = columns.tied.as_deref().into_iter().collect();
-        extra.extend(columns.free.iter().map(Vec::as_slice));
+        let (own, extra) = behind(halves.len(), shape, columns);
         let [mut sums, other] = halves.with(&extra);
         sums.iter_mut().zip(&other).for_each(|(a, b)| *a += b);
         let mut all: Vec<&Shaped> = vec![&own];
         all.extend(others);
-        let reduced = Reduced::new(&sums, first + extra.len(), &elements(self.kind, &all));
+        let reduced = Reduced::new(
+            &sums,
+            halves.len() + extra.len(),
+            &elements(self.kind, &all),
+        );
         let Some(solution) = reduced.solve(false) else {
             return f64::INFINITY;
         };
@@ -567,6 +567,19 @@ impl Builder<'_> {
         }
         reduced.loss(&w) / unit(self.kind, &w, &all)
     }
+}
+
+/// Columns of an atom behind so many others, and where they are then.
+fn behind<'a>(first: usize, shape: &Shape, columns: &'a AtomColumns) -> (Shaped, Vec<&'a [f64]>) {
+    let tied = usize::from(columns.tied.is_some());
+    let shaped = Shaped {
+        shape: *shape,
+        has_body: columns.has_body,
+        tied: columns.tied.as_ref().map(|_| first),
+        free: (0..columns.free.len()).map(|k| first + tied + k).collect(),
+    };
+    let all = columns.tied.iter().chain(&columns.free);
+    (shaped, all.map(Vec::as_slice).collect())
 }
 
 /// How far the numbers of a shape may go.
