@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::sync::mpsc::channel;
 
-use crate::support::ui::{App, NARROW, PLACES, TALL, WIDE, app, click, finish, show, state};
+use crate::support::ui::{App, NARROW, PLACES, TALL, WIDE, app, click, finish, show, state, wait};
 use egui::accesskit::Live;
 use egui::{Key, Role};
 use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
@@ -356,14 +356,7 @@ fn a_file_that_was_opened_is_opened_again_by_one_click() {
     harness.input_mut().dropped_files.push(file);
     harness.step();
     let opened = |harness: &mut App| {
-        for _ in 0..500 {
-            harness.step();
-            if state(harness)["file"] == "drive-02.csv" {
-                return;
-            }
-            std::thread::sleep(std::time::Duration::from_millis(10));
-        }
-        panic!("it does not open: {}", state(harness));
+        wait(harness, "opened file", |s| s["file"] == "drive-02.csv");
     };
     opened(&mut harness);
     finish(&mut harness);

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::support::ui::{App, TALL, WIDE, app, click, finish, picture, state, texts, type_over};
+use crate::support::ui::{
+    App, TALL, WIDE, app, click, finish, picture, state, texts, type_over, wait,
+};
 use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use hysteron::language::{self, Language};
@@ -113,18 +115,6 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-/// Waits until the state is so.
-fn wait(harness: &mut App, what: &str, holds: impl Fn(&Value) -> bool) {
-    for _ in 0..500 {
-        harness.step();
-        if holds(&state(harness)) {
-            return finish(harness);
-        }
-        std::thread::sleep(std::time::Duration::from_millis(10));
-    }
-    panic!("no {what}: {}", state(harness));
-}
-
 /// The app, from another page, with this file named on the command line, as soon as the state is so.
 fn started_with(name: &str, bytes: &[u8], what: &str, holds: impl Fn(&Value) -> bool) -> App {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -133,6 +123,7 @@ fn started_with(name: &str, bytes: &[u8], what: &str, holds: impl Fn(&Value) -> 
     let ctx = harness.ctx.clone();
     harness.state_mut().open_path(&ctx, &path);
     wait(&mut harness, what, holds);
+    finish(&mut harness);
     harness
 }
 
@@ -167,6 +158,7 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     let file: egui::DroppedFileHandle = Arc::new(Dropped(path));
     harness.input_mut().dropped_files.push(file);
     wait(&mut harness, "form", |s| s["mapping"].is_object());
+    finish(&mut harness);
     harness.get_by_label("Which column is what?");
     harness.get_by_label("A file of MATLAB does not say what its columns are.");
     assert_eq!(
@@ -186,6 +178,7 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     click(&mut harness, "Open another");
     click(&mut harness, "ui-mapping-log.mat");
     wait(&mut harness, "file", |s| s["error"].is_number());
+    finish(&mut harness);
     assert_eq!((form(&harness), found(&harness)), (Value::Null, expected));
     // The other page that takes files knows it too.
     click(&mut harness, "Backlash");
@@ -193,6 +186,7 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     wait(&mut harness, "file in Backlash", |s| {
         s["backlash"]["file"] == "ui-mapping-log.mat"
     });
+    finish(&mut harness);
 }
 
 /// The form for the matrix, filled in.

@@ -1,6 +1,6 @@
 //! The pages, as a user sees and works them: pictures of fixed size, and the way from a file to the answer.
 
-use crate::support::ui::{App, WIDE, finish, picture, state, type_over};
+use crate::support::ui::{App, WIDE, finish, picture, state, type_over, wait};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::HysteronApp;
 use hysteron_core::rig;
@@ -185,10 +185,7 @@ fn an_effect_of_ones_own_can_be_undone_and_done_again() {
 
 /// Waits until a formula is looked for, which begins by itself, and stops that: then only who asks for one gets it.
 fn stop_looking(harness: &mut App) {
-    while state(harness)["looks"] != true {
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        harness.step();
-    }
+    wait(harness, "search", |s| s["looks"] == true);
     assert_eq!(
         state(harness)["hint"],
         "Nothing in the library fits: a formula is being looked for."

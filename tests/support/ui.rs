@@ -122,20 +122,25 @@ pub fn texts(harness: &App) -> Vec<String> {
     texts
 }
 
-/// Waits until nothing is computed any more and the result is on the screen.
-pub fn finish(harness: &mut App) {
-    harness.step();
+/// Waits until the app says this of itself, however busy the machine is.
+pub fn wait(harness: &mut App, what: &str, holds: impl Fn(&serde_json::Value) -> bool) {
     for _ in 0..ROUNDS {
         harness.step();
-        if state(harness)["busy"] == false {
-            // One frame takes the result, the next draws it with its sizes settled.
-            harness.step();
-            harness.step();
+        if holds(&state(harness)) {
             return;
         }
         std::thread::sleep(WAIT);
     }
-    panic!("the job did not end: {}", state(harness));
+    panic!("no {what}: {}", state(harness));
+}
+
+/// Waits until nothing is computed any more and the result is on the screen.
+pub fn finish(harness: &mut App) {
+    harness.step();
+    wait(harness, "end of the job", |s| s["busy"] == false);
+    // One frame takes the result, the next draws it with its sizes settled.
+    harness.step();
+    harness.step();
 }
 
 /// Clicks what has this label and waits for what follows.
