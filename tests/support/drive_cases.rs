@@ -119,7 +119,142 @@ pub fn drive_cases(seed: u64) -> Vec<Case> {
     cases.extend(sparse(&mut random));
     cases.push(met_again(&mut random));
     cases.extend(held(&mut random));
+    cases.extend(along_the_way(&mut random));
+    cases.extend(from_outside(&mut random));
+    cases.push(bump(&mut random));
     cases
+}
+
+/// One place that pushes back, which no effect has.
+fn bump(r: &mut Random) -> Case {
+    let stranger = Stranger::PositionBump {
+        torque: 0.08,
+        at: 0.5,
+        width: 0.2,
+    };
+    let rig = DriveRig {
+        stranger: Some(stranger),
+        ..bare(r, MULTISINE)
+    };
+    Case::unknown("unknown: bump at one place", Bench::Drive(rig))
+}
+
+/// What depends on where the motor is.
+fn along_the_way(r: &mut Random) -> Vec<Case> {
+    let (stiffness, upper) = (r.between(3.0, 8.0), r.between(0.8, 1.2));
+    let stops = Stranger::EndStops {
+        stiffness,
+        damping: r.between(4e-3, 8e-3),
+        upper,
+        lower: -r.between(0.8, 1.2),
+    };
+    let (level, slope) = (r.between(0.04, 0.05), r.between(2e-3, 3e-3));
+    let (share, off) = (r.between(0.1, 0.2), r.between(3e-3, 6e-3));
+    let ripple = Stranger::Ripple {
+        share,
+        periods: r.between(3.0, 8.0).round(),
+        phase: r.between(-3.0, 3.0),
+    };
+    let disc = Stranger::EccentricEncoder {
+        share: off,
+        phase: r.between(-3.0, 3.0),
+    };
+    let torque = r.between(0.02, 0.03);
+    let make = |r: &mut Random, name, truths, excitation, friction, stranger| {
+        let rig = DriveRig {
+            stranger: Some(stranger),
+            friction,
+            ..bare(r, excitation)
+        };
+        Case::drive(name, truths, rig)
+    };
+    let none = Friction::dry(0.0);
+    vec![
+        make(
+            r,
+            "end stops",
+            vec![Truth::new("end_stop", &["x_h"], upper)],
+            MULTISINE,
+            none,
+            stops,
+        ),
+        make(
+            r,
+            "friction along the way",
+            vec![
+                coulomb(level),
+                Truth::new("position_friction", &["g"], slope),
+            ],
+            MULTISINE,
+            Friction::dry(level),
+            Stranger::TightEnd { slope },
+        ),
+        Case::drive(
+            "cogging with a harmonic",
+            vec![Truth::new("cogging_harmonics", &["b"], torque)],
+            DriveRig {
+                cogging: (
+                    r.between(0.03, 0.05),
+                    r.between(3.0, 8.0).round(),
+                    r.between(-3.0, 3.0),
+                ),
+                stranger: Some(Stranger::SecondWave {
+                    torque,
+                    phase: r.between(-3.0, 3.0),
+                }),
+                friction: none,
+                ..bare(r, MULTISINE)
+            },
+        ),
+        make(
+            r,
+            "torque ripple",
+            vec![Truth::new("torque_ripple", &["a"], share)],
+            MULTISINE,
+            none,
+            ripple,
+        ),
+        make(
+            r,
+            "eccentric encoder",
+            vec![Truth::new("encoder_eccentricity", &["e"], off)],
+            STAIRS,
+            none,
+            disc,
+        ),
+    ]
+}
+
+/// What the input path and the surroundings do.
+fn from_outside(r: &mut Random) -> Vec<Case> {
+    let (torque, rate) = (r.between(0.01, 0.02), r.between(8.0, 12.0));
+    let shaking = Stranger::Shaking {
+        torque,
+        period: r.between(0.13, 0.3),
+        phase: r.between(-3.0, 3.0),
+    };
+    let cases = [
+        (
+            "shaken",
+            Truth::new("periodic_disturbance", &["a"], torque),
+            STAIRS,
+            shaking,
+        ),
+        (
+            "slow amplifier",
+            Truth::new("rate_limit", &["r"], rate),
+            MULTISINE,
+            Stranger::SlowAmplifier { rate },
+        ),
+    ];
+    let hidden = |(name, truth, excitation, stranger)| {
+        let rig = DriveRig {
+            stranger: Some(stranger),
+            ..bare(r, excitation)
+        };
+        Case::drive(name, vec![truth], rig)
+    };
+    cases.into_iter().map(hidden).collect()
 }
 
 /// What holds the motor at a place, and friction that is none of the plain kinds.

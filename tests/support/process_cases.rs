@@ -65,7 +65,44 @@ pub fn process_cases(seed: u64) -> Vec<Case> {
     cases.extend(strangers(&mut random));
     cases.extend(valve(&mut random));
     cases.push(emptying(&mut random));
+    cases.extend(valves(&mut random));
     cases
+}
+
+/// Valves that do not do as they are told.
+fn valves(r: &mut Random) -> Vec<Case> {
+    let (rate, width) = (r.between(0.1, 0.2), r.between(0.06, 0.12));
+    let (band, share) = (r.between(0.2, 0.35), r.between(0.3, 0.6));
+    let jump = share * band;
+    let cases = [
+        (
+            "slow valve",
+            Truth::new("rate_limit", &["r"], rate),
+            Stranger::SlowValve { rate },
+        ),
+        (
+            "dead band",
+            Truth::new("dead_zone", &["z"], width),
+            Stranger::DeadBand { width },
+        ),
+        (
+            "slipping valve",
+            Truth::new("valve_stiction", &["b"], (band - jump) / 2.0),
+            Stranger::SlippingValve { band, jump },
+        ),
+    ];
+    let hidden = |(name, truth, stranger)| {
+        let stranger = Some(stranger);
+        Case::process(
+            name,
+            vec![truth],
+            ProcessRig {
+                stranger,
+                ..bare(r, STAIRS)
+            },
+        )
+    };
+    cases.into_iter().map(hidden).collect()
 }
 
 /// A tank that empties through a hole.
@@ -261,50 +298,55 @@ fn pairs(r: &mut Random) -> Vec<Case> {
 }
 
 fn strangers(r: &mut Random) -> Vec<Case> {
-    let strange = [
-        (
+    let mut make = |name, truth: Option<Truth>, excitation, stranger, second_lag| {
+        let rig = ProcessRig {
+            stranger: Some(stranger),
+            second_lag,
+            ..bare(r, excitation)
+        };
+        match truth {
+            Some(truth) => Case::process(name, vec![truth], rig),
+            None => Case::unknown(name, Bench::Process(rig)),
+        }
+    };
+    let (amplitude, period, width, time) = (0.08, 37.0, 0.1, 6.0);
+    // Of time constants in the ratio 1.25, as shares of their mean.
+    let asymmetry = 0.25 / 2.25;
+    vec![
+        make(
             "unknown: gain steps",
+            None,
             BINARY,
             Stranger::GainSteps { factor: 0.85 },
+            0.0,
         ),
-        (
-            "unknown: swing",
+        make(
+            "swing",
+            Some(Truth::new("periodic_disturbance", &["a"], amplitude)),
             BINARY,
-            Stranger::Swing {
-                amplitude: 0.08,
-                period: 37.0,
-            },
+            Stranger::Swing { amplitude, period },
+            0.0,
         ),
-        (
-            "unknown: sticky valve",
+        make(
+            "sticky valve",
+            Some(Truth::new("valve_stiction", &["b"], width)),
             STAIRS,
-            Stranger::StickyValve { width: 0.1 },
+            Stranger::StickyValve { width },
+            0.0,
         ),
-        (
-            "unknown: slow fall",
+        make(
+            "slow fall",
+            Some(Truth::new("directional_lag", &["a"], asymmetry)),
             STAIRS,
             Stranger::SlowFall { factor: 1.25 },
+            0.0,
         ),
-    ];
-    let mut cases: Vec<Case> = strange
-        .into_iter()
-        .map(|(name, excitation, stranger)| {
-            let rig = ProcessRig {
-                stranger: Some(stranger),
-                ..bare(r, excitation)
-            };
-            Case::unknown(name, Bench::Process(rig))
-        })
-        .collect();
-    let stranger = Some(Stranger::WrongWay { time: 6.0 });
-    let rig = ProcessRig {
-        stranger,
-        second_lag: 4.0,
-        ..bare(r, BINARY)
-    };
-    cases.push(Case::unknown(
-        "unknown: wrong way first",
-        Bench::Process(rig),
-    ));
-    cases
+        make(
+            "wrong way first",
+            Some(Truth::new("inverse_response", &["T_z"], time)),
+            BINARY,
+            Stranger::WrongWay { time },
+            4.0,
+        ),
+    ]
 }

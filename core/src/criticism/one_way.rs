@@ -146,6 +146,8 @@ impl OneWay {
         effect.apply(values, &mut model);
         let plain = model.delay == 0.0
             && model.next_input == 0.0
+            && model.actuator.is_none()
+            && model.encoder.is_none()
             && model.lag.is_none()
             && model.sensor_lag.is_none()
             && model.load.is_none()
@@ -159,7 +161,7 @@ impl OneWay {
         }
         let added = |[u, x, v]: &[f64; 3]| {
             let forces: f64 = model.forces.iter().map(|force| force(*x, *v)).sum();
-            let friction = model.friction.level_at(*v) * v.signum();
+            let friction = model.friction.level_at(*x, *v) * v.signum();
             model.map_input(*u) - u + model.constant_force + forces - friction
         };
         let mut forces: Vec<f64> = self.moving.iter().map(added).collect();

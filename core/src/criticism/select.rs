@@ -30,7 +30,7 @@ pub(super) const SAMPLED_SHARE: f64 = 2e-2;
 /// Share of the held-back blocks that may be more than noise, and share of the error there that may be
 /// left, where a model explains all the rest.
 const ODD_STRETCHES: f64 = 0.35;
-const STRETCH_SHARE: f64 = 0.02;
+pub(super) const STRETCH_SHARE: f64 = 0.02;
 
 /// Whether the step from the error `before` to that `after` it explains more than it leaves beyond the noise.
 pub(super) fn outweighs(before: f64, after: f64) -> bool {

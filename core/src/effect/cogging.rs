@@ -4,11 +4,13 @@ use std::f64::consts::TAU;
 
 use super::atom::{Values, even};
 use super::{
-    Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, gravity,
-    hardening_spring, return_spring,
+    Atom, BodyStart, Dimension, Effect, EffectId, Extent, ParameterSpec, Part, Probe, Range, Shape,
+    gravity, hardening_spring, return_spring,
 };
 use crate::measurement::Kind;
 use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("cogging");
 
 pub(super) struct Cogging;
 
@@ -21,9 +23,18 @@ const LEAST_SAMPLES: f64 = 8.0;
 const FREQUENCIES_PER_TURN: f64 = 2.0;
 const MOST_FREQUENCIES: f64 = 160.0;
 
+/// From a wave in the travel to the finest that samples at the typical speed show.
+pub(super) fn frequencies(extent: &Extent) -> Vec<Shape> {
+    let shortest = LEAST_SAMPLES * extent.speed * extent.step;
+    let (first, last) = (TAU / extent.travel, TAU / shortest);
+    let apart = first / FREQUENCIES_PER_TURN;
+    let count = ((last - first) / apart).min(MOST_FREQUENCIES);
+    even(first, first + count.floor() * apart, count as usize + 1)
+}
+
 impl Effect for Cogging {
     fn id(&self) -> EffectId {
-        EffectId::new("cogging")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -98,14 +109,7 @@ impl Effect for Cogging {
         ];
         vec![Atom {
             parts: COLUMNS,
-            // From a wave in the travel to the finest that samples at the typical speed show.
-            grid: |extent| {
-                let shortest = LEAST_SAMPLES * extent.speed * extent.step;
-                let (first, last) = (TAU / extent.travel, TAU / shortest);
-                let apart = first / FREQUENCIES_PER_TURN;
-                let count = ((last - first) / apart).min(MOST_FREQUENCIES);
-                even(first, first + count.floor() * apart, count as usize + 1)
-            },
+            grid: frequencies,
             shapes: 1,
             values: Values::From(|solved| {
                 let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);

@@ -99,7 +99,7 @@ pub trait Effect: Sync {
 /// [`Effect::order`] of a lag in series with a process: the slower of the two is the process's.
 pub(super) fn slower_is_the_process(kind: Kind, body: &mut [f64], values: &mut [f64]) -> bool {
     match (kind, body, values) {
-        (Kind::Process, [_, slow, ..], [fast]) if *fast > *slow => {
+        (Kind::Process, [_, slow, ..], [fast, ..]) if *fast > *slow => {
             std::mem::swap(slow, fast);
             true
         }

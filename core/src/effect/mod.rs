@@ -5,14 +5,18 @@ mod atom;
 mod backlash;
 pub(crate) mod baseline;
 mod cogging;
+mod cogging_harmonics;
 mod constant_load;
 mod coulomb_friction;
 mod dead_zone;
 mod directional_friction;
+mod directional_lag;
 mod driven_load;
 mod dry_friction;
 #[allow(clippy::module_inception, reason = "the room is named after its trait")]
 mod effect;
+mod encoder_eccentricity;
+mod end_stop;
 mod flattening_friction;
 mod formula;
 mod gain_asymmetry;
@@ -20,15 +24,19 @@ mod gravity;
 mod hardening_spring;
 mod id;
 mod input_delay;
+mod inverse_response;
 mod joint_compliance;
 mod load_dependent_friction;
 mod load_ramp;
 mod names;
 mod nonlinear_loss;
 mod outflow;
+mod periodic_disturbance;
+mod position_friction;
 mod presliding_friction;
 mod probe;
 mod quadratic_drag;
+mod rate_limit;
 mod return_spring;
 mod sampled_input;
 mod saturation;
@@ -37,6 +45,8 @@ mod sensor_lag;
 mod spec;
 mod static_curvature;
 mod stribeck_friction;
+mod torque_ripple;
+mod valve_stiction;
 
 pub use atom::{
     Atom, BodyStart, Extent, Moment, NO_SHAPE, Own, Part, Series, Shape, Solved, Track,
@@ -77,6 +87,16 @@ pub fn registry() -> &'static [&'static dyn Effect] {
         &load_dependent_friction::LoadDependentFriction,
         &flattening_friction::FlatteningFriction,
         &outflow::Outflow,
+        &end_stop::EndStop,
+        &position_friction::PositionFriction,
+        &cogging_harmonics::CoggingHarmonics,
+        &torque_ripple::TorqueRipple,
+        &encoder_eccentricity::EncoderEccentricity,
+        &rate_limit::RateLimit,
+        &periodic_disturbance::PeriodicDisturbance,
+        &inverse_response::InverseResponse,
+        &directional_lag::DirectionalLag,
+        &valve_stiction::ValveStiction,
     ]
 }
 
@@ -87,6 +107,23 @@ fn screened_only() -> &'static [&'static dyn Effect] {
         &directional_friction::DirectionalFriction,
         &nonlinear_loss::NonlinearLoss,
     ]
+}
+
+/// Whether few machines have the effect with this id, and its curve can stand in for much else: it is named only where, with
+/// it, what is left is noise or a small share of what there was.
+pub fn is_seldom(id: EffectId) -> bool {
+    [
+        rate_limit::ID,
+        end_stop::ID,
+        position_friction::ID,
+        torque_ripple::ID,
+        encoder_eccentricity::ID,
+        periodic_disturbance::ID,
+        inverse_response::ID,
+        directional_lag::ID,
+        valve_stiction::ID,
+    ]
+    .contains(&id)
 }
 
 /// Every effect that the screen looks for, in the order in which equals are listed.

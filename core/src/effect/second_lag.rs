@@ -6,11 +6,23 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("second_lag");
+
 pub(super) struct SecondLag;
+
+/// Body of the slower of two lags and time constant of the faster one, where `inertia y' + damping y` stands beside this
+/// coefficient times `y''`; none where one of them would not settle.
+pub(super) fn lags([inertia, damping]: [f64; 2], coefficient: f64) -> Option<([f64; 2], f64)> {
+    // Of the polynomial 1 + sum s + product s^2.
+    let (sum, product) = (inertia / damping, coefficient / damping);
+    let root = (sum * sum / 4.0 - product).max(0.0).sqrt();
+    let (slow, fast) = (sum / 2.0 + root, sum / 2.0 - root);
+    (product > 0.0 && fast > 0.0).then_some(([slow * damping, damping], fast))
+}
 
 impl Effect for SecondLag {
     fn id(&self) -> EffectId {
-        EffectId::new("second_lag")
+        ID
     }
 
     fn name(&self) -> &'static str {
@@ -65,12 +77,8 @@ impl Effect for SecondLag {
         vec![Atom::linear(
             COLUMNS,
             Values::From(|solved| {
-                let [inertia, damping] = solved.body;
-                // Of the polynomial 1 + sum s + product s^2.
-                let (sum, product) = (inertia / damping, solved.coefficients[0] / damping);
-                let root = (sum * sum / 4.0 - product).max(0.0).sqrt();
-                let (slow, fast) = (sum / 2.0 + root, sum / 2.0 - root);
-                (product > 0.0 && fast > 0.0).then(|| ([slow * damping, damping], vec![fast]))
+                let (body, fast) = lags(solved.body, solved.coefficients[0])?;
+                Some((body, vec![fast]))
             }),
         )]
     }

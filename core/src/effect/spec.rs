@@ -114,6 +114,8 @@ pub enum Range {
     /// At least `RIGID_CROSSINGS` times [`Scales::crossed`], at most the travel: friction that built up over more
     /// would be a spring.
     Long,
+    /// A period that the record holds `SEEN_PERIODS` times at least, and of two samples at least.
+    Recurring,
     /// At least `SEEN_TURN` times its [`Scales::of`]: what repeats over the position is seen to do so within the
     /// travel.
     Repeating,
@@ -175,8 +177,16 @@ pub const LIGHTEST: f64 = 0.03;
 /// force.
 pub const SEEN_TURN: f64 = 1.5 * TAU;
 
+/// Periods in a record from which on something is seen to come back: once may be chance, and a slow one any drift.
+pub const SEEN_PERIODS: f64 = 3.0;
+
 /// A wave within this factor of the longest is at the end of its range.
 const AT_END: f64 = 1.001;
+
+/// The longest period that is seen to recur, s.
+fn longest_period(scales: &Scales) -> f64 {
+    scales.duration / SEEN_PERIODS
+}
 
 /// Share of the travel from which on a displacement is most of the way.
 const MOST_OF_THE_WAY: f64 = 0.3;
@@ -200,6 +210,7 @@ impl ParameterSpec {
                 | Range::Sizeable
                 | Range::Short
                 | Range::Long
+                | Range::Recurring
                 | Range::Repeating
         )
     }
@@ -209,6 +220,7 @@ impl ParameterSpec {
     pub fn is_too_long(&self, value: f64, scales: &Scales) -> bool {
         match self.range {
             Range::Repeating => value <= AT_END * (SEEN_TURN * scales.of(self.dimension)),
+            Range::Recurring => value * AT_END >= longest_period(scales),
             Range::Long => value >= MOST_OF_THE_WAY * scales.travel,
             _ => false,
         }
@@ -242,6 +254,7 @@ impl ParameterSpec {
                 let least = RIGID_CROSSINGS * scales.crossed();
                 value.max(least).min(scales.travel.max(least))
             }
+            Range::Recurring => value.max(2.0 * scales.step).min(longest_period(scales)),
             Range::Repeating => value.max(SEEN_TURN * scale),
         }
     }

@@ -128,7 +128,8 @@ impl<'e> Bristle<'e> {
         for i in from + 1..=sample {
             let moved = position[i] - position[i - 1];
             if moved != 0.0 {
-                let level = self.friction.level_at(moved / (time[i] - time[i - 1]));
+                let velocity = moved / (time[i] - time[i - 1]);
+                let level = self.friction.level_at(position[i], velocity).max(0.0);
                 self.deflection = self.contact.followed(self.deflection, moved, level);
             }
         }

@@ -1,5 +1,6 @@
 //! A model under a sampled controller: the input follows from what was seen.
 
+use super::actuator::Remembering;
 use super::{Engine, Model, Sensor, State};
 
 /// What a model does under a controller, one value per sample.
@@ -48,10 +49,14 @@ pub fn run_controlled_from(
     let mut state = State::at_rest(before).restarted(position, velocity);
     let mut slow = Slow::new(model.sensor_lag, step);
     let mut mapped: Vec<f64> = Vec::with_capacity(samples);
+    let mut actuator = model.actuator.map(|a| Remembering::new(a, before));
     let mut run = Run::default();
     for i in 0..samples {
         let time = i as f64 * step;
         let (mut x, mut v) = (state.position(), model.map_output(state.velocity()));
+        if let Some(encoder) = model.encoder {
+            (x, v) = encoder.seen(x, v);
+        }
         match slow_sensor {
             Sensor::Velocity => v = slow.follow(v),
             Sensor::Position => x = slow.follow(x),
@@ -60,7 +65,9 @@ pub fn run_controlled_from(
         run.input.push(u);
         run.position.push(x);
         run.velocity.push(v);
-        mapped.push(model.map_input(u));
+        let command = model.map_input(u);
+        let given = actuator.as_mut().map(|a| a.after(command, step));
+        mapped.push(given.unwrap_or(command));
         let load = model.early_load(time + 0.5 * step);
         let acting = |back: usize| i.checked_sub(back).map_or(before, |k| mapped[k]);
         if rest > 0.0 {

@@ -1,5 +1,6 @@
 //! The held input as it acts on a body: mapped, and shifted by a dead time.
 
+use super::actuator::Remembering;
 use super::excitation::Excitation;
 use super::{Engine, Model};
 
@@ -9,12 +10,22 @@ pub(super) struct DelayedInput<'a> {
     pub model: &'a Model,
     /// What acts before the record starts.
     pub before: f64,
+    /// What an actuator that remembers gives after each sample.
+    given: Option<Vec<f64>>,
     delay: f64,
     /// For equal steps: whole samples and the rest of the dead time.
     whole: usize,
     rest: f64,
     /// For unequal steps: first sample whose delayed value may still act.
     pointer: usize,
+}
+
+/// What a sample tells the actuator.
+fn command(excitation: &Excitation, model: &Model, sample: usize) -> f64 {
+    let input = &excitation.input;
+    let next = input.get(sample + 1).unwrap_or(&input[sample]);
+    let acting = input[sample] + model.next_input * (next - input[sample]);
+    model.map_input(acting)
 }
 
 impl<'a> DelayedInput<'a> {
@@ -33,10 +44,22 @@ impl<'a> DelayedInput<'a> {
                 rest = 0.0;
             }
         }
+        let before = model.map_input(excitation.before);
+        let given = model.actuator.map(|actuator| {
+            let mut actuator = Remembering::new(actuator, before);
+            let last = excitation.len() - 1;
+            let commands = (0..last).map(|i| (i, excitation.step_after(i)));
+            let mut given: Vec<f64> = commands
+                .map(|(i, h)| actuator.after(command(excitation, model, i), h))
+                .collect();
+            given.push(command(excitation, model, last));
+            given
+        });
         Self {
             excitation,
             model,
-            before: model.map_input(excitation.before),
+            before,
+            given,
             delay,
             whole,
             rest,
@@ -56,10 +79,9 @@ impl<'a> DelayedInput<'a> {
 
     fn value(&self, sample: Option<usize>) -> f64 {
         sample.map_or(self.before, |i| {
-            let input = &self.excitation.input;
-            let next = input.get(i + 1).unwrap_or(&input[i]);
-            let acting = input[i] + self.model.next_input * (next - input[i]);
-            self.model.map_input(acting)
+            self.given
+                .as_ref()
+                .map_or_else(|| command(self.excitation, self.model, i), |given| given[i])
         })
     }
 

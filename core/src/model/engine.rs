@@ -67,9 +67,10 @@ impl<'m> Engine<'m> {
     pub fn new(model: &'m Model) -> Self {
         let smooth = model.forces.is_empty()
             && model.own_forces.is_empty()
-            && model.friction.static_excess == 0.0;
+            && model.friction.static_excess == 0.0
+            && model.friction.rise == 0.0;
         Self {
-            body: Flow::new(model.inertia, model.viscous, model.lag),
+            body: Flow::new(model.inertia, model.viscous, model.lag).with_direct(model.direct),
             load: model
                 .load
                 .map(|load| Flow::new(load.inertia, load.viscous, None)),
@@ -78,7 +79,10 @@ impl<'m> Engine<'m> {
             touching_step: model
                 .load
                 .map_or(f64::INFINITY, |load| load.longest_step(model.inertia)),
-            plain: smooth && model.load.is_none() && model.late_load().1 == 0.0,
+            plain: smooth
+                && model.load.is_none()
+                && model.late_load().1 == 0.0
+                && model.slow_fall == 0.0,
             moves: Cell::new(0),
             model,
         }
@@ -306,7 +310,7 @@ impl<'m> Engine<'m> {
     /// Whether nothing but a friction level changes with the motion, and the body is and stays too fast for that.
     fn is_levelled(&self, state: &State, h: f64) -> bool {
         let model = self.model;
-        let smooth = model.load.is_none() && model.is_same_everywhere();
+        let smooth = model.load.is_none() && model.is_same_everywhere() && model.slow_fall == 0.0;
         let slowest = state.motion.v.abs() - self.gained(state, h);
         smooth && slowest > FLAT * model.friction.stribeck_speed
     }
@@ -341,11 +345,29 @@ impl<'m> Engine<'m> {
         });
         let own = self.smooth_force(state, x, v);
         let (constant, rise) = model.late_load();
+        let body = constant + rise * state.time + own - between;
         Held {
-            body: constant + rise * state.time + own - between,
+            body: body + self.slower(state, body),
             load: between,
-            level: model.friction.level_at(v),
+            level: model.friction.level_at(x, v),
         }
+    }
+
+    /// What makes a process slower one way than the other: with the inertia `J (1 + a)` when it falls and `J (1 - a)` when
+    /// it rises, `held` acts like a force more on `J`.
+    fn slower(&self, state: &State, held: f64) -> f64 {
+        let asymmetry = self.model.slow_fall;
+        if asymmetry == 0.0 {
+            return 0.0;
+        }
+        let Motion { v, z, .. } = state.motion;
+        let net = z + held - self.model.viscous * v;
+        let share = if net * self.model.inertia < 0.0 {
+            1.0 + asymmetry
+        } else {
+            1.0 - asymmetry
+        };
+        net * (1.0 / share - 1.0)
     }
 
     /// Moves body and load under held forces.

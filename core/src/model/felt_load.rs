@@ -84,7 +84,7 @@ impl Felt<'_> {
             let pushed = (self.velocity(k + 1) - self.velocity(k)) / self.step;
             let acting = input + model.early_load(time) + late + ramp * time + forces + own;
             let rest = acting - model.viscous * velocity - model.inertia * pushed;
-            let level = model.friction.level_at(velocity);
+            let level = model.friction.level_at(position, velocity).max(0.0);
             if velocity == 0.0 {
                 rest.signum() * (rest.abs() - level).max(0.0)
             } else {

@@ -179,6 +179,8 @@ pub(super) struct Flow {
     /// Inverse inertia.
     pub b: f64,
     mu: Option<f64>,
+    /// Share of the lag's input that passes it by.
+    direct: f64,
     cache: Vec<Coefficients>,
 }
 
@@ -189,7 +191,17 @@ impl Flow {
             lambda: viscous / inertia,
             b: 1.0 / inertia,
             mu: lag.map(|tau| 1.0 / tau),
+            direct: 0.0,
             cache: Vec::new(),
+        }
+    }
+
+    /// The same with a `share` of the input that acts on the body at once; without dry friction.
+    #[must_use]
+    pub fn with_direct(self, share: f64) -> Self {
+        Self {
+            direct: share,
+            ..self
         }
     }
 
@@ -262,7 +274,7 @@ impl Flow {
         if self.mu.is_none() {
             return Motion { x, v, z: w };
         }
-        let fading = self.b * (m.z - w);
+        let fading = self.b * (1.0 - self.direct) * (m.z - w);
         Motion {
             x: x + fading * c.psi2,
             v: v + fading * c.psi1,

@@ -1,16 +1,18 @@
 //! A model put together from mechanisms, and its motion under a measured input.
 //!
 //! Input path, body, dry friction, further forces, a load and the sensor are the mechanisms; an
-//! effect sets the ones that it needs. The order is: static maps of the input, dead time, lag, body,
-//! sensor. Between events the motion of body and load is an exact flow; sticking and slipping are
+//! effect sets the ones that it needs. The order is: static maps of the input, an actuator with a memory, dead time, lag,
+//! body, sensor. Between events the motion of body and load is an exact flow; sticking and slipping are
 //! modes with guards, and so is contact: where body and load come together or apart is located as an event. Smooth
 //! forces, and all that acts with them or with a soft bristle between body and load, are held at their value at the middle
 //! of steps short against their change (exponential midpoint rule, second order).
 
+mod actuator;
 mod bristle;
 mod closed_loop;
 mod contact;
 mod delayed_input;
+mod encoder;
 mod engine;
 mod excitation;
 mod felt_load;
@@ -31,8 +33,11 @@ mod smoothed;
 mod state;
 mod swing;
 
+pub use actuator::Actuator;
+pub(crate) use actuator::given;
 pub use closed_loop::{Run, run_controlled, run_controlled_from};
 pub(crate) use contact::dahl;
+pub use encoder::Eccentricity;
 pub use engine::Engine;
 pub use excitation::{Excitation, Sensor};
 pub(crate) use felt_load::slope;
@@ -77,6 +82,8 @@ pub struct DryFriction {
     pub static_excess: f64,
     /// Speed at which the excess has fallen to 1/e: `level + static_excess exp(-(v / speed)^2)`.
     pub stribeck_speed: f64,
+    /// By how much the level rises with the position, per rad or m.
+    pub rise: f64,
     /// Displacement after a reversal, rad or m, over which dry friction builds up to its level
     /// (friction level over contact stiffness, Dahl 1968); 0 for a rigid contact.
     pub presliding: f64,
@@ -86,13 +93,14 @@ pub struct DryFriction {
 }
 
 impl DryFriction {
-    /// Friction level at velocity `v`.
-    pub fn level_at(&self, v: f64) -> f64 {
+    /// Friction level at position `x` and velocity `v`; below 0 there is no friction.
+    pub fn level_at(&self, x: f64, v: f64) -> f64 {
+        let level = self.level + self.rise * x;
         if self.static_excess == 0.0 {
-            return self.level;
+            return level;
         }
         let ratio = v / self.stribeck_speed;
-        self.level + self.static_excess * libm::exp(-ratio * ratio)
+        level + self.static_excess * libm::exp(-ratio * ratio)
     }
 
     /// Level at standstill.
@@ -109,12 +117,19 @@ pub struct Model {
     pub viscous: f64,
     /// Static maps of the input, in order.
     pub input_maps: Vec<StaticMap>,
+    /// An actuator that remembers what it was told before, after the maps.
+    pub actuator: Option<Actuator>,
     /// Share of the next sample of the input that acts from a sample to the next, 0 to 1.
     pub next_input: f64,
     /// Dead time of the input, s; at least 0.
     pub delay: f64,
     /// Time constant of the input lag, s; above 0.
     pub lag: Option<f64>,
+    /// Share of the input of a process that passes by the lag, so that it acts at once; below 0, it first acts the wrong
+    /// way.
+    pub direct: f64,
+    /// Share by which a process takes longer to fall than in the mean, and shorter to rise; -1 to 1.
+    pub slow_fall: f64,
     /// Constant force added to the input after its path.
     pub constant_force: f64,
     /// Its rise per second, counted from the first sample.
@@ -130,6 +145,8 @@ pub struct Model {
     pub own_forces: Vec<OwnForce>,
     /// A second body behind a joint or a gap.
     pub load: Option<Load>,
+    /// An encoder that is not centred on its shaft.
+    pub encoder: Option<Eccentricity>,
     /// Static maps of the output (the velocity), in order.
     pub output_maps: Vec<StaticMap>,
     /// Time constant of the sensor, s; above 0. It slows the velocity signal, or the position where
@@ -144,9 +161,12 @@ impl Model {
             inertia,
             viscous,
             input_maps: Vec::new(),
+            actuator: None,
             next_input: 0.0,
             delay: 0.0,
             lag: None,
+            direct: 0.0,
+            slow_fall: 0.0,
             constant_force: 0.0,
             force_ramp: 0.0,
             load_before_lag: false,
@@ -154,14 +174,18 @@ impl Model {
             forces: Vec::new(),
             own_forces: Vec::new(),
             load: None,
+            encoder: None,
             output_maps: Vec::new(),
             sensor_lag: None,
         }
     }
 
-    /// Whether a motion that begins elsewhere is the same one there: no force depends on the place.
+    /// Whether a motion that begins elsewhere is the same one there: no force and no reading depends on the place.
     pub fn is_same_everywhere(&self) -> bool {
-        self.forces.is_empty() && self.own_forces.is_empty()
+        self.forces.is_empty()
+            && self.own_forces.is_empty()
+            && self.encoder.is_none()
+            && self.friction.rise == 0.0
     }
 
     /// Input after the static maps.
@@ -199,9 +223,12 @@ impl std::fmt::Debug for Model {
             .field("inertia", &self.inertia)
             .field("viscous", &self.viscous)
             .field("input_maps", &self.input_maps.len())
+            .field("actuator", &self.actuator)
             .field("next_input", &self.next_input)
             .field("delay", &self.delay)
             .field("lag", &self.lag)
+            .field("direct", &self.direct)
+            .field("slow_fall", &self.slow_fall)
             .field("constant_force", &self.constant_force)
             .field("force_ramp", &self.force_ramp)
             .field("load_before_lag", &self.load_before_lag)
@@ -209,6 +236,7 @@ impl std::fmt::Debug for Model {
             .field("forces", &self.forces.len())
             .field("own_forces", &self.own_forces.len())
             .field("load", &self.load)
+            .field("encoder", &self.encoder)
             .field("output_maps", &self.output_maps.len())
             .field("sensor_lag", &self.sensor_lag)
             .finish()

@@ -204,6 +204,11 @@ impl Excitation {
                 }
             }
         }
+        if let Some(encoder) = model.encoder {
+            for i in self.runs.iter().flat_map(|(from, end)| *from..*end) {
+                (position[i], velocity[i]) = encoder.seen(position[i], velocity[i]);
+            }
+        }
         if let Some(lag) = model.sensor_lag {
             let signal = match self.slow_sensor {
                 Sensor::Velocity => velocity,
@@ -269,7 +274,7 @@ impl Excitation {
                         Some(tau) => {
                             let fading = tau * -libm::expm1(-h / tau) * (z - w);
                             z = w + (z - w) * libm::exp(-h / tau);
-                            w * h + fading
+                            w * h + (1.0 - model.direct) * fading
                         }
                     };
                     duration += h;

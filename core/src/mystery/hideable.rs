@@ -62,6 +62,8 @@ pub(super) enum Family {
     Amplifier,
     Load,
     Storage,
+    /// The bench holds one of them at a time.
+    Stranger,
 }
 
 impl Hideable {
@@ -106,7 +108,8 @@ impl Hideable {
 
     /// Whether the bench can hide both.
     pub fn goes_with(&self, other: &Self) -> bool {
-        self.family != other.family
+        let part = |a: &Self, b: &Self| a.effect().is_some_and(|e| e.has_part(b.id));
+        self.family != other.family && !part(self, other) && !part(other, self)
     }
 
     /// Hides it.

@@ -198,6 +198,59 @@ pub enum Stranger {
         /// rad/s.
         half: f64,
     },
+    /// Stops at both ends of the way: damped springs that do not pull.
+    EndStops {
+        /// N m/rad.
+        stiffness: f64,
+        /// N m s/rad.
+        damping: f64,
+        /// rad.
+        upper: f64,
+        /// rad.
+        lower: f64,
+    },
+    /// A second wave of the cogging, twice as fine as the first.
+    SecondWave {
+        /// N m.
+        torque: f64,
+        /// rad.
+        phase: f64,
+    },
+    /// A guide that is tighter at one end: dry friction more by this, N m/rad.
+    TightEnd {
+        /// N m/rad.
+        slope: f64,
+    },
+    /// The torque constant ripples with the angle.
+    Ripple {
+        /// 0 to 1.
+        share: f64,
+        /// 1/rad.
+        periods: f64,
+        /// rad.
+        phase: f64,
+    },
+    /// The disc of the encoder is off its shaft.
+    EccentricEncoder {
+        /// Share of its radius.
+        share: f64,
+        /// rad.
+        phase: f64,
+    },
+    /// Another machine that shakes this one.
+    Shaking {
+        /// N m.
+        torque: f64,
+        /// s.
+        period: f64,
+        /// rad.
+        phase: f64,
+    },
+    /// The torque changes at this rate at most, N m/s.
+    SlowAmplifier {
+        /// N m/s.
+        rate: f64,
+    },
     /// The viscous friction grows by this factor until the end of the record.
     Warming {
         /// Of the growth.

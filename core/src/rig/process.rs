@@ -60,6 +60,23 @@ pub enum Stranger {
         /// Half width, in the unit of the input.
         width: f64,
     },
+    /// A valve that sticks and slips (Choudhury, Thornhill and Shah 2005).
+    SlippingValve {
+        /// S, in the unit of the input.
+        band: f64,
+        /// J, in the unit of the input.
+        jump: f64,
+    },
+    /// A valve that moves at this rate at most, input unit per s.
+    SlowValve {
+        /// Input unit per s.
+        rate: f64,
+    },
+    /// A valve that opens only beyond this command.
+    DeadBand {
+        /// Half width, in the unit of the input.
+        width: f64,
+    },
     /// The output first goes the wrong way: a zero in the right half-plane.
     WrongWay {
         /// Its time constant, s.
@@ -156,7 +173,7 @@ impl ProcessRig {
         let late = (self.dead_time / h).round() as usize;
         let mut s: State = [0.0; 4];
         let mut acting: Vec<f64> = Vec::with_capacity(self.samples);
-        let mut valve = 0.0;
+        let (mut valve, mut stem) = (0.0, 0.0);
         let (mut time, mut input, mut output) = (vec![], vec![], vec![]);
         for i in 0..self.samples {
             let t = i as f64 * SAMPLING;
@@ -169,7 +186,11 @@ impl ProcessRig {
             for j in 0..SUBSTEPS {
                 let now = i * SUBSTEPS + j;
                 let then = now.checked_sub(late).and_then(|n| acting.get(n / SUBSTEPS));
-                let u = then.copied().unwrap_or(0.0);
+                let mut u = then.copied().unwrap_or(0.0);
+                if let Some(Stranger::SlowValve { rate }) = self.stranger {
+                    stem = u.clamp(stem - rate * h, stem + rate * h);
+                    u = stem;
+                }
                 s = self.step(s, u, t + j as f64 * h, h);
             }
         }
@@ -184,6 +205,17 @@ impl ProcessRig {
         if let Some(Stranger::StickyValve { width }) = self.stranger {
             *valve = valve.clamp(out - width, out + width);
             return *valve;
+        }
+        if let Some(Stranger::SlippingValve { band, jump }) = self.stranger {
+            let behind = out - *valve;
+            // A stem at rest needs more than one that slides.
+            if behind.abs() > 0.5 * (band + jump) {
+                *valve = out - 0.5 * (band - jump) * behind.signum();
+            }
+            return *valve;
+        }
+        if let Some(Stranger::DeadBand { width }) = self.stranger {
+            return out - out.clamp(-width, width);
         }
         out
     }

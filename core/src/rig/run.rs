@@ -97,6 +97,7 @@ impl DriveRig {
             } else {
                 s.x1
             };
+            let (x, v) = self.by_disc(x, v);
             let measured = stepped(
                 v + self.velocity_noise * random.normal(),
                 self.velocity_step,
@@ -138,6 +139,17 @@ impl DriveRig {
         out
     }
 
+    /// Angle and speed as the disc of the encoder shows them.
+    fn by_disc(&self, x: f64, v: f64) -> (f64, f64) {
+        match self.stranger {
+            Some(Stranger::EccentricEncoder { share, phase }) => (
+                x + share * libm::sin(x + phase),
+                v + share * v * libm::cos(x + phase),
+            ),
+            _ => (x, v),
+        }
+    }
+
     /// Torque on the motor beside friction, load and amplifier.
     fn strange_torque(&self, mid: &State, drive: f64, t: f64) -> f64 {
         match self.stranger {
@@ -161,6 +173,38 @@ impl DriveRig {
             Some(Stranger::FlatteningFriction { level, half }) => {
                 -level * mid.v1 / (mid.v1.abs() + half)
             }
+            Some(Stranger::EndStops {
+                stiffness,
+                damping,
+                upper,
+                lower,
+            }) => {
+                let (above, below) = (mid.x1 - upper, lower - mid.x1);
+                if above > 0.0 {
+                    -(stiffness * above + damping * mid.v1).max(0.0)
+                } else if below > 0.0 {
+                    (stiffness * below - damping * mid.v1).max(0.0)
+                } else {
+                    0.0
+                }
+            }
+            Some(Stranger::SecondWave { torque, phase }) => {
+                torque * libm::sin(2.0 * self.cogging.1 * mid.x1 + phase)
+            }
+            Some(Stranger::TightEnd { slope }) => {
+                // The guide is never so loose that it pushes.
+                -libm::tanh(mid.v1 / BLUNT) * (slope * mid.x1).max(-self.friction.coulomb)
+            }
+            Some(Stranger::Ripple {
+                share,
+                periods,
+                phase,
+            }) => drive * share * libm::sin(periods * mid.x1 + phase),
+            Some(Stranger::Shaking {
+                torque,
+                period,
+                phase,
+            }) => torque * libm::sin(std::f64::consts::TAU * t / period + phase),
             Some(Stranger::Warming { factor }) => {
                 -self.viscous * factor * t / (self.samples as f64 * self.sampling) * mid.v1
             }
@@ -177,7 +221,10 @@ impl DriveRig {
     /// One implicit midpoint step of `h` s about the time `t` with the torque command `u`.
     fn advance(&self, s: State, u: f64, t: f64, h: f64) -> State {
         let mut end = s;
-        let drive = if self.actuator_lag > 0.0 {
+        let drive = if let Some(Stranger::SlowAmplifier { rate }) = self.stranger {
+            end.torque = u.clamp(s.torque - rate * h, s.torque + rate * h);
+            f64::midpoint(s.torque, end.torque)
+        } else if self.actuator_lag > 0.0 {
             let x = h / self.actuator_lag;
             end.torque = u + (s.torque - u) * libm::exp(-x);
             u + (s.torque - u) * -libm::expm1(-x) / x

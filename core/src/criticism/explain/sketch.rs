@@ -106,7 +106,7 @@ impl Sketch {
         let told: Vec<Vec<f64>> = beside.into_iter().chain(alone).collect();
         // What repeats along the way has a valley at every period.
         let mut specs = effect.parameters().iter();
-        let repeats = specs.any(|p| p.range == Range::Repeating);
+        let repeats = specs.any(|p| matches!(p.range, Range::Repeating | Range::Recurring));
         let mut sketches = Vec::new();
         if told.is_empty() || is_hidden_body(effect) || repeats {
             sketches.extend(Self::sought(session, fit, effect));

@@ -3,11 +3,11 @@
 use super::Trial;
 use super::heat::Heat;
 use super::sketch::{Sketch, first_guess};
-use super::tuning::FITTED;
+use super::tuning::{FITTED, USUAL};
 use crate::criticism::fit::{Fit, least};
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
-use crate::effect::{Effect, EffectId};
+use crate::effect::{Effect, EffectId, ParameterSpec};
 
 /// A model to be fitted.
 #[derive(Clone)]
@@ -49,6 +49,13 @@ impl Task {
     }
 }
 
+/// Values of an effect of which the record tells none to begin with: a share of what is typical.
+fn usual(session: &Session, effect: &dyn Effect) -> Vec<f64> {
+    let scales = &session.scales;
+    let value = |p: &ParameterSpec| p.clamp(USUAL * scales.of(p.dimension), scales);
+    effect.parameters().iter().map(value).collect()
+}
+
 /// The model that effects are added to: from what the screen told, and one effect after the other.
 fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) -> Option<Fit> {
     let ids: Vec<EffectId> = held.iter().map(|e| e.id()).collect();
@@ -59,12 +66,15 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
     let mut fit = Sketch::new(session, &[], guessed).fitted(session);
     for effect in held {
         let mut sketches = Sketch::beside(session, screened, &fit, *effect);
+        if sketches.is_empty() {
+            sketches.push(Sketch::with(&fit, *effect, &usual(session, *effect)));
+        }
         Sketch::with_other_bodies(&mut sketches, session, &fit);
         let all = sketches
             .into_iter()
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
-        while heat.advance(session, 0.0, 1, false) {}
+        while heat.advance(session, 0.0, f64::INFINITY, 1, false) {}
         let fits = heat.best(FITTED, f64::INFINITY).into_iter();
         let fits = fits.map(|sketch| sketch.fitted(session));
         fit = least(fits)?;

@@ -4,6 +4,16 @@
 /// hardly shows in the weak form, where its velocity has no sign: beside the best of the others each has its turn.
 pub(super) const STARTS: usize = 24;
 
+/// Times what the best of as many effects leaves of the weak form, root mean square, beyond which the screen has told that a
+/// subset is not the one: where it is wrong by more, it sees neither.
+pub(super) const BEHIND: f64 = 5.0;
+
+/// Subsets of the class that the screen told which are fitted before all others.
+pub(super) const TOLD: usize = 8;
+
+/// Most effects of those with a hidden body among them: with more it fits nearly anything.
+pub(super) const MOST_WITH_HIDDEN: usize = 2;
+
 /// A round on the scout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
@@ -18,12 +28,12 @@ pub(super) struct Round {
 pub(super) const ROUNDS: [Round; 4] = [
     Round {
         iterations: 1,
-        sets: 20,
+        sets: 24,
         starts: 4,
     },
     Round {
         iterations: 2,
-        sets: 12,
+        sets: 14,
         starts: 3,
     },
     Round {
@@ -53,6 +63,9 @@ pub(super) const FITTED_HIDDEN: usize = 3;
 
 /// Samples of the usual motion over which a dry contact builds up its force: hard, and seen.
 pub(super) const CROSSINGS: [f64; 3] = [0.003, 0.35, 0.8];
+
+/// Share of its typical size with which a value begins of which the record tells nothing.
+pub(super) const USUAL: f64 = 0.1;
 
 /// Times the cost on the scout of what there is up to which a model is fitted to the record: so much a race of a few iterations on
 /// a part of it is off.

@@ -3,7 +3,7 @@
 use crate::effect::EffectId;
 use crate::mystery::Experiment::{Drifting, Relay, Sines, Stairs};
 use crate::mystery::hideable::{Family, Hide, Hideable};
-use crate::rig::{Friction, Load};
+use crate::rig::{Friction, Load, Stranger};
 
 pub(super) const MENU: &[Hideable] = &[
     Hideable {
@@ -210,6 +210,152 @@ pub(super) const MENU: &[Hideable] = &[
         hide: Hide::Drive(|width, rig, _| {
             rig.dead_zone = width;
             vec![("z", width)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("gravity"),
+        main: "a",
+        strengths: [0.06, 0.08, 0.1],
+        range: [0.02, 0.3],
+        shown_by: &[Sines],
+        family: Family::Stranger,
+        hide: Hide::Drive(|torque, rig, _| {
+            rig.stranger = Some(Stranger::Gravity { torque });
+            vec![("a", torque)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("return_spring"),
+        main: "k",
+        strengths: [0.04, 0.05, 0.06],
+        range: [0.02, 0.2],
+        shown_by: &[Stairs],
+        family: Family::Stranger,
+        hide: Hide::Drive(|stiffness, rig, _| {
+            rig.stranger = Some(Stranger::Spring { stiffness });
+            vec![("k", stiffness)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("load_dependent_friction"),
+        main: "m",
+        strengths: [0.15, 0.2, 0.25],
+        range: [0.05, 0.4],
+        shown_by: &[Sines],
+        family: Family::Stranger,
+        hide: Hide::Drive(|share, rig, _| {
+            rig.stranger = Some(Stranger::LoadFriction { share });
+            vec![("m", share)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("end_stop"),
+        main: "k",
+        strengths: [3.0, 5.0, 8.0],
+        range: [1.0, 20.0],
+        shown_by: &[Sines],
+        family: Family::Stranger,
+        hide: Hide::Drive(|stiffness, rig, random| {
+            let upper = random.between(0.8, 1.2);
+            let lower = -random.between(0.8, 1.2);
+            rig.stranger = Some(Stranger::EndStops {
+                stiffness,
+                damping: 6e-3,
+                upper,
+                lower,
+            });
+            vec![("k", stiffness), ("x_h", upper), ("x_l", lower)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("position_friction"),
+        main: "g",
+        strengths: [2e-3, 2.5e-3, 3e-3],
+        range: [1e-3, 6e-3],
+        shown_by: &[Sines],
+        family: Family::Stranger,
+        hide: Hide::Drive(|slope, rig, random| {
+            rig.friction = Friction::dry(random.between(0.04, 0.05));
+            rig.stranger = Some(Stranger::TightEnd { slope });
+            vec![("g", slope)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("cogging_harmonics"),
+        main: "b",
+        strengths: [0.02, 0.035, 0.05],
+        range: [0.01, 0.1],
+        shown_by: &[Sines, Stairs],
+        family: Family::Ripple,
+        hide: Hide::Drive(|torque, rig, random| {
+            let periods = random.between(3.0, 8.0).round();
+            rig.cogging = (torque, periods, random.between(-3.0, 3.0));
+            rig.stranger = Some(Stranger::SecondWave {
+                torque,
+                phase: random.between(-3.0, 3.0),
+            });
+            vec![("b", torque), ("n", periods)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("torque_ripple"),
+        main: "a",
+        strengths: [0.1, 0.15, 0.2],
+        range: [0.05, 0.5],
+        shown_by: &[Sines],
+        family: Family::Stranger,
+        hide: Hide::Drive(|share, rig, random| {
+            let periods = random.between(3.0, 8.0).round();
+            rig.stranger = Some(Stranger::Ripple {
+                share,
+                periods,
+                phase: random.between(-3.0, 3.0),
+            });
+            vec![("a", share), ("n", periods)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("encoder_eccentricity"),
+        main: "e",
+        strengths: [3e-3, 4.5e-3, 6e-3],
+        range: [2e-3, 0.02],
+        shown_by: &[Stairs],
+        family: Family::Stranger,
+        hide: Hide::Drive(|share, rig, random| {
+            rig.stranger = Some(Stranger::EccentricEncoder {
+                share,
+                phase: random.between(-3.0, 3.0),
+            });
+            vec![("e", share)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("rate_limit"),
+        main: "r",
+        strengths: [12.0, 10.0, 8.0],
+        range: [5.0, 20.0],
+        shown_by: &[Sines],
+        family: Family::Stranger,
+        hide: Hide::Drive(|rate, rig, _| {
+            rig.stranger = Some(Stranger::SlowAmplifier { rate });
+            vec![("r", rate)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("periodic_disturbance"),
+        main: "a",
+        strengths: [0.01, 0.015, 0.02],
+        range: [5e-3, 0.05],
+        shown_by: &[Stairs],
+        family: Family::Stranger,
+        hide: Hide::Drive(|torque, rig, random| {
+            let period = random.between(0.13, 0.3);
+            rig.stranger = Some(Stranger::Shaking {
+                torque,
+                period,
+                phase: random.between(-3.0, 3.0),
+            });
+            vec![("a", torque), ("P", period)]
         }),
     },
 ];

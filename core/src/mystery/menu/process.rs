@@ -3,6 +3,7 @@
 use crate::effect::EffectId;
 use crate::mystery::Experiment::{ProcessBinary, ProcessRelay, ProcessStairs};
 use crate::mystery::hideable::{Family, Hide, Hideable};
+use crate::rig::process::Stranger;
 
 /// Shares of a time constant of some 30 s and of an input of 1. What shifts, bends or cuts off the static
 /// characteristic is one family: of two such effects a diagnosis may find neither.
@@ -104,6 +105,96 @@ pub(super) const MENU: &[Hideable] = &[
         hide: Hide::Process(|p, rig, _| {
             rig.curvature = p;
             vec![("p", p)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("outflow"),
+        main: "a",
+        strengths: [0.3, 0.4, 0.5],
+        range: [0.2, 0.8],
+        shown_by: &[ProcessStairs],
+        family: Family::Stranger,
+        hide: Hide::Process(|flow, rig, _| {
+            rig.stranger = Some(Stranger::Outflow { flow });
+            vec![("a", flow)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("periodic_disturbance"),
+        main: "a",
+        strengths: [0.06, 0.08, 0.1],
+        range: [0.04, 0.3],
+        shown_by: &[ProcessBinary, ProcessStairs],
+        family: Family::Stranger,
+        hide: Hide::Process(|amplitude, rig, random| {
+            let period = random.between(30.0, 50.0);
+            rig.stranger = Some(Stranger::Swing { amplitude, period });
+            vec![("a", amplitude), ("P", period)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("valve_stiction"),
+        main: "b",
+        strengths: [0.06, 0.09, 0.12],
+        range: [0.03, 0.25],
+        shown_by: &[ProcessStairs],
+        family: Family::Stranger,
+        hide: Hide::Process(|behind, rig, random| {
+            let jump = random.between(0.5, 1.5) * behind;
+            let band = 2.0 * behind + jump;
+            rig.stranger = Some(Stranger::SlippingValve { band, jump });
+            vec![("b", behind)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("directional_lag"),
+        main: "a",
+        strengths: [0.1, 0.15, 0.2],
+        range: [0.06, 0.5],
+        shown_by: &[ProcessStairs, ProcessBinary],
+        family: Family::Stranger,
+        hide: Hide::Process(|a, rig, _| {
+            rig.stranger = Some(Stranger::SlowFall {
+                factor: (1.0 + a) / (1.0 - a),
+            });
+            vec![("a", a)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("rate_limit"),
+        main: "r",
+        strengths: [0.2, 0.15, 0.1],
+        range: [0.06, 0.3],
+        shown_by: &[ProcessStairs],
+        family: Family::Stranger,
+        hide: Hide::Process(|rate, rig, _| {
+            rig.stranger = Some(Stranger::SlowValve { rate });
+            vec![("r", rate)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("dead_zone"),
+        main: "z",
+        strengths: [0.06, 0.09, 0.12],
+        range: [0.04, 0.25],
+        shown_by: &[ProcessStairs],
+        family: Family::Stranger,
+        hide: Hide::Process(|width, rig, _| {
+            rig.stranger = Some(Stranger::DeadBand { width });
+            vec![("z", width)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("inverse_response"),
+        main: "T_z",
+        strengths: [4.0, 6.0, 8.0],
+        range: [2.0, 15.0],
+        shown_by: &[ProcessBinary, ProcessStairs],
+        family: Family::Stranger,
+        hide: Hide::Process(|time, rig, random| {
+            rig.second_lag = random.between(3.0, 5.0);
+            rig.stranger = Some(Stranger::WrongWay { time });
+            vec![("T_z", time), ("T2", rig.second_lag)]
         }),
     },
 ];

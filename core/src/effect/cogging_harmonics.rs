@@ -1,0 +1,130 @@
+//! Cogging that is no pure wave: a second one, twice as fine, beside the first.
+
+use super::atom::Values;
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, cogging};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) struct CoggingHarmonics;
+
+/// Spatial frequencies of the strongest wave that are followed, each as the first one and as the second.
+const BEST: usize = 3;
+
+/// Amplitude and phase of `s sin(n x) + c cos(n x)`.
+fn wave(sine: f64, cosine: f64) -> [f64; 2] {
+    [libm::hypot(sine, cosine), libm::atan2(cosine, sine)]
+}
+
+/// The parameters from the frequency of the first wave and the coefficients of both.
+fn parameters(n: f64, coefficients: &[f64]) -> Vec<f64> {
+    let [a, phi] = wave(coefficients[0], coefficients[1]);
+    let [b, psi] = wave(coefficients[2], coefficients[3]);
+    vec![a, n, phi, b, psi]
+}
+
+impl Effect for CoggingHarmonics {
+    fn id(&self) -> EffectId {
+        EffectId::new("cogging_harmonics")
+    }
+
+    fn name(&self) -> &'static str {
+        "Cogging with a harmonic"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The pull of magnets or teeth is no pure wave over the angle: a second one, twice as fine, comes on top."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = a sin(n x + phi) + b sin(2 n x + psi)"
+    }
+
+    fn source(&self) -> &'static str {
+        "harmonics of the cogging torque: Zhu and Howe, 1992"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "a",
+                label: "cogging amplitude",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "n",
+                label: "spatial frequency",
+                dimension: Dimension::PerPosition,
+                range: Range::Repeating,
+            },
+            ParameterSpec {
+                symbol: "phi",
+                label: "phase",
+                dimension: Dimension::Phase,
+                range: Range::Signed,
+            },
+            ParameterSpec {
+                symbol: "b",
+                label: "amplitude of the harmonic",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "psi",
+                label: "phase of the harmonic",
+                dimension: Dimension::Phase,
+                range: Range::Signed,
+            },
+        ]
+    }
+
+    fn has_part(&self, other: EffectId) -> bool {
+        other == cogging::ID
+    }
+
+    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+        let found = probe.spatial_frequencies(BEST, share).into_iter();
+        let firsts = found.flat_map(|(n, _, _)| [n, n / 2.0]);
+        let start = |n: f64| {
+            let of = |f: fn(f64) -> f64, k: f64| probe.signature(move |x, _| f(k * n * x));
+            let columns = [
+                of(libm::sin, 1.0),
+                of(libm::cos, 1.0),
+                of(libm::sin, 2.0),
+                of(libm::cos, 2.0),
+            ];
+            let fit = probe.regress(&columns.each_ref().map(Vec::as_slice))?;
+            Some(parameters(n, &fit.coefficients))
+        };
+        firsts.filter_map(start).collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[
+            Part::Force(|m, n| libm::sin(n[0] * m.position)),
+            Part::Force(|m, n| libm::cos(n[0] * m.position)),
+            Part::Force(|m, n| libm::sin(2.0 * n[0] * m.position)),
+            Part::Force(|m, n| libm::cos(2.0 * n[0] * m.position)),
+        ];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: cogging::frequencies,
+            shapes: 1,
+            values: Values::From(|solved| {
+                let values = parameters(solved.shape[0], solved.coefficients);
+                Some((solved.body, values))
+            }),
+        }]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        let [a, n, phi, b, psi] = [values[0], values[1], values[2], values[3], values[4]];
+        model.forces.push(Box::new(move |x, _| {
+            a * libm::sin(n * x + phi) + b * libm::sin(2.0 * n * x + psi)
+        }));
+    }
+}

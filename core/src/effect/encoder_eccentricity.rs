@@ -1,0 +1,104 @@
+//! Eccentric encoder: within a turn the reading runs ahead of the shaft and falls behind.
+
+use std::f64::consts::PI;
+
+use super::atom::Values;
+use super::{
+    Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Probe, Range, Series,
+};
+use crate::measurement::Kind;
+use crate::model::{Eccentricity, Model};
+
+pub(super) const ID: EffectId = EffectId::new("encoder_eccentricity");
+
+pub(super) struct EncoderEccentricity;
+
+/// Travel in rad from which on its wave is told from any other curve.
+const LEAST_TRAVEL: f64 = PI;
+
+/// The largest that is one: a fifth of the radius is a broken mounting.
+const MOST: f64 = 0.2;
+
+impl Effect for EncoderEccentricity {
+    fn id(&self) -> EffectId {
+        ID
+    }
+
+    fn name(&self) -> &'static str {
+        "Eccentric encoder"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The disc of the encoder is not centred on the shaft: once in a turn it shows too much and once too little."
+    }
+
+    fn equation(&self) -> &'static str {
+        "x_seen = x + e sin(x + phi), v_seen = v (1 + e cos(x + phi))"
+    }
+
+    fn source(&self) -> &'static str {
+        "once-per-revolution error: Ellis, Control System Design Guide, 2012"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "e",
+                label: "eccentricity of the encoder, share of its radius",
+                dimension: Dimension::Ratio,
+                range: Range::UnitInterval,
+            },
+            ParameterSpec {
+                symbol: "phi",
+                label: "phase",
+                dimension: Dimension::Phase,
+                range: Range::Signed,
+            },
+        ]
+    }
+
+    fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// To first order `J dw/dt + d w = u` with `w = v - e v cos(x + phi)`.
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[Part::Motion(|track, _| {
+            let along = |wave: fn(f64) -> f64| {
+                let moments = track.velocity.iter().zip(track.position);
+                moments.map(|(v, x)| v * wave(*x)).collect()
+            };
+            [libm::cos as fn(f64) -> f64, libm::sin]
+                .map(|wave| Series {
+                    derivative: 1,
+                    values: along(wave),
+                })
+                .into()
+        })];
+        vec![Atom {
+            grid: |extent| {
+                let turns = extent.rotates && extent.travel >= LEAST_TRAVEL;
+                turns.then_some(NO_SHAPE).into_iter().collect()
+            },
+            ..Atom::linear(
+                COLUMNS,
+                Values::From(|solved| {
+                    let (cosine, sine) = (solved.coefficients[0], -solved.coefficients[1]);
+                    let size = libm::hypot(cosine, sine) / solved.body[0].abs();
+                    (size <= MOST).then(|| (solved.body, vec![size, libm::atan2(sine, cosine)]))
+                }),
+            )
+        }]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        model.encoder = Some(Eccentricity {
+            amplitude: values[0],
+            phase: values[1],
+        });
+    }
+}

@@ -1,0 +1,163 @@
+//! End stops: a spring with damping that pushes the body back where its way ends.
+
+use super::atom::{Values, geometric, shape};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("end_stop");
+
+pub(super) struct EndStop;
+
+/// Natural frequencies of the body on a stop that a fit begins with, in radians per sample: from one that gives way over many
+/// samples to one that throws the body back within a few.
+const STIFFNESSES: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
+
+/// The same of the places that the screen tries: so many, from the softest to the hardest.
+const PLACES: usize = 8;
+const SOFTEST: f64 = 0.02;
+const HARDEST: f64 = 1.5;
+
+/// Most of the travel that a stop takes.
+const DEEPEST: f64 = 0.35;
+
+/// Force of a stop that is pressed in by `depth` at this rate; it does not pull.
+fn push(stiffness: f64, damping: f64, depth: f64, rate: f64) -> f64 {
+    if depth > 0.0 {
+        (stiffness * depth + damping * rate).max(0.0)
+    } else {
+        0.0
+    }
+}
+
+/// How far a body at its greatest speed presses in a stop on which it swings with so many radians in a sample, at most.
+fn depth(radians: f64, fastest: f64, step: f64, travel: f64) -> f64 {
+    (fastest * step / radians).min(DEEPEST * travel)
+}
+
+/// How far both ends of the way, or one of them, are pressed in.
+fn sides(depth: f64) -> [[f64; 2]; 3] {
+    [[depth, depth], [depth, 0.0], [0.0, depth]]
+}
+
+impl Effect for EndStop {
+    fn id(&self) -> EffectId {
+        ID
+    }
+
+    fn name(&self) -> &'static str {
+        "End stop"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The way ends at a stop: there the drive runs into something that gives way a little and throws it back."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = -(k (x - x_h) + d v) for x > x_h, -(k (x - x_l) + d v) for x < x_l; never a pull"
+    }
+
+    fn source(&self) -> &'static str {
+        "impact of a damped spring: Goldsmith, Impact, 1960"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "k",
+                label: "stiffness of the stop",
+                dimension: Dimension::Stiffness,
+                range: Range::Hard,
+            },
+            ParameterSpec {
+                symbol: "d",
+                label: "damping of the stop",
+                dimension: Dimension::ViscousFriction,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "x_h",
+                label: "position of the upper stop",
+                dimension: Dimension::Position,
+                range: Range::Signed,
+            },
+            ParameterSpec {
+                symbol: "x_l",
+                label: "position of the lower stop",
+                dimension: Dimension::Position,
+                range: Range::Signed,
+            },
+        ]
+    }
+
+    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+        let (low, high) = probe.position_range();
+        let (back, forth) = probe.velocity_range();
+        let fastest = forth.max(-back);
+        let (step, scale) = (probe.scales.step, probe.scales.of(Dimension::Stiffness));
+        let found = STIFFNESSES.map(|radians| {
+            let deep = depth(radians, fastest, step, high - low);
+            let ends = sides(deep).map(|[above, below]| [high - above, low + below]);
+            let left = |[upper, lower]: &[f64; 2]| {
+                let pressed = probe.signature(|x, _| (lower - x).max(0.0) - (x - upper).max(0.0));
+                let fit = probe.regress(&[&pressed]);
+                fit.filter(|f| f.coefficients[0] > 0.0 && f.left < share)
+                    .map(|f| f.left)
+            };
+            let met = ends.iter().filter_map(|ends| Some((left(ends)?, ends)));
+            let best = met.min_by(|a, b| a.0.total_cmp(&b.0));
+            best.map(|(_, [upper, lower])| vec![radians * radians * scale, 0.0, *upper, *lower])
+        });
+        found.into_iter().flatten().collect()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[
+            Part::Force(|m, ends| {
+                (ends[1] - m.position).max(0.0) - (m.position - ends[0]).max(0.0)
+            }),
+            Part::Force(|m, ends| {
+                let inside = m.position <= ends[0] && m.position >= ends[1];
+                if inside { 0.0 } else { -m.velocity }
+            }),
+        ];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| {
+                let [low, high] = extent.places;
+                let travel = high - low;
+                let fastest = extent.range[1].max(-extent.range[0]);
+                let depths: Vec<f64> = geometric(SOFTEST, HARDEST, PLACES)
+                    .iter()
+                    .map(|radians| depth(radians[0], fastest, extent.step, travel))
+                    .chain([0.0])
+                    .collect();
+                let pairs = depths
+                    .iter()
+                    .flat_map(|a| depths.iter().map(move |b| (a, b)));
+                pairs
+                    .filter(|(a, b)| **a > 0.0 || **b > 0.0)
+                    .map(|(a, b)| shape([high - a, low + b]))
+                    .collect()
+            },
+            shapes: 2,
+            values: Values::From(|solved| {
+                let [stiffness, damping] = [solved.coefficients[0], solved.coefficients[1]];
+                let [upper, lower, ..] = solved.shape;
+                (stiffness > 0.0)
+                    .then(|| (solved.body, vec![stiffness, damping.max(0.0), upper, lower]))
+            }),
+        }]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        let (stiffness, damping, upper, lower) = (values[0], values[1], values[2], values[3]);
+        model.forces.push(Box::new(move |x, v| {
+            push(stiffness, damping, lower - x, -v) - push(stiffness, damping, x - upper, v)
+        }));
+    }
+}

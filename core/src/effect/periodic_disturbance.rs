@@ -1,0 +1,105 @@
+//! A disturbance that comes back: day and night, a compressor, an unbalanced fan.
+
+use std::f64::consts::TAU;
+
+use super::atom::{Values, even};
+use super::spec::SEEN_PERIODS;
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use crate::measurement::Kind;
+use crate::model::Model;
+
+pub(super) const ID: EffectId = EffectId::new("periodic_disturbance");
+
+pub(super) struct PeriodicDisturbance;
+
+/// Waves in the record: at least so many, or nothing has come back twice and it may be any drift, at most so many, and so many frequencies for each.
+const LEAST_WAVES: f64 = SEEN_PERIODS;
+const MOST_WAVES: f64 = 60.0;
+const FREQUENCIES_PER_WAVE: f64 = 2.0;
+
+/// Samples in the shortest wave.
+const LEAST_SAMPLES: f64 = 8.0;
+
+impl Effect for PeriodicDisturbance {
+    fn id(&self) -> EffectId {
+        ID
+    }
+
+    fn name(&self) -> &'static str {
+        "Periodic disturbance"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Something else pushes to and fro at its own pace, like day and night or a machine next door."
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = a sin(2 pi t / P + phi)"
+    }
+
+    fn source(&self) -> &'static str {
+        "sinusoidal disturbance: Francis and Wonham, The internal model principle, 1976"
+    }
+
+    fn kinds(&self) -> &'static [Kind] {
+        &[Kind::Drive, Kind::Process]
+    }
+
+    fn parameters(&self) -> &'static [ParameterSpec] {
+        &[
+            ParameterSpec {
+                symbol: "a",
+                label: "amplitude of the disturbance",
+                dimension: Dimension::Force,
+                range: Range::NonNegative,
+            },
+            ParameterSpec {
+                symbol: "P",
+                label: "period",
+                dimension: Dimension::Time,
+                range: Range::Recurring,
+            },
+            ParameterSpec {
+                symbol: "phi",
+                label: "phase at the first sample",
+                dimension: Dimension::Phase,
+                range: Range::Signed,
+            },
+        ]
+    }
+
+    fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    fn atoms(&self, _: Kind) -> Vec<Atom> {
+        const COLUMNS: &[Part] = &[
+            Part::Force(|m, waves| libm::sin(waves[0] * m.time)),
+            Part::Force(|m, waves| libm::cos(waves[0] * m.time)),
+        ];
+        vec![Atom {
+            parts: COLUMNS,
+            grid: |extent| {
+                let shortest = LEAST_SAMPLES * extent.step / extent.duration;
+                let most = MOST_WAVES.min(1.0 / shortest);
+                let wave = TAU / extent.duration;
+                let count = (most - LEAST_WAVES) * FREQUENCIES_PER_WAVE;
+                even(LEAST_WAVES * wave, most * wave, count.max(0.0) as usize + 1)
+            },
+            shapes: 1,
+            values: Values::From(|solved| {
+                let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);
+                let amplitude = libm::hypot(sine, cosine);
+                let wave = vec![amplitude, TAU / solved.shape[0], libm::atan2(cosine, sine)];
+                Some((solved.body, wave))
+            }),
+        }]
+    }
+
+    fn apply(&self, values: &[f64], model: &mut Model) {
+        let (amplitude, period, phase) = (values[0], values[1], values[2]);
+        model.own_forces.push(Box::new(move |now| {
+            amplitude * libm::sin(TAU * now.time / period + phase)
+        }));
+    }
+}
