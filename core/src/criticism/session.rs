@@ -270,8 +270,18 @@ impl Session {
     }
 
     /// Those that say something which the baseline does not.
-    pub fn library(&self) -> impl Iterator<Item = &'static dyn Effect> {
+    fn open(&self) -> impl Iterator<Item = &'static dyn Effect> {
         self.known().filter(|e| !self.data.baseline.has(e.id()))
+    }
+
+    /// Those of them that are tried at once.
+    pub fn library(&self) -> impl Iterator<Item = &'static dyn Effect> {
+        self.open().filter(|e| !effect::is_seldom(e.id()))
+    }
+
+    /// Those that few machines have, which are tried last.
+    pub fn seldom(&self) -> impl Iterator<Item = &'static dyn Effect> {
+        self.open().filter(|e| effect::is_seldom(e.id()))
     }
 
     /// One that may be in a model.

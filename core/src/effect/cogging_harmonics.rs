@@ -5,6 +5,8 @@ use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("cogging_harmonics");
+
 pub(super) struct CoggingHarmonics;
 
 /// Spatial frequencies of the strongest wave that are followed, each as the first one and as the second.
@@ -24,7 +26,7 @@ fn parameters(n: f64, coefficients: &[f64]) -> Vec<f64> {
 
 impl Effect for CoggingHarmonics {
     fn id(&self) -> EffectId {
-        EffectId::new("cogging_harmonics")
+        ID
     }
 
     fn name(&self) -> &'static str {

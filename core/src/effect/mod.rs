@@ -109,12 +109,13 @@ fn screened_only() -> &'static [&'static dyn Effect] {
     ]
 }
 
-/// Whether few machines have the effect with this id, and its curve can stand in for much else: it is named only where, with
-/// it, what is left is noise or a small share of what there was.
+/// Whether few machines have the effect with this id, or its curve can stand in for much else: it is tried last, where all others
+/// leave more than noise, and named only where it leaves little.
 pub fn is_seldom(id: EffectId) -> bool {
     [
         rate_limit::ID,
         end_stop::ID,
+        cogging_harmonics::ID,
         position_friction::ID,
         torque_ripple::ID,
         encoder_eccentricity::ID,

@@ -57,14 +57,12 @@ impl Heat {
         self.waiting.is_empty() && self.over.is_empty()
     }
 
-    /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another one costs;
-    /// what is to be beaten costs as little as is `known`.
+    /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another one costs.
     /// So many places of the model are open. A race that `gives_up` ends with its round, and nobody wins.
     pub fn advance(
         &mut self,
         session: &Session,
         alike: f64,
-        known: f64,
         places: usize,
         gives_up: bool,
     ) -> bool {
@@ -83,7 +81,7 @@ impl Heat {
         );
         self.over.extend(batch);
         if self.waiting.is_empty() {
-            self.cull(alike, known, places);
+            self.cull(alike, places);
             self.round += 1;
             if gives_up {
                 *self = Self::default();
@@ -95,7 +93,7 @@ impl Heat {
     }
 
     /// Leaves the best of each set of effects, of the sets that have a turn, and none that is far behind.
-    fn cull(&mut self, alike: f64, known: f64, places: usize) {
+    fn cull(&mut self, alike: f64, places: usize) {
         let Round { sets, starts, .. } = ROUNDS[self.round];
         let in_turn = self.sets_in_turn(sets * places);
         let last = self.round + 1 == ROUNDS.len();
@@ -109,7 +107,7 @@ impl Heat {
             .over
             .iter()
             .map(|(_, fit)| fit.cost)
-            .fold(known, f64::min);
+            .fold(f64::INFINITY, f64::min);
         let mut kept: Vec<(Vec<EffectId>, Vec<f64>)> = Vec::new();
         let far = FAR[self.round];
         self.over.retain(|entry| {

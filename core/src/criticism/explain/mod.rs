@@ -7,6 +7,7 @@ mod heat;
 mod hidden_body;
 mod judge;
 mod rival;
+mod seldom;
 mod sketch;
 mod swap;
 mod task;
@@ -30,23 +31,8 @@ pub(super) use swap::may_replace;
 use task::Task;
 pub(super) use trial::Trial;
 use tuning::{
-    ALIKE, BEHIND, FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE,
-    MOST_WITH_HIDDEN, STARTS, TOLD,
+    ALIKE, FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS,
 };
-
-/// Whether the screen leaves it open that an effect beside these is the best of so many.
-fn may_win(
-    screened: &Screened,
-    held: &[EffectId],
-    beside: &[EffectId],
-    effect: &dyn Effect,
-) -> bool {
-    let all = [beside, &[effect.id()]].concat();
-    let least = screened.least_left(held, all.len());
-    let left = screened.left(&all);
-    left.zip(least)
-        .is_none_or(|(left, least)| left <= BEHIND * least)
-}
 
 /// The model with these effects, to which others are added.
 pub(super) fn begun(
@@ -75,14 +61,14 @@ pub(super) fn with_one(
 enum Stage {
     /// Fitting the model that effects are added to.
     Base,
-    /// Fitting what the screen told.
-    Told,
-    /// Doing without each effect of the best of that.
-    CheckTold(usize),
     /// Fitting subsets of a level.
     Fit(Level),
     /// Doing without each effect of the subset that leads.
     Check(Level),
+    /// Fitting what few machines have.
+    Seldom,
+    /// Doing without each effect of the best of those.
+    CheckSeldom(usize),
     /// Fitting the best without each effect that others are to replace.
     TakeOut,
     /// Trying others in the place of each effect.
@@ -102,12 +88,6 @@ struct Level {
     /// everything that acts on the body that is measured leaves more than noise.
     hidden: bool,
 }
-
-/// The first that are compared.
-const FIRST: Level = Level {
-    size: 1,
-    hidden: false,
-};
 
 impl Level {
     fn next(self) -> Self {
@@ -179,13 +159,10 @@ impl Explain {
             let (own, trials) = (&*session, &self.trials);
             let found = crew.gather(batch.len(), |i| batch[i].run(own, screened, trials));
             self.trials.extend(found.into_iter().flatten());
-        } else if !self.heat.advance(
-            session,
-            self.alike(),
-            self.limit / ALIKE,
-            self.places(),
-            self.gives_up(session),
-        ) {
+        } else if !self
+            .heat
+            .advance(session, self.alike(), self.places(), self.gives_up(session))
+        {
             let fitted = match self.stage {
                 Stage::Fit(Level { hidden: true, .. }) => FITTED_HIDDEN,
                 _ => FITTED,
@@ -243,11 +220,9 @@ impl Explain {
         let fit = &self.trials[from].scored.fit;
         let mut sketches: Vec<Sketch> =
             Sketch::again(fit).filter(|_| !hidden).into_iter().collect();
-        let ids = self.trials[from].ids();
         for effect in session
             .library()
             .filter(|e| is_hidden_body(*e) == hidden && self.is_open(from, *e))
-            .filter(|e| may_win(screened, &self.held_ids(), &ids, *e))
         {
             sketches.extend(Sketch::beside(session, screened, fit, effect));
         }
@@ -267,8 +242,10 @@ impl Explain {
     pub fn progress(&self) -> (f64, String) {
         let text = match self.stage {
             Stage::Base => "Fitting the model".to_owned(),
-            Stage::Told | Stage::Fit(_) => self.tasks.front().map_or_else(String::new, Task::text),
-            Stage::CheckTold(_) | Stage::Check(_) => {
+            Stage::Fit(_) | Stage::Seldom => {
+                self.tasks.front().map_or_else(String::new, Task::text)
+            }
+            Stage::Check(_) | Stage::CheckSeldom(_) => {
                 "Checking that every effect is needed".to_owned()
             }
             Stage::TakeOut | Stage::Swap => "Checking what else could explain it".to_owned(),
@@ -276,10 +253,6 @@ impl Explain {
         };
         let done = self.done as f64;
         (done / (done + 8.0), text)
-    }
-
-    fn is_held(&self, id: EffectId) -> bool {
-        self.held.iter().any(|own| own.id() == id)
     }
 
     /// Number of effects that a trial has more than the model.
@@ -302,17 +275,24 @@ impl Explain {
                 session
                     .baseline
                     .get_or_insert_with(|| self.trials[0].scored.score.clone());
-                self.open_told(session, screened);
-            }
-            Stage::Told => self.judge_told(session, screened),
-            Stage::CheckTold(lead) => {
-                if self.is_needed(session, lead) {
-                    self.best = lead;
-                }
-                self.open_level(session, screened, FIRST);
+                self.open_level(
+                    session,
+                    screened,
+                    Level {
+                        size: 1,
+                        hidden: false,
+                    },
+                );
             }
             Stage::Fit(level) => self.judge_level(session, screened, level),
             Stage::Check(level) => self.judge_check(session, screened, level),
+            Stage::Seldom => self.judge_seldom(session),
+            Stage::CheckSeldom(lead) => {
+                if self.is_needed(session, lead) {
+                    self.best = lead;
+                }
+                self.open_swaps(session);
+            }
             Stage::TakeOut => self.swap(session, screened),
             Stage::Swap => self.judge_swaps(session),
             Stage::Path => self.stage = Stage::Done,
@@ -320,81 +300,29 @@ impl Explain {
         }
     }
 
-    /// Has the class that the screen told fitted before anything else, where there is something to be explained.
-    fn open_told(&mut self, session: &mut Session, screened: &Screened) {
-        if self.is_explained(session, FIRST) {
-            self.open_swaps(session);
-            return;
-        }
-        self.stage = Stage::Told;
-        session.look_where_left(&self.trials[0].scored.fit);
-        self.limit = ALIKE * session.scouted(&self.trials[0].scored.fit);
-        let class = screened.class(&self.held_ids()).into_iter();
-        // A hidden body with more than one effect beside it fits nearly anything.
-        let bound = |start: &Start| {
-            let hidden = start.effects.iter().any(|e| is_hidden_body(*e));
-            !hidden || start.effects.len() <= self.held.len() + MOST_WITH_HIDDEN
-        };
-        let sketches = class
-            .filter(bound)
-            .filter_map(|start| Sketch::of(session, &start));
-        let sketches: Vec<Sketch> = sketches.take(TOLD).collect();
-        self.take(session, sketches);
-    }
-
-    /// Takes what the screen told where that is better than nothing, and each of its effects is needed: others must beat it.
-    fn judge_told(&mut self, session: &mut Session, screened: &Screened) {
-        let better = |t: &usize| {
-            self.holds(*t)
-                && (self.difference(session, 0, *t).is_better() || self.explains(session, 0, *t))
-        };
-        let better: Vec<usize> = (1..self.trials.len()).filter(better).collect();
-        let Some(lead) = self.lead(session, &better) else {
-            self.open_level(session, screened, FIRST);
-            return;
-        };
-        self.stage = Stage::CheckTold(lead);
-        self.take_out_of(lead);
-    }
-
-    /// Has a trial fitted without each of the effects that were added: a smaller model may not have found the valley in which it
-    /// is.
-    fn take_out_of(&mut self, lead: usize) {
-        for place in self.held.len()..self.trials[lead].effects().len() {
-            if self.size(lead) > 1 || self.without(lead, place).is_none() {
-                self.tasks.push_back(Task::Without { from: lead, place });
-            }
-        }
-    }
-
-    /// Whether nothing is to be added: the input is not what acted, or the best leaves noise.
-    fn is_explained(&self, session: &Session, level: Level) -> bool {
+    /// Tasks of the subsets of a level.
+    fn open_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
+        let Level { size, hidden } = level;
+        self.stage = Stage::Fit(level);
+        self.looked_at.clear();
         // Where the input is not what acted, an effect would be one of another machine.
         let other = matches!(
             session.input_check.verdict,
             InputVerdict::Sign | InputVerdict::ClosedLoop
         );
         // A hidden body is free: what acts on the measured one, with an effect more, may do as well with fewer values.
-        let doubted = !level.hidden
-            && self.has_hidden_body(self.best)
-            && level.size == self.size(self.best) + 1;
+        let doubted =
+            !hidden && self.has_hidden_body(self.best) && size == self.size(self.best) + 1;
         let explained =
             self.is_noise(session, self.best) && !doubted || self.knows_wrongly(session);
-        other || explained
-    }
-
-    /// Tasks of the subsets of a level.
-    fn open_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
-        let Level { size, hidden } = level;
-        self.stage = Stage::Fit(level);
-        self.looked_at.clear();
         let enough = |hidden: bool| size > 1 && session.data.tried_enough(hidden);
-        if self.is_explained(session, level)
+        if other
+            || explained
             || enough(false)
             || size > MOST_SIZE
             || [false, true].iter().all(|hidden| self.gives_up_on(*hidden))
         {
-            self.open_swaps(session);
+            self.open_seldom(session, screened);
             return;
         }
         if self.gives_up_on(hidden) || hidden && enough(true) {
@@ -416,16 +344,7 @@ impl Explain {
         self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
         let held = self.held_ids();
         let starts = screened.starts(&held, held.len() + size);
-        let least = screened.least_left(&held, held.len() + size);
-        let near = |start: &Start| {
-            let ids: Vec<EffectId> = start.effects.iter().map(|e| e.id()).collect();
-            let left = screened.left(&ids);
-            left.zip(least)
-                .is_none_or(|(left, least)| left <= BEHIND * least)
-        };
-        let of_level = |start: &Start| {
-            start.effects.iter().any(|e| is_hidden_body(*e)) == hidden && near(start)
-        };
+        let of_level = |start: &Start| start.effects.iter().any(|e| is_hidden_body(*e)) == hidden;
         let sketches = starts
             .filter(of_level)
             .filter_map(|start| Sketch::of(session, &start));
@@ -460,7 +379,7 @@ impl Explain {
         let mut added = self.trials[trial]
             .effects()
             .iter()
-            .filter(|e| !self.is_held(e.id()));
+            .filter(|e| !self.held.iter().any(|own| own.id() == e.id()));
         self.size(trial) == level.size
             && self.holds(trial)
             && added.any(|e| is_hidden_body(*e)) == level.hidden
@@ -477,13 +396,7 @@ impl Explain {
             let of_level: Vec<usize> = (0..self.trials.len())
                 .filter(|t| self.is_of(*t, level))
                 .collect();
-            let likely: Vec<usize> = of_level
-                .iter()
-                .copied()
-                .filter(|t| self.is_likely(session, *t))
-                .collect();
-            let lead = self.lead(session, &likely);
-            let lead = lead.or_else(|| self.lead(session, &of_level));
+            let lead = self.lead(session, &of_level);
             self.leads[usize::from(hidden)].push(lead);
         }
         // A smaller one may have come up as a part of one that was looked at.
@@ -495,11 +408,7 @@ impl Explain {
                 || difference.is_met_once() && self.explains(session, self.best, *t)
                 || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best)
         };
-        let better: Vec<usize> = (0..self.trials.len())
-            .filter(open)
-            .filter(|t| self.is_likely(session, *t))
-            .filter(better)
-            .collect();
+        let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self
             .lead(session, &better)
             .filter(|_| self.looked_at.len() < MOST_LEADS);
@@ -512,7 +421,17 @@ impl Explain {
         };
         self.looked_at.push(lead);
         self.stage = Stage::Check(level);
-        self.take_out_of(lead);
+        self.take_out_of(lead, size > 1);
+    }
+
+    /// Has a trial fitted without each of the effects that were added; `again` where there is one: it may not have found the
+    /// valley in which this one is.
+    fn take_out_of(&mut self, lead: usize, again: bool) {
+        for place in self.held.len()..self.trials[lead].effects().len() {
+            if again || self.without(lead, place).is_none() {
+                self.tasks.push_back(Task::Without { from: lead, place });
+            }
+        }
     }
 
     fn judge_check(&mut self, session: &mut Session, screened: &Screened, level: Level) {

@@ -108,9 +108,6 @@ impl Explain {
         let own_values = &fit.values[fit.structure.range(place)];
         let (mut sketches, mut same) = (Vec::new(), Vec::new());
         for (effect, is_new) in open {
-            if is_new && !super::may_win(screened, &[], &ids, effect) {
-                continue;
-            }
             let told = || {
                 let beside = screened.values(&ids, effect.id());
                 beside.or_else(|| screened.values(&[], effect.id()))
@@ -155,7 +152,6 @@ impl Explain {
                 continue;
             };
             let fair = places.contains(place) && may_replace(*effect, best.effects()[*place]);
-            let fair = fair && self.is_likely(session, index);
             if ids.len() == own.len() && fair && trial.values() <= values {
                 let rival = Rival {
                     place: *place,

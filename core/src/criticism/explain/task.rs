@@ -74,7 +74,7 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
             .into_iter()
             .flat_map(|sketch| sketch.variants(session));
         let mut heat = Heat::new(session, &all.collect::<Vec<_>>());
-        while heat.advance(session, 0.0, f64::INFINITY, 1, false) {}
+        while heat.advance(session, 0.0, 1, false) {}
         let fits = heat.best(FITTED, f64::INFINITY).into_iter();
         let fits = fits.map(|sketch| sketch.fitted(session));
         fit = least(fits)?;

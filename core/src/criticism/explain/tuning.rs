@@ -4,16 +4,6 @@
 /// hardly shows in the weak form, where its velocity has no sign: beside the best of the others each has its turn.
 pub(super) const STARTS: usize = 24;
 
-/// Times what the best of as many effects leaves of the weak form, root mean square, beyond which the screen has told that a
-/// subset is not the one: where it is wrong by more, it sees neither.
-pub(super) const BEHIND: f64 = 5.0;
-
-/// Subsets of the class that the screen told which are fitted before all others.
-pub(super) const TOLD: usize = 8;
-
-/// Most effects of those with a hidden body among them: with more it fits nearly anything.
-pub(super) const MOST_WITH_HIDDEN: usize = 2;
-
 /// A round on the scout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
@@ -28,12 +18,12 @@ pub(super) struct Round {
 pub(super) const ROUNDS: [Round; 4] = [
     Round {
         iterations: 1,
-        sets: 24,
+        sets: 20,
         starts: 4,
     },
     Round {
         iterations: 2,
-        sets: 14,
+        sets: 12,
         starts: 3,
     },
     Round {

@@ -6,7 +6,6 @@ use crate::criticism::select::{
     SMALL_SHARE, STRETCH_SHARE, is_all_that_counters_show, is_noise, is_trifle, outweighs,
 };
 use crate::criticism::session::{Session, small_share};
-use crate::effect::is_seldom;
 
 impl Explain {
     pub(super) fn is_noise(&self, session: &Session, trial: usize) -> bool {
@@ -21,13 +20,11 @@ impl Explain {
         })
     }
 
-    /// Whether a model adds no effect that few machines have, or explains with it all but a small share of what there was.
-    pub(super) fn is_likely(&self, session: &Session, trial: usize) -> bool {
+    /// Whether a model explains all but a small share of what there was.
+    pub(super) fn leaves_little(&self, session: &Session, trial: usize) -> bool {
         let own = &self.trials[trial];
-        let mut added = own.effects().iter();
-        let seldom = added.any(|e| is_seldom(e.id()) && !self.is_held(e.id()));
-        let all_but = || is_trifle(own.error(), session.first(&own.scored), STRETCH_SHARE);
-        !seldom || self.is_noise(session, trial) || all_but()
+        let little = is_trifle(own.error(), session.first(&own.scored), STRETCH_SHARE);
+        little || self.is_noise(session, trial)
     }
 
     /// Whether a model has, in the place of an effect of another, a part of that or what that comes near to.

@@ -70,43 +70,32 @@ impl Screened {
         held: &'a [EffectId],
         size: usize,
     ) -> impl Iterator<Item = Start> + 'a {
-        let of_size = move |t: &&Tried| t.members.len() == size;
-        let all = self.tried.iter().filter(of_size);
-        all.filter_map(move |tried| self.begun(tried, held))
-    }
-
-    /// The subsets that explain a record best, of as few values as can be, that begin with these and have more.
-    pub fn class(&self, held: &[EffectId]) -> Vec<Start> {
-        let class = subsets::smallest(&self.tried, self.prepared.bench().motion()).into_iter();
-        class
-            .filter(|tried| tried.members.len() > held.len())
-            .filter_map(|tried| self.begun(tried, held))
-            .collect()
-    }
-
-    /// A subset that begins with these, with values to fit it from.
-    fn begun(&self, tried: &Tried, held: &[EffectId]) -> Option<Start> {
         let bench = self.prepared.bench();
-        let members = tried.members.iter();
-        let ids: Vec<EffectId> = members
-            .map(|(c, _)| bench.choices[*c].effect.id())
-            .collect();
-        if !held.iter().all(|id| ids.contains(id)) {
-            return None;
-        }
-        let (body, values) = bench.start(&tried.members)?;
-        let effects = tried.members.iter().map(|(c, _)| bench.choices[*c].effect);
-        let mut own: Vec<(&'static dyn Effect, Vec<f64>)> = effects.zip(values).collect();
-        own.sort_by_key(|(e, _)| {
-            held.iter()
-                .position(|id| *id == e.id())
-                .unwrap_or(held.len())
-        });
-        let (effects, values) = own.into_iter().unzip();
-        Some(Start {
-            effects,
-            body,
-            values,
+        self.tried.iter().filter_map(move |tried| {
+            let ids = || {
+                tried
+                    .members
+                    .iter()
+                    .map(|(c, _)| bench.choices[*c].effect.id())
+            };
+            let has_all = held.iter().all(|held| ids().any(|id| id == *held));
+            if tried.members.len() != size || !has_all {
+                return None;
+            }
+            let (body, values) = bench.start(&tried.members)?;
+            let effects = tried.members.iter().map(|(c, _)| bench.choices[*c].effect);
+            let mut own: Vec<(&'static dyn Effect, Vec<f64>)> = effects.zip(values).collect();
+            own.sort_by_key(|(e, _)| {
+                held.iter()
+                    .position(|id| *id == e.id())
+                    .unwrap_or(held.len())
+            });
+            let (effects, values) = own.into_iter().unzip();
+            Some(Start {
+                effects,
+                body,
+                values,
+            })
         })
     }
 
@@ -124,31 +113,6 @@ impl Screened {
             rows.atom(&choice.atom, &choice.shapes[*s].shape)
         });
         Some(columns.collect())
-    }
-
-    /// Root of what these effects leave of the weak form on held-back blocks; none where they have no atoms, or only with values
-    /// that they cannot have.
-    pub fn left(&self, effects: &[EffectId]) -> Option<f64> {
-        let bench = self.prepared.bench();
-        let id = |(c, _): &(usize, usize)| bench.choices[*c].effect.id();
-        let same = |tried: &&Tried| {
-            tried.members.len() == effects.len()
-                && tried.members.iter().all(|m| effects.contains(&id(m)))
-        };
-        self.tried.iter().find(same).map(|t| t.loss().sqrt())
-    }
-
-    /// The least that so many effects leave, these among them.
-    pub fn least_left(&self, held: &[EffectId], size: usize) -> Option<f64> {
-        let bench = self.prepared.bench();
-        let holds = |tried: &&Tried| {
-            let has = |id: &EffectId| {
-                let mut members = tried.members.iter();
-                members.any(|(c, _)| bench.choices[*c].effect.id() == *id)
-            };
-            tried.members.len() == size && held.iter().all(has)
-        };
-        self.tried.iter().find(holds).map(|t| t.loss().sqrt())
     }
 
     /// Values of an effect beside these, as the best subset has them.

@@ -126,8 +126,7 @@ impl<'a> Bench<'a> {
     /// Whether what drives the body is told: its inertia, and the sign of it.
     pub fn told(&self, fit: &Fit) -> bool {
         match self.kind {
-            // No friction drives a body on.
-            Kind::Drive => fit.w[0] > TOLD * fit.error(0) && fit.w[1] > -TOLD * fit.error(1),
+            Kind::Drive => fit.w[0] > TOLD * fit.error(0),
             // A gain has either sign, but a process that runs away within a window is none.
             Kind::Process => {
                 let grows =

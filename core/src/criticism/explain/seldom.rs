@@ -1,0 +1,55 @@
+//! What few machines have is tried last, where everything else leaves more than noise.
+
+use super::sketch::Sketch;
+use super::tuning::ALIKE;
+use super::{Explain, Stage};
+use crate::criticism::screen::Screened;
+use crate::criticism::session::Session;
+use crate::diagnosis::InputVerdict;
+use crate::effect::is_seldom;
+
+impl Explain {
+    /// Has what few machines have raced, alone and beside the best, unless there is nothing to be explained.
+    pub(super) fn open_seldom(&mut self, session: &mut Session, screened: &Screened) {
+        let other = matches!(
+            session.input_check.verdict,
+            InputVerdict::Sign | InputVerdict::ClosedLoop
+        );
+        if other || self.is_noise(session, self.best) || self.knows_wrongly(session) {
+            self.open_swaps(session);
+            return;
+        }
+        self.stage = Stage::Seldom;
+        session.look_where_left(&self.trials[self.best].scored.fit);
+        self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
+        let mut places = vec![0, self.best];
+        places.dedup();
+        for from in places {
+            let fit = &self.trials[from].scored.fit;
+            let open = session.seldom().filter(|e| self.is_open(from, *e));
+            let sketches = open.flat_map(|e| Sketch::beside(session, screened, fit, e));
+            let mut sketches: Vec<Sketch> = sketches.collect();
+            Sketch::with_other_bodies(&mut sketches, session, fit);
+            self.take(session, sketches);
+        }
+    }
+
+    /// Looks at the best of those that leave little: their curves can stand in for much else.
+    pub(super) fn judge_seldom(&mut self, session: &Session) {
+        let better = |t: &usize| {
+            let mut effects = self.trials[*t].effects().iter();
+            effects.any(|e| is_seldom(e.id()))
+                && self.holds(*t)
+                && self.leaves_little(session, *t)
+                && (self.difference(session, self.best, *t).is_better()
+                    || self.explains(session, self.best, *t))
+        };
+        let better: Vec<usize> = (1..self.trials.len()).filter(better).collect();
+        let Some(lead) = self.lead(session, &better) else {
+            self.open_swaps(session);
+            return;
+        };
+        self.stage = Stage::CheckSeldom(lead);
+        self.take_out_of(lead, self.size(lead) > 1);
+    }
+}
