@@ -94,25 +94,18 @@ impl Effect for EndStop {
         ]
     }
 
-    fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let (low, high) = probe.position_range();
         let (back, forth) = probe.velocity_range();
         let fastest = forth.max(-back);
         let (step, scale) = (probe.scales.step, probe.scales.of(Dimension::Stiffness));
-        let found = STIFFNESSES.map(|radians| {
-            let deep = depth(radians, fastest, step, high - low);
-            let ends = sides(deep).map(|[above, below]| [high - above, low + below]);
-            let left = |[upper, lower]: &[f64; 2]| {
-                let pressed = probe.signature(|x, _| (lower - x).max(0.0) - (x - upper).max(0.0));
-                let fit = probe.regress(&[&pressed]);
-                fit.filter(|f| f.coefficients[0] > 0.0 && f.left < share)
-                    .map(|f| f.left)
-            };
-            let met = ends.iter().filter_map(|ends| Some((left(ends)?, ends)));
-            let best = met.min_by(|a, b| a.0.total_cmp(&b.0));
-            best.map(|(_, [upper, lower])| vec![radians * radians * scale, 0.0, *upper, *lower])
+        // What is left of a model that runs on through a stop says little of it: its places follow from the ends of the way.
+        let all = STIFFNESSES.iter().flat_map(|radians| {
+            let deep = depth(*radians, fastest, step, high - low);
+            let stiffness = radians * radians * scale;
+            sides(deep).map(|[above, below]| vec![stiffness, 0.0, high - above, low + below])
         });
-        found.into_iter().flatten().collect()
+        all.collect()
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
