@@ -11,7 +11,7 @@ use egui_kittest::{Harness, SnapshotOptions};
 use hysteron::HysteronApp;
 
 /// Rounds of waiting before a job counts as hung; each is [`WAIT`] long.
-const ROUNDS: usize = 12_000;
+const ROUNDS: usize = 60_000;
 const WAIT: Duration = Duration::from_millis(10);
 
 /// The window of the pictures, points.

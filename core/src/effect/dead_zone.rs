@@ -34,7 +34,7 @@ impl Effect for DeadZone {
     }
 
     fn kinds(&self) -> &'static [Kind] {
-        &[Kind::Drive]
+        &[Kind::Drive, Kind::Process]
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {
