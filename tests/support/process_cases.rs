@@ -65,19 +65,7 @@ pub fn process_cases(seed: u64) -> Vec<Case> {
     cases.extend(strangers(&mut random));
     cases.extend(valve(&mut random));
     cases.push(emptying(&mut random));
-    cases.push(dead_band(&mut random));
     cases
-}
-
-/// A valve that opens only beyond some command.
-fn dead_band(r: &mut Random) -> Case {
-    let width = r.between(0.06, 0.12);
-    let rig = ProcessRig {
-        stranger: Some(Stranger::DeadBand { width }),
-        ..bare(r, STAIRS)
-    };
-    let truth = Truth::new("dead_zone", &["z"], width);
-    Case::process("dead band", vec![truth], rig)
 }
 
 /// A tank that empties through a hole.

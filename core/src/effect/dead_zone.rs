@@ -34,7 +34,7 @@ impl Effect for DeadZone {
     }
 
     fn kinds(&self) -> &'static [Kind] {
-        &[Kind::Drive, Kind::Process]
+        &[Kind::Drive]
     }
 
     fn parameters(&self) -> &'static [ParameterSpec] {

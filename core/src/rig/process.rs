@@ -60,11 +60,6 @@ pub enum Stranger {
         /// Half width, in the unit of the input.
         width: f64,
     },
-    /// A valve that opens only beyond this command.
-    DeadBand {
-        /// Half width, in the unit of the input.
-        width: f64,
-    },
     /// The output first goes the wrong way: a zero in the right half-plane.
     WrongWay {
         /// Its time constant, s.
@@ -189,9 +184,6 @@ impl ProcessRig {
         if let Some(Stranger::StickyValve { width }) = self.stranger {
             *valve = valve.clamp(out - width, out + width);
             return *valve;
-        }
-        if let Some(Stranger::DeadBand { width }) = self.stranger {
-            return out - out.clamp(-width, width);
         }
         out
     }
