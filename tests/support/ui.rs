@@ -143,6 +143,12 @@ pub fn finish(harness: &mut App) {
     harness.step();
 }
 
+/// Waits until the app says this of itself, and for what follows.
+pub fn finish_when(harness: &mut App, what: &str, holds: impl Fn(&serde_json::Value) -> bool) {
+    wait(harness, what, holds);
+    finish(harness);
+}
+
 /// Clicks what has this label and waits for what follows.
 pub fn click(harness: &mut App, label: &str) {
     harness.get_by_label(label).click();
