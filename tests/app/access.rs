@@ -4,7 +4,9 @@
 use std::collections::BTreeSet;
 use std::sync::mpsc::channel;
 
-use crate::support::ui::{App, NARROW, PLACES, TALL, WIDE, app, click, finish, show, state, wait};
+use crate::support::ui::{
+    App, NARROW, PLACES, TALL, WIDE, app, click, finish, finish_when, show, state,
+};
 use egui::accesskit::Live;
 use egui::{Key, Role};
 use egui_kittest::kittest::{AccessKitNode, NodeT as _, Queryable as _};
@@ -356,10 +358,9 @@ fn a_file_that_was_opened_is_opened_again_by_one_click() {
     harness.input_mut().dropped_files.push(file);
     harness.step();
     let opened = |harness: &mut App| {
-        wait(harness, "opened file", |s| s["file"] == "drive-02.csv");
+        finish_when(harness, "opened file", |s| s["file"] == "drive-02.csv");
     };
     opened(&mut harness);
-    finish(&mut harness);
     click(&mut harness, "Open another");
     harness.get_by_label("Recent files:");
     harness.get_by_label("drive-02.csv").click();

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use crate::support::ui::{App, TALL, WIDE, app, click, finish, show, state, texts, wait};
+use crate::support::ui::{App, TALL, WIDE, app, click, finish, finish_when, show, state, texts};
 use egui::epaint::{ClippedShape, Color32, Shape};
 use egui::{Event, Key, Modifiers, Rect, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -351,11 +351,10 @@ fn drop_file(harness: &mut App, name: &str, bytes: &[u8]) {
         std::sync::Arc::new(Dropped(PathBuf::from(name), bytes.to_vec()));
     harness.input_mut().dropped_files.push(file);
     let before = state(harness)["message"].clone();
-    wait(harness, "answer to the file", |now| {
+    finish_when(harness, "answer to the file", |now| {
         let said = now["message"].is_string() && now["message"] != before;
         said || now["file"] == name
     });
-    finish(harness);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What one sees of a model's failure, and what to do next where a record cannot decide.
 
 use crate::support::ui::{
-    App, NARROW, WIDE, app, button, click, finish, picture, show, state, texts, type_over,
+    App, NARROW, WIDE, app, button, click, finish, picture, show, state, texts, type_over, wait,
 };
 use egui_kittest::kittest::Queryable as _;
 
@@ -375,10 +375,7 @@ fn a_new_step_comes_part_by_part() {
     let ctx = harness.ctx.clone();
     let link = "v1;compare;compare.file=process-02";
     assert_eq!(harness.state_mut().open_link(&ctx, link), Ok(()));
-    while state(&harness)["error"].is_null() {
-        std::thread::sleep(std::time::Duration::from_millis(2));
-        harness.step();
-    }
+    wait(&mut harness, "step", |s| !s["error"].is_null());
     // The answer, the plots, the list: no frame draws all of them for the first time.
     let parts = |harness: &App| {
         let plots = state(harness)["plots"].to_string();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::support::ui::{
-    App, TALL, WIDE, app, click, finish, picture, state, texts, type_over, wait,
+    App, TALL, WIDE, app, click, finish, finish_when, picture, state, texts, type_over,
 };
 use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -122,8 +122,7 @@ fn started_with(name: &str, bytes: &[u8], what: &str, holds: impl Fn(&Value) -> 
     let mut harness = app("backlash", WIDE);
     let ctx = harness.ctx.clone();
     harness.state_mut().open_path(&ctx, &path);
-    wait(&mut harness, what, holds);
-    finish(&mut harness);
+    finish_when(&mut harness, what, holds);
     harness
 }
 
@@ -157,8 +156,7 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     let mut harness = app("compare", TALL);
     let file: egui::DroppedFileHandle = Arc::new(Dropped(path));
     harness.input_mut().dropped_files.push(file);
-    wait(&mut harness, "form", |s| s["mapping"].is_object());
-    finish(&mut harness);
+    finish_when(&mut harness, "form", |s| s["mapping"].is_object());
     harness.get_by_label("Which column is what?");
     harness.get_by_label("A file of MATLAB does not say what its columns are.");
     assert_eq!(
@@ -177,16 +175,14 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     // Once more, without being asked.
     click(&mut harness, "Open another");
     click(&mut harness, "ui-mapping-log.mat");
-    wait(&mut harness, "file", |s| s["error"].is_number());
-    finish(&mut harness);
+    finish_when(&mut harness, "file", |s| s["error"].is_number());
     assert_eq!((form(&harness), found(&harness)), (Value::Null, expected));
     // The other page that takes files knows it too.
     click(&mut harness, "Backlash");
     click(&mut harness, "ui-mapping-log.mat");
-    wait(&mut harness, "file in Backlash", |s| {
+    finish_when(&mut harness, "file in Backlash", |s| {
         s["backlash"]["file"] == "ui-mapping-log.mat"
     });
-    finish(&mut harness);
 }
 
 /// The form for the matrix, filled in.

@@ -11,7 +11,7 @@ use egui_kittest::{Harness, SnapshotOptions};
 use hysteron::HysteronApp;
 
 /// Rounds of waiting before a job counts as hung; each is [`WAIT`] long.
-const ROUNDS: usize = 12_000;
+const ROUNDS: usize = 60_000;
 const WAIT: Duration = Duration::from_millis(10);
 
 /// The window of the pictures, points.
@@ -141,6 +141,12 @@ pub fn finish(harness: &mut App) {
     // One frame takes the result, the next draws it with its sizes settled.
     harness.step();
     harness.step();
+}
+
+/// Waits until the app says this of itself, and for what follows.
+pub fn finish_when(harness: &mut App, what: &str, holds: impl Fn(&serde_json::Value) -> bool) {
+    wait(harness, what, holds);
+    finish(harness);
 }
 
 /// Clicks what has this label and waits for what follows.
