@@ -144,7 +144,7 @@ pub(super) struct Session {
     pub scout: Data,
     pub scales: Scales,
     /// Inertia and viscous friction of a drive that the screen told.
-    screened_body: Option<[f64; 2]>,
+    pub screened_body: Option<[f64; 2]>,
     /// Mean square of the motion in units of the noise.
     pub motion_square: f64,
     /// What models that were met leave unexplained.

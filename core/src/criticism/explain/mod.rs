@@ -26,7 +26,7 @@ use heat::Heat;
 use hidden_body::is_hidden_body;
 pub(super) use judge::{Difference, difference};
 use rival::Rival;
-use sketch::Sketch;
+use sketch::{Sketch, first_guess};
 pub(super) use swap::may_replace;
 use task::Task;
 pub(super) use trial::Trial;
@@ -226,7 +226,7 @@ impl Explain {
         {
             sketches.extend(Sketch::beside(session, screened, fit, effect));
         }
-        Sketch::with_other_bodies(&mut sketches, session, fit);
+        Sketch::with_other_bodies(&mut sketches, fit, first_guess(session));
         self.take(session, sketches);
     }
 

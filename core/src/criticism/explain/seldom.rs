@@ -1,6 +1,6 @@
 //! What few machines have is tried last, where everything else leaves more than noise.
 
-use super::sketch::Sketch;
+use super::sketch::{Sketch, first_guess};
 use super::tuning::ALIKE;
 use super::{Explain, Stage};
 use crate::criticism::screen::Screened;
@@ -29,7 +29,9 @@ impl Explain {
             let open = session.seldom().filter(|e| self.is_open(from, *e));
             let sketches = open.flat_map(|e| Sketch::beside(session, screened, fit, e));
             let mut sketches: Vec<Sketch> = sketches.collect();
-            Sketch::with_other_bodies(&mut sketches, session, fit);
+            let told = session.screened_body.map(Vec::from);
+            let bodies = first_guess(session).into_iter().chain(told);
+            Sketch::with_other_bodies(&mut sketches, fit, bodies);
             self.take(session, sketches);
         }
     }

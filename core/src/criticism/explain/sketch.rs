@@ -133,23 +133,26 @@ impl Sketch {
             .collect()
     }
 
-    /// Adds the same from the first guess of the body where a fit ended with another one: what is missing may have bent it out of
-    /// all likeness.
-    pub fn with_other_bodies(sketches: &mut Vec<Self>, session: &Session, fit: &Fit) {
-        let Some(body) = first_guess(session) else {
-            return;
-        };
+    /// Adds the same with each of these bodies where a fit ended with another one: what is missing may have bent it out of all
+    /// likeness.
+    pub fn with_other_bodies(
+        sketches: &mut Vec<Self>,
+        fit: &Fit,
+        bodies: impl IntoIterator<Item = Vec<f64>>,
+    ) {
         let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_BODY * a.abs();
         let essential = fit.structure.baseline.essential();
-        if body.iter().zip(&fit.values).take(essential).all(same) {
-            return;
-        }
-        let with_body = |sketch: &Self| {
+        let is_other = |body: &Vec<f64>| !body.iter().zip(&fit.values).take(essential).all(same);
+        let with_body = |sketch: &Self, body: &[f64]| {
             let mut sketch = sketch.clone();
-            sketch.set_body(&body);
+            sketch.set_body(body);
             sketch
         };
-        let others: Vec<Self> = sketches.iter().map(with_body).collect();
+        let others: Vec<Self> = bodies
+            .into_iter()
+            .filter(is_other)
+            .flat_map(|body| sketches.iter().map(move |s| with_body(s, &body)))
+            .collect();
         sketches.extend(others);
     }
 

@@ -69,7 +69,7 @@ fn base(session: &Session, screened: &Screened, held: &[&'static dyn Effect]) ->
         if sketches.is_empty() {
             sketches.push(Sketch::with(&fit, *effect, &usual(session, *effect)));
         }
-        Sketch::with_other_bodies(&mut sketches, session, &fit);
+        Sketch::with_other_bodies(&mut sketches, &fit, first_guess(session));
         let all = sketches
             .into_iter()
             .flat_map(|sketch| sketch.variants(session));

@@ -57,7 +57,7 @@ pub(super) fn checked(
         if let Some(text) = not_told(signals, bench) {
             return say(InputVerdict::InertiaNotTold, text);
         }
-        if tells_while_calm(signals, widths) {
+        if body_while_calm(signals, widths).is_some() {
             return say(InputVerdict::Ok, AT_TIMES.to_owned());
         }
     } else if changes_seldom(signals, bench) || may_explain(bench) {
@@ -83,14 +83,14 @@ const AT_TIMES: &str = "The input explains the motion most of the time. At other
 const TOO_LITTLE: &str = "This record does not tell what the input does to the output: it may make all of the motion, or \
     none. Let the input change by more or more often, and record until the output has settled.";
 
-/// Whether the input tells the inertia in the calmer half of the windows of a width: what acts at times only, such as a stop,
-/// does not hide there what the input does.
-fn tells_while_calm(signals: &Signals, widths: &[Width]) -> bool {
+/// Inertia and viscous friction, each with its error, in the calmer half of the windows of the width that tells the inertia best:
+/// what acts at times only, such as a stop, does not hide there what the input does. None where no width tells it.
+pub(super) fn body_while_calm(signals: &Signals, widths: &[Width]) -> Option<[(f64, f64); 2]> {
     let jerk = |k: usize| {
         let v = &signals.speed;
         (v[k + 1] - 2.0 * v[k] + v[k - 1]).abs()
     };
-    widths.iter().any(|width| {
+    let bodies = widths.iter().filter_map(|width| {
         let violence: Vec<f64> = width
             .starts
             .iter()
@@ -107,8 +107,10 @@ fn tells_while_calm(signals: &Signals, widths: &[Width]) -> bool {
         let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         let gram = Gram::new(&columns, &weights, &blocks.collect::<Vec<_>>());
         let fit = Fit::new(&gram, &[vec![ACCELERATION], vec![VELOCITY], vec![INPUT]]);
-        fit.is_some_and(|fit| fit.w[0] > TOLD * fit.error(0))
-    })
+        let body = fit.map(|fit| [0, 1].map(|k| (fit.w[k], fit.error(k))))?;
+        (body[0].0 > TOLD * body[0].1).then_some(body)
+    });
+    bodies.min_by(|a, b| (a[0].1 / a[0].0).total_cmp(&(b[0].1 / b[0].0)))
 }
 
 /// Whether the input changes in fewer blocks of the record than the body has numbers: one step says too little to test

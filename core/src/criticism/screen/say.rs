@@ -8,7 +8,7 @@ use super::tuning::LISTED;
 use super::window::Width;
 use crate::diagnosis::{InputVerdict, Parameter, Screening, Status, Subset};
 use crate::effect::{Dimension, EffectId, VISCOUS_FRICTION, baseline};
-use crate::measurement::Measurement;
+use crate::measurement::{Kind, Measurement};
 
 /// Version of the layout.
 const SCHEMA: u32 = 1;
@@ -19,6 +19,20 @@ struct Name {
     symbol: &'static str,
     label: &'static str,
     unit: String,
+}
+
+impl Name {
+    fn with(self, value: f64, std_error: f64) -> Parameter {
+        Parameter {
+            effect: self.effect,
+            name: self.symbol.to_owned(),
+            label: self.label.to_owned(),
+            value,
+            std_error,
+            unit: self.unit,
+            status: Status::Free,
+        }
+    }
 }
 
 pub(super) fn screening(
@@ -50,18 +64,20 @@ pub(super) fn screening(
             })
         })
         .collect();
-    let body = subsets.first().map(|s| {
-        s.parameters
+    let body = match subsets.first() {
+        Some(best) => best
+            .parameters
             .iter()
             .filter(|p| is_body(p))
             .cloned()
-            .collect()
-    });
+            .collect(),
+        None => while_calm(measurement, signals, widths, bench, input_check.verdict),
+    };
     Screening {
         schema: SCHEMA,
         kind: measurement.kind,
         samples: measurement.len(),
-        body: body.unwrap_or_default(),
+        body,
         left_by_body: tried
             .iter()
             .find(|t| t.members.is_empty())
@@ -70,6 +86,23 @@ pub(super) fn screening(
         input_check,
         seconds: 0.0,
     }
+}
+
+/// The body of a drive whose input explains the motion most of the time.
+fn while_calm(
+    measurement: &Measurement,
+    signals: &Signals,
+    widths: &[Width],
+    bench: &Bench,
+    verdict: InputVerdict,
+) -> Vec<Parameter> {
+    let tells = measurement.kind == Kind::Drive && verdict == InputVerdict::Ok;
+    let body = tells.then(|| input_check::body_while_calm(signals, widths));
+    let named = names(measurement, bench, &[]).into_iter();
+    named
+        .zip(body.flatten().into_iter().flatten())
+        .map(|(name, (value, std_error))| name.with(value, std_error))
+        .collect()
 }
 
 fn is_body(parameter: &Parameter) -> bool {
@@ -123,15 +156,7 @@ fn parameters(
     let with_values = named.zip(values.into_iter().zip(errors));
     Some(
         with_values
-            .map(|(name, (value, std_error))| Parameter {
-                effect: name.effect,
-                name: name.symbol.to_owned(),
-                label: name.label.to_owned(),
-                value,
-                std_error,
-                unit: name.unit,
-                status: Status::Free,
-            })
+            .map(|(name, (value, std_error))| name.with(value, std_error))
             .collect(),
     )
 }
