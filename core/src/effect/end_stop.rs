@@ -21,6 +21,9 @@ const HARDEST: f64 = 1.5;
 /// Most of the travel that a stop takes.
 const DEEPEST: f64 = 0.35;
 
+/// Samples at rest that tell the place of a stop.
+const RESTS: usize = 20;
+
 /// Force of a stop that is pressed in by `depth` at this rate; it does not pull.
 fn push(stiffness: f64, damping: f64, depth: f64, rate: f64) -> f64 {
     if depth > 0.0 {
@@ -33,11 +36,6 @@ fn push(stiffness: f64, damping: f64, depth: f64, rate: f64) -> f64 {
 /// How far a body at its greatest speed presses in a stop on which it swings with so many radians in a sample, at most.
 fn depth(radians: f64, fastest: f64, step: f64, travel: f64) -> f64 {
     (fastest * step / radians).min(DEEPEST * travel)
-}
-
-/// How far both ends of the way, or one of them, are pressed in.
-fn sides(depth: f64) -> [[f64; 2]; 3] {
-    [[depth, depth], [depth, 0.0], [0.0, depth]]
 }
 
 impl Effect for EndStop {
@@ -94,16 +92,27 @@ impl Effect for EndStop {
         ]
     }
 
+    /// How hard a stop is that is as good as rigid no record tells, but that it pushes.
+    fn telling(&self) -> usize {
+        2
+    }
+
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let (low, high) = probe.position_range();
         let (back, forth) = probe.velocity_range();
-        let fastest = forth.max(-back);
+        let (travel, fastest) = (high - low, forth.max(-back));
         let (step, scale) = (probe.scales.step, probe.scales.of(Dimension::Stiffness));
-        // What is left of a model that runs on through a stop says little of it: its places follow from the ends of the way.
+        // What is left of a model that runs on through a stop says little of it: its places follow from where the body rests at the
+        // ends of the way, or else from how far it can run in.
         let all = STIFFNESSES.iter().flat_map(|radians| {
-            let deep = depth(*radians, fastest, step, high - low);
             let stiffness = radians * radians * scale;
-            sides(deep).map(|[above, below]| vec![stiffness, 0.0, high - above, low + below])
+            let deep = depth(*radians, fastest, step, travel);
+            let above = |x: f64| x > high - DEEPEST * travel;
+            let below = |x: f64| x < low + DEEPEST * travel;
+            let upper = probe.spring_at_rest(stiffness, above, RESTS);
+            let lower = probe.spring_at_rest(stiffness, below, RESTS);
+            let (upper, lower) = (upper.unwrap_or(high - deep), lower.unwrap_or(low + deep));
+            [[upper, lower], [upper, low], [high, lower]].map(|[x, y]| vec![stiffness, 0.0, x, y])
         });
         all.collect()
     }

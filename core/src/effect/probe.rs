@@ -22,7 +22,7 @@ use super::Scales;
 use crate::crew::Crew;
 use crate::measurement::Kind;
 use crate::model::{Load, free_body, load_torque};
-use crate::order::range;
+use crate::order::{median, range};
 use crate::sums::dot;
 pub(super) use bounces::Bounces;
 use equations::spans_stride;
@@ -353,6 +353,23 @@ impl Probe {
     /// Lowest and highest measured velocity, or output of a process.
     pub fn velocity_range(&self) -> (f64, f64) {
         range(&self.velocity)
+    }
+
+    /// Where a spring of this stiffness begins on which the body rests, by the input that holds it there, among the samples at rest
+    /// at these places: their median, in the unit of the position. None where it rests there for fewer than so many samples.
+    pub fn spring_at_rest(
+        &self,
+        stiffness: f64,
+        is_there: impl Fn(f64) -> bool,
+        least: usize,
+    ) -> Option<f64> {
+        let still = STILL * self.scales.speed;
+        let samples = self.position.iter().zip(&self.velocity).zip(&self.input);
+        let mut begins: Vec<f64> = samples
+            .filter(|((x, v), _)| v.abs() <= still && is_there(**x))
+            .map(|((x, _), u)| x - u / stiffness)
+            .collect();
+        (begins.len() >= least).then(|| median(&mut begins))
     }
 
     /// Whether the body moves both ways: where it does not, dry friction and a constant force are the same.
