@@ -89,10 +89,11 @@ fn suffix(name: &str) -> Option<String> {
         return Some(whole);
     }
     let (&last, others) = parts.split_last()?;
-    // `pos_mm`, but not `x` or `V`: a letter alone is a name.
-    let alone = others.is_empty();
     let letter = |unit: &str| unit.chars().nth(1).is_none();
-    if is_unit(last) && !(letter(last) && (alone || !LETTERS.contains(&last))) {
+    let reads = |unit: &str| is_unit(unit) && (!letter(unit) || LETTERS.contains(&unit));
+    // `pos_mm`, but not `x` or `V`: a letter alone is a name.
+    let name_alone = others.is_empty() && letter(last);
+    if reads(last) && !name_alone {
         return Some(divided(last));
     }
     // `posMm` and `velRadPerSec`: from each capital letter behind a small one.
@@ -111,7 +112,7 @@ fn suffix(name: &str) -> Option<String> {
             let first = small.next().into_iter().flat_map(char::to_lowercase);
             first.chain(small).collect()
         };
-        if is_unit(&unit) && !(letter(&unit) && !LETTERS.contains(&unit.as_str())) {
+        if reads(&unit) {
             return Some(divided(&unit));
         }
     }
