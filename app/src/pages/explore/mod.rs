@@ -68,6 +68,8 @@ pub struct Explore {
     reading: Option<Job<ScenarioTask>>,
     opened: Option<ScenarioReport>,
     message: Option<String>,
+    /// What the page does not show of the scenario that was opened last.
+    left_out: Option<String>,
 }
 
 /// What the page is about.
@@ -146,6 +148,9 @@ impl View for Explore {
         }
         if let Some(message) = &self.message {
             state["message"] = message.as_str().into();
+        }
+        if let Some(left_out) = &self.left_out {
+            state["left_out"] = left_out.as_str().into();
         }
         state
     }
