@@ -12,6 +12,16 @@ const LEAST_SIDE: f32 = 340.0;
 /// Width of two plots side by side below which they stand under each other, points.
 const PAIR: f32 = 500.0;
 
+/// Height of the plot that stays in view above what scrolls in a narrow window, and of the window that has room for it,
+/// points.
+pub const PINNED: f32 = 190.0;
+const ROOM_TO_PIN: f32 = 560.0;
+
+/// Whether a narrow window is so high that a plot can stay in view above its sliders.
+pub fn pins(ui: &egui::Ui) -> bool {
+    ui.available_height() >= ROOM_TO_PIN
+}
+
 /// Width of the controls beside the plots: as much as they like, but in a small window the plots come first.
 pub fn side(ui: &egui::Ui, liked: f32) -> f32 {
     liked.min((SIDE_SHARE * ui.available_width()).max(LEAST_SIDE))

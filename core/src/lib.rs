@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`crew`] | who does the parts of a computation? |
 //! | [`progress`] | how far has a computation come? |
+//! | [`count`] | how many are there, in words? |
 //! | [`uncertain`] | how sure is a value, in words? |
 //! | [`curve`] | which points of a curve does a picture need? |
 //! | [`measurement`] | what was measured? |
@@ -37,6 +38,7 @@
 
 pub mod backlash;
 pub mod by_hand;
+pub mod count;
 pub mod crew;
 pub mod criticism;
 pub mod curve;

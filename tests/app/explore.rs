@@ -250,3 +250,24 @@ fn equation_3_in_z_and_play_stand_beside_the_exact_cycle() {
     finish(&mut harness);
     picture(&mut harness, "explore_theory");
 }
+
+#[test]
+fn what_a_page_does_not_show_of_a_scenario_is_said() {
+    for (name, keys) in [
+        ("fig-4-noise", "duration, step"),
+        ("one-sided-heater", "duration"),
+        ("hunting-stiction", "duration"),
+    ] {
+        let mut harness = app("explore", WIDE);
+        open_scenario(&mut harness, name);
+        let state = explored(&harness);
+        let said = state["left_out"]
+            .as_str()
+            .unwrap_or_else(|| panic!("{name}: {state}"));
+        assert!(
+            said.contains(&format!("leaves out: {keys}")),
+            "{name}: {said}"
+        );
+        harness.get_by_label_contains("hysteron simulate");
+    }
+}

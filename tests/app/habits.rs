@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 use crate::support::ui::{
     App, PLACES, TALL, app, button, controls, double_click, finish, show, state,
 };
-use egui::{Event, Key, Modifiers, PointerButton, Role, Vec2};
+use egui::{
+    Event, Key, Modifiers, PointerButton, Pos2, Role, TouchDeviceId, TouchId, TouchPhase, Vec2,
+};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 /// A phone's window, points.
@@ -129,4 +131,58 @@ fn on_a_phone_a_finger_finds_everything() {
     }
     assert!(count > 500, "{count} controls");
     assert!(small.is_empty(), "{small:#?}");
+}
+
+/// A finger goes from one place to another on the screen.
+fn swipe(harness: &mut App, from: Pos2, way: Vec2) {
+    const STEPS: usize = 8;
+    let touch = |phase, pos| Event::Touch {
+        device_id: TouchDeviceId(1),
+        id: TouchId(1),
+        phase,
+        pos,
+        force: None,
+    };
+    harness.input_mut().events.extend([
+        touch(TouchPhase::Start, from),
+        Event::PointerMoved(from),
+        button(from, PointerButton::Primary, true),
+    ]);
+    harness.step();
+    for step in 1..=STEPS {
+        let at = from + way * (step as f32 / STEPS as f32);
+        let moved = [touch(TouchPhase::Move, at), Event::PointerMoved(at)];
+        harness.input_mut().events.extend(moved);
+        harness.step();
+    }
+    harness.input_mut().events.extend([
+        button(from + way, PointerButton::Primary, false),
+        touch(TouchPhase::End, from + way),
+        Event::PointerGone,
+    ]);
+    harness.run_steps(4);
+}
+
+#[test]
+fn on_a_phone_a_finger_on_a_plot_scrolls_the_page() {
+    for (place, name) in [
+        (
+            "v1;compare;compare.file=drive-02",
+            "Plot: x1 [rad] over time [s]",
+        ),
+        (
+            "v1;compare;compare.file=drive-02",
+            "Plot: x1 - model [rad] over time [s]",
+        ),
+    ] {
+        let mut harness = app("start", PHONE);
+        show(&mut harness, place);
+        let plot = |harness: &App| harness.get_by_label(name).rect();
+        let before = plot(&harness);
+        assert!(before.center().y < PHONE[1], "{place}: {before}");
+        swipe(&mut harness, before.center(), Vec2::new(0.0, -120.0));
+        let after = plot(&harness);
+        let moved = before.top() - after.top();
+        assert!((60.0..=180.0).contains(&moved), "{place}: {moved}");
+    }
 }

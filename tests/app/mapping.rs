@@ -230,14 +230,9 @@ fn a_csv_with_names_of_its_own_is_guessed_and_mapped() {
     );
     assert_eq!(
         missing(&harness),
-        json!([
-            "Unit of the input",
-            "Unit of the position",
-            "Unit of the velocity"
-        ])
+        json!(["Unit of the input", "Unit of the position"])
     );
     choose(&mut harness, "Unit of the input", "A");
-    choose(&mut harness, "Unit of the velocity", "rpm");
     choose(&mut harness, "Unit of the position", "counts");
     assert_eq!(
         missing(&harness),
@@ -248,16 +243,24 @@ fn a_csv_with_names_of_its_own_is_guessed_and_mapped() {
         "Counts per turn or length of a count",
         "1000000/rev",
     );
-    type_over(
-        &mut harness,
-        "Torque constant, if it is known",
-        "0,05 N m/A",
-    );
+    // With a unit of its own, or with that of the menu, which goes with the input.
+    let constant = "Torque constant, if it is known";
+    type_over(&mut harness, constant, "0,05 N m/A");
+    let said = |harness: &App| form(harness)["reading"]["torque_constant"].clone();
+    assert_eq!(said(&harness), "0.05 N m/A");
+    type_over(&mut harness, constant, "50");
+    choose(&mut harness, "Unit of the torque constant", "mN m/A");
+    assert_eq!(said(&harness), "50 mN m/A");
+    choose(&mut harness, "Unit of the input", "V");
+    assert_eq!(said(&harness), "50 N m/V");
+    choose(&mut harness, "Unit of the input", "A");
+    choose(&mut harness, "Unit of the torque constant", "N m/A");
+    type_over(&mut harness, constant, "0,05");
     assert_eq!(
         form(&harness)["reading"],
         json!({
             "kind": "drive",
-            "map": "t=Zeit_ms [ms], u=Strom [A], x1=Encoder [counts, 1000000/rev], v1=Drehzahl [rpm]",
+            "map": "t=Zeit_ms [ms], u=Strom [A], x1=Encoder [counts, 1000000/rev], v1=Drehzahl [U/min]",
             "torque_constant": "0.05 N m/A",
             "period": "",
         })

@@ -501,10 +501,29 @@ fn a_formula_is_looked_for_where_that_is_asked() {
     let text = run("text");
     assert!(text.contains("Formula of the unknown"), "{text}");
     assert!(text.contains("--effect \"formula_"), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&run("json")).unwrap();
+    let page = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bump.html");
+    let _ = std::fs::remove_file(&page);
+    let json = (hysteron()
+        .arg("diagnose")
+        .arg(&file)
+        .arg("--report")
+        .arg(&page))
+    .args(["--discover", "--format", "json"])
+    .output()
+    .unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
     let discovery: Discovery = serde_json::from_value(json["discovery"].clone()).unwrap();
     let found = discovery.found().unwrap();
     assert_eq!(found.formula, "-a*exp(-((x-c)/w)^2)");
+    // The report has it as well, with the words that look for it again.
+    let page = std::fs::read_to_string(page).unwrap();
+    for part in [
+        "bump.csv --discover",
+        "Every formula that was simulated",
+        "exp(-((x-c)/w)^2)",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
     // Without it nothing is looked for.
     let plain = diagnose(&data("drive-01.csv"));
     assert!(!String::from_utf8_lossy(&plain.stdout).contains("Formula"));

@@ -199,6 +199,58 @@ fn the_output_is_written_with_the_noise_that_the_relay_sees() {
 }
 
 #[test]
+fn noise_before_a_controller_is_simulated_written_and_said() {
+    for (name, words) in [
+        ("one-sided-heater.toml", "It oscillates between"),
+        ("hunting-stiction.toml", "It hunts"),
+    ] {
+        let calm = std::fs::read_to_string(scenario(name)).unwrap();
+        assert!(!calm.contains("noise"), "{calm}");
+        let noisy = calm.replace(
+            "[run]\n",
+            "[run]\nnoise = { std_dev = 0.3, interval = 0.5, seed = 2 }\n",
+        );
+        let [calm, noisy] = [("calm", calm), ("noisy", noisy)].map(|(kind, text)| {
+            let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{kind}-{name}"));
+            std::fs::write(&path, text).unwrap();
+            path
+        });
+        let [before, after] = [&calm, &noisy].map(|path| {
+            let csv = path.with_extension("csv");
+            let said = text(&hysteron(
+                "simulate",
+                path,
+                &["--csv", csv.to_str().unwrap()],
+            ));
+            (said, std::fs::read_to_string(csv).unwrap())
+        });
+        assert_ne!(before.1, after.1, "{name}");
+        assert!(
+            before.0.contains(words) && !before.0.contains("noise"),
+            "{}",
+            before.0
+        );
+        let said = format!("Without the noise: {words}");
+        assert!(after.0.contains(&said), "{}", after.0);
+        assert!(!(before.0 + &after.0).contains("-0.000000"));
+        let predicted = text(&hysteron("limit-cycle", &noisy, &[]));
+        assert!(
+            predicted.contains("The noise of the file is left out here; simulate has it."),
+            "{predicted}"
+        );
+    }
+}
+
+#[test]
+fn one_switch_is_no_plural() {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("one-switch.toml");
+    let loop_ = "[plant]\nformula = \"1/(s+1)^3\"\n[relay]\ngain = 1\nhysteresis = 0.1\n[run]\n";
+    std::fs::write(&path, format!("{loop_}duration = 2.0\n")).unwrap();
+    let said = text(&hysteron("simulate", &path, &[]));
+    assert!(said.starts_with("1 switch up to "), "{said}");
+}
+
+#[test]
 fn a_run_that_is_too_long_is_said_to_be() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("long.toml");
     let lines =

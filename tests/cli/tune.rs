@@ -178,3 +178,24 @@ fn bad_input_gets_one_line() {
         );
     }
 }
+
+/// A room whose air comes and goes, and a heater that is switched on once and hardly felt in what is left of the record.
+#[test]
+fn a_record_that_no_model_follows_gives_none() {
+    let mut text = String::from("t [s],u [%],y [°C]\n");
+    for i in 0..400_usize {
+        let t = 0.5 * i as f64;
+        let u = if t < 125.0 { 0.0 } else { 40.0 };
+        let air = 2.0 * (t / 17.0).sin() - 3.0 * (-((t - 60.0) / 9.0).powi(2)).exp();
+        let heat = 1e-4 * (t - 125.0).max(0.0).powi(2);
+        writeln!(text, "{t:.1},{u},{:.2}", 24.0 + air + heat).unwrap();
+    }
+    let file = written("hardly-heated.csv", &text);
+    let found = json(&[&file, "--format", "json"]);
+    let said = found["text"].as_str().unwrap();
+    assert!(said.contains("No model follows the record"), "{said}");
+    assert!(said.contains("the input switches 1 time and"), "{said}");
+    assert!(!said.contains("dead time "), "{said}");
+    assert_eq!(found["gains"].as_array().unwrap().len(), 0);
+    assert_eq!(found["ultimate"], Value::Null);
+}

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use hysteron_core::hunting::{
     Cogging, Controller, Friction, Servo, describing_function, friction_gain, run, settled,
 };
+use hysteron_core::simulate::Noise;
 
 /// Inertia 1, so that all is in natural units.
 fn servo(proportional: f64, integral: f64, derivative: f64) -> Servo {
@@ -40,7 +41,7 @@ fn a_mass_on_a_spring_with_dry_friction_in_closed_form() {
     servo.friction.coulomb = 0.3;
     let lost = 2.0 * 0.3 / 4.0;
     let half = PI / 2.0;
-    let run = run(&servo, 20.0, half / 2.0).unwrap();
+    let run = run(&servo, 20.0, half / 2.0, None).unwrap();
     // From 0 to 1 and beyond: at the end of each half swing the distance is smaller by 2 c/P, on the other side.
     let mut distance = 1.0;
     let mut side = -1.0;
@@ -61,7 +62,7 @@ fn a_mass_on_a_spring_with_dry_friction_in_closed_form() {
 #[test]
 fn a_linear_loop_in_closed_form() {
     let servo = servo(5.0, 0.0, 2.0);
-    let run = run(&servo, 6.0, 0.1).unwrap();
+    let run = run(&servo, 6.0, 0.1, None).unwrap();
     for (t, x) in run.time.iter().zip(&run.position) {
         let exact = 1.0 - f64::exp(-t) * ((2.0 * t).cos() + 0.5 * (2.0 * t).sin());
         assert!((x - exact).abs() < 1e-9, "{t}: {x} {exact}");
@@ -249,5 +250,55 @@ fn odd_servos_end() {
     }
     let mut wrong = servo(1.0, 0.0, 0.0);
     wrong.inertia = -1.0;
-    assert!(settled(&wrong).is_err() && run(&wrong, 1.0, 0.1).is_err());
+    assert!(settled(&wrong).is_err() && run(&wrong, 1.0, 0.1, None).is_err());
+}
+
+/// Noise on the position that the controller sees, against Euler's method in steps of a millionth.
+#[test]
+fn in_noise_it_sticks_and_slips_as_small_steps_say() {
+    let mut servo = servo(4.0, 3.0, 3.0);
+    servo.friction.coulomb = 0.6;
+    servo.controller.limit = Some(2.5);
+    servo.controller.tracking_time = Some(0.3);
+    let noise = |std_dev, seed| {
+        Some(Noise {
+            std_dev,
+            interval: 0.05,
+            seed,
+        })
+    };
+    let noisy = run(&servo, 4.0, 0.1, noise(0.05, 5)).unwrap();
+    let step = 1e-6;
+    let times: Vec<f64> = (0..=4_000_000).map(|k| step * f64::from(k)).collect();
+    let seen = noise(0.05, 5).unwrap().at(&times);
+    let (mut x, mut v, mut integral, mut stuck) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
+    for (k, noise) in seen.iter().enumerate() {
+        if k % 100_000 == 0 {
+            let found = noisy.position[k / 100_000];
+            assert!((x - found).abs() < 1e-4, "{k}: {x} {found}");
+        }
+        let error = 1.0 - x - noise;
+        let asked = 4.0 * error + integral - 3.0 * v;
+        let u = asked.clamp(-2.5, 2.5);
+        integral += step * (3.0 * error + (u - asked) / 0.3);
+        if v == 0.0 && u.abs() <= 0.6 {
+            stuck += step;
+            continue;
+        }
+        let way = if v == 0.0 { u.signum() } else { v.signum() };
+        let next = v + step * (u - 0.6 * way);
+        v = if next * way < 0.0 { 0.0 } else { next };
+        x += step * v;
+    }
+    let sticks: f64 = noisy.stuck.iter().map(|s| s[1] - s[0]).sum();
+    assert!(
+        sticks > 0.5 && (sticks - stuck).abs() < 0.01,
+        "{sticks} {stuck}"
+    );
+    // The seed says which noise, and noise of no size is none.
+    assert_ne!(run(&servo, 4.0, 0.1, noise(0.05, 6)).unwrap(), noisy);
+    let still = run(&servo, 4.0, 0.1, noise(0.0, 5)).unwrap();
+    for (a, b) in (still.position.iter()).zip(&run(&servo, 4.0, 0.1, None).unwrap().position) {
+        assert!((a - b).abs() < 1e-8, "{a} {b}");
+    }
 }

@@ -664,6 +664,14 @@ fn heaters_of_others_give_their_models() {
         let slope = has(&result, TroubleKind::Controller);
         assert!((slope + 1.84).abs() < 0.01, "{slope}");
     }
+    // Two lags of 281 and 123 s, of which 75 s of heating tell nothing.
+    if let Some(record) = foreign("heater-step-plain-header.csv") {
+        let result = tune_record(&record, &Settings::default()).unwrap();
+        assert_eq!(has(&result, TroubleKind::WindowTooShort), 0.0);
+        let nothing =
+            result.text.contains("No model follows the record") && result.gains.is_empty();
+        assert!(nothing && result.point.is_none(), "{}", result.text);
+    }
     // K/T some -8 per s.
     if let Some(record) = foreign("integrating-process-pulses.csv") {
         let result = tune_record(&record, &Settings::default()).unwrap();

@@ -9,6 +9,7 @@ use hysteron_core::on_off::{
 };
 use hysteron_core::plant::TransferFunction;
 use hysteron_core::relay::Relay;
+use hysteron_core::simulate::{self, Noise, Options};
 
 fn continuous(plant: TransferFunction, relay: OnOffRelay) -> OnOffLoop {
     let space = plant.state_space();
@@ -269,7 +270,7 @@ fn a_plant_in_discrete_time_as_its_recursion() {
             range = [range[0].min(y[0]), range[1].max(y[0])];
         }
     }
-    let run = run(&loop_, 40.0, 1.0).unwrap();
+    let run = run(&loop_, 40.0, 1.0, None).unwrap();
     assert_eq!(run.output.len(), 201);
     for (a, b) in run.output.iter().zip(&outputs) {
         assert!((a - b).abs() < 1e-12, "{a} {b}");
@@ -428,4 +429,75 @@ fn a_view_begins_where_it_should_and_its_curves_meet_on_both() {
     let again = OnOffInput::of(&input.on_off_loop().expect("a loop")).expect("a loop");
     assert_eq!(again.plant, input.plant);
     assert!((again.start - 1.0).abs() < 1e-12);
+}
+
+fn noise(std_dev: f64, interval: f64, seed: u64) -> Option<Noise> {
+    Some(Noise {
+        std_dev,
+        interval,
+        seed,
+    })
+}
+
+/// Two positions without anything more are the relay of the textbook, whose simulation is another program.
+#[test]
+fn in_noise_two_positions_switch_as_the_plain_relay_does() {
+    let plant = three_lags(0.4);
+    let loop_ = continuous(plant.clone(), relay(1.0, 0.05));
+    let noise = noise(0.1, 0.02, 7);
+    let found = run(&loop_, 40.0, 0.1, noise).unwrap();
+    let options = Options {
+        noise,
+        ..Options::new(40.0, 0.1)
+    };
+    let plain = simulate::run(&plant.state_space(), &loop_.relay.relay, 0.4, &options).unwrap();
+    let mut times: Vec<f64> = plain.rises.iter().chain(&plain.falls).copied().collect();
+    times.sort_by(f64::total_cmp);
+    assert!(times.len() > 100, "{}", times.len());
+    assert_eq!(found.switches.len(), times.len());
+    for (switch, time) in found.switches.iter().zip(&times) {
+        assert!((switch.time - time).abs() < 1e-9, "{} {time}", switch.time);
+    }
+    // Without noise it switches twice in a cycle of 8 s.
+    let calm = run(&loop_, 40.0, 0.1, None).unwrap();
+    assert!(calm.switches.len() < 20, "{}", calm.switches.len());
+    assert_eq!(run(&loop_, 40.0, 0.1, noise).unwrap(), found);
+}
+
+/// `y[k+1] = 0.9 y[k] + 0.1 u[k]` with heating, off and cooling for two samples at least: a recursion by hand.
+#[test]
+fn in_noise_a_dead_zone_with_shortest_times_follows_its_recursion() {
+    let mut controller = relay(1.0, 0.02);
+    (controller.dead_zone, controller.min_on, controller.min_off) = (0.1, 0.4, 0.4);
+    let loop_ = OnOffLoop {
+        plant: OnOffPlant::Discrete(DiscretePlant::new(&[0.1], &[1.0, -0.9], 0.2).unwrap()),
+        relay: controller,
+        initial: None,
+    };
+    let noise = noise(0.15, 0.07, 3);
+    let found = run(&loop_, 60.0, 1.0, noise).unwrap();
+    let times: Vec<f64> = (0..=300).map(|k| 0.2 * f64::from(k)).collect();
+    let seen = noise.unwrap().at(&times);
+    let (mut y, mut u, mut held, mut switches) = (0.0_f64, 0.0_f64, 0, 0);
+    for (k, (noise, output)) in seen.iter().zip(&found.output).enumerate() {
+        assert!((y - output).abs() < 1e-12, "{k}: {y} {output}");
+        let e = y + noise;
+        let outside = |limit: f64| if e.abs() > limit { -e.signum() } else { 0.0 };
+        // Off within the zone, and from a push back to off once it is on the zone's near side.
+        let wanted = match u {
+            0.0 => outside(0.12),
+            _ if u * e > -0.08 => outside(0.12),
+            _ => u,
+        };
+        held -= 1;
+        let first = k == 0;
+        if wanted != u && (held <= 0 || first) {
+            u = wanted;
+            held = if first { 0 } else { 2 };
+            switches += usize::from(!first);
+        }
+        y = 0.9 * y + 0.1 * u;
+    }
+    assert!(switches > 50, "{switches}");
+    assert_eq!(found.switches.len(), switches);
 }

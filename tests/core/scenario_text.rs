@@ -1,6 +1,6 @@
 //! Relay loops as TOML: five ways to give a plant, and errors with their place.
 
-use hysteron_core::scenario::{Scenario, ScenarioError};
+use hysteron_core::scenario::{AnyScenario, Scenario, ScenarioError};
 use nalgebra::Complex;
 
 const RELAY: &str = "[relay]\ngain = 1.0\nhysteresis = 0.1\n";
@@ -115,4 +115,47 @@ fn the_scenarios_that_come_with_it_run() {
         assert!(run.rises.len() > 5, "{name}");
         assert_eq!(run.sliding.is_empty(), name != "sliding", "{name}");
     }
+}
+
+#[test]
+fn noise_is_for_every_controller() {
+    let run = |std_dev: &str| {
+        format!(
+            "[run]\nduration = 8.0\nstep = 0.1\nnoise = {{ std_dev = {std_dev}, interval = 0.05 }}\n"
+        )
+    };
+    for (name, text) in [
+        (
+            "on-off",
+            "[plant]\nformula = \"1/(s+1)^3\"\n[relay]\ngain = 1.0\ndead_zone = 0.1\nmin_on = 0.1\n",
+        ),
+        (
+            "in z",
+            "[plant]\nnumerator = [0.1]\ndenominator = [1.0, -0.9]\nsampling_time = 0.1\n[relay]\ngain = 1.0\n",
+        ),
+        (
+            "servo",
+            "[servo]\ninertia = 1e-3\nfriction = { coulomb = 0.03 }\ncontroller = { proportional = 4.0 }\nreference = 1.0\n",
+        ),
+    ] {
+        let outputs = |run: &str| match AnyScenario::from_toml(&format!("{text}{run}")).unwrap() {
+            AnyScenario::OnOff(scenario) => scenario.run().unwrap().output,
+            AnyScenario::Servo(scenario) => scenario.run().unwrap().position,
+            other => panic!("{other:?}"),
+        };
+        let (noisy, calm) = (
+            outputs(&run("0.2")),
+            outputs("[run]\nduration = 8.0\nstep = 0.1\n"),
+        );
+        assert_eq!(noisy.len(), calm.len(), "{name}");
+        assert_ne!(noisy, calm, "{name}");
+        assert_eq!(noisy, outputs(&run("0.2")), "{name}");
+        let wrong = AnyScenario::from_toml(&format!("{text}{}", run("-1.0"))).unwrap_err();
+        assert!(
+            wrong.to_string().contains("noise std_dev is -1"),
+            "{name}: {wrong}"
+        );
+    }
+    let keys = hysteron_core::scenario::keys_of_run(&run("0.2"));
+    assert_eq!(keys, ["duration", "noise", "step"]);
 }

@@ -310,5 +310,14 @@ fn a_garbled_log_gets_one_clear_sentence() {
             "{said}"
         );
     }
+    let cannot = "PID parameters: pid_Kp=40.1 pid_Ki=-1.9 pid_Kd=206.3\n";
+    let said = read("a log", cannot).unwrap().unwrap().tune(None);
+    let said = said.unwrap_err().to_string();
+    assert!(
+        said.starts_with(
+            "this looks like a log of Klipper PID_CALIBRATE, but it cannot be used: the period is "
+        ),
+        "{said}"
+    );
     assert!(read("a table", "t [s],u [1],y [1]\n0,1,2\n").is_none());
 }

@@ -52,14 +52,14 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
             }
         }
         AnyScenario::OnOff(scenario) => {
-            let report = OnOffReport::new(&scenario.on_off).map_err(located)?;
+            let report = OnOffReport::new(&scenario).map_err(located)?;
             match arguments.format {
                 Format::Text => report.text(),
                 Format::Json => format!("{:#}\n", report.json()),
             }
         }
         AnyScenario::Servo(scenario) => {
-            let report = ServoReport::new(&scenario.servo).map_err(located)?;
+            let report = ServoReport::new(&scenario).map_err(located)?;
             match arguments.format {
                 Format::Text => report.text(),
                 Format::Json => format!("{:#}\n", report.json()),

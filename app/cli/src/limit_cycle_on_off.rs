@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::on_off::{
-    Balance, OnOffCycle, OnOffLoop, Settled, describing_function, settled,
-};
+use hysteron_core::on_off::{Balance, OnOffCycle, Settled, describing_function, settled};
+use hysteron_core::scenario::OnOffScenario;
+use hysteron_core::simulate::Noise;
 use serde_json::{Value, json};
 
 use crate::cycle_table::CycleTable;
-use crate::output::off_by;
+use crate::output::{off_by, without_noise};
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
@@ -20,14 +20,17 @@ pub struct OnOffReport {
     settled: Settled,
     /// Whether there are shortest times to keep.
     holds: bool,
+    noise: Option<Noise>,
 }
 
 impl OnOffReport {
-    pub fn new(on_off: &OnOffLoop) -> Result<Self, String> {
+    pub fn new(scenario: &OnOffScenario) -> Result<Self, String> {
+        let on_off = &scenario.on_off;
         Ok(Self {
             settled: settled(on_off).map_err(|e| e.to_string())?,
             describing_function: describing_function(on_off),
             holds: on_off.relay.min_on.max(on_off.relay.min_off) > 0.0,
+            noise: scenario.noise,
         })
     }
 
@@ -55,7 +58,7 @@ impl OnOffReport {
                     off_by([b.period, b.amplitude], [c.period, c.amplitude])
                 }),
         };
-        format!("{}{beside}", self.settled.text)
+        format!("{}{beside}{}", self.settled.text, without_noise(self.noise))
     }
 
     pub fn json(&self) -> Value {

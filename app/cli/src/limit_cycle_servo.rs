@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::hunting::{
-    HuntingBalance, HuntingCycle, Servo, Settled, describing_function, settled,
-};
+use hysteron_core::hunting::{HuntingBalance, HuntingCycle, Settled, describing_function, settled};
+use hysteron_core::scenario::ServoScenario;
+use hysteron_core::simulate::Noise;
 use serde_json::{Value, json};
 
 use crate::cycle_table::CycleTable;
-use crate::output::off_by;
+use crate::output::{off_by, without_noise};
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
@@ -17,13 +17,16 @@ const SCHEMA: u32 = 1;
 pub struct ServoReport {
     describing_function: Vec<HuntingBalance>,
     settled: Settled,
+    noise: Option<Noise>,
 }
 
 impl ServoReport {
-    pub fn new(servo: &Servo) -> Result<Self, String> {
+    pub fn new(scenario: &ServoScenario) -> Result<Self, String> {
+        let servo = &scenario.servo;
         Ok(Self {
             settled: settled(servo).map_err(|e| format!("[servo]: {e}"))?,
             describing_function: describing_function(servo),
+            noise: scenario.noise,
         })
     }
 
@@ -39,7 +42,7 @@ impl ServoReport {
                     off_by([b.period, b.amplitude], [c.period, c.amplitude])
                 })
         };
-        format!("{}{beside}", self.settled.text)
+        format!("{}{beside}{}", self.settled.text, without_noise(self.noise))
     }
 
     pub fn json(&self) -> Value {

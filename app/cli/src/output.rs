@@ -3,6 +3,8 @@
 use std::io::{self, Write as _};
 use std::process::ExitCode;
 
+use hysteron_core::simulate::Noise;
+
 /// How a result is written.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Format {
@@ -68,6 +70,14 @@ pub fn off_by(predicted: [f64; 2], exact: [f64; 2]) -> String {
     };
     format!(
         " The describing function is off by {period:+.1} % in period and {amplitude:+.1} % in amplitude{warning}."
+    )
+}
+
+/// Beside an answer for a loop without noise, where the file has some; nothing where it has none.
+pub fn without_noise(noise: Option<Noise>) -> &'static str {
+    noise.map_or(
+        "",
+        |_| " The noise of the file is left out here; simulate has it.",
     )
 }
 

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use hysteron_core::count::counted;
 use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
-use hysteron_core::hunting::{self, HuntingRun};
+use hysteron_core::hunting::{self, HuntingError, HuntingRun};
 use hysteron_core::on_off;
 use hysteron_core::scenario::AnyScenario;
 use hysteron_core::simulate::{Cut, Noise, Trajectory};
@@ -17,7 +18,7 @@ pub struct Arguments {
     /// Loop, drive or servo to run: tables [plant] or [drive], [relay] and [run]; or [servo] and [run]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
-    /// Where to write time, input and output; the output is what the relay sees, with the noise if there is some
+    /// Where to write time, input and output; the output is what the relay or controller sees, with the noise if there is some
     #[arg(long, value_name = "OUT.csv")]
     csv: Option<PathBuf>,
 }
@@ -37,21 +38,24 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
             )
         }
         AnyScenario::OnOff(scenario) => {
-            let run = on_off::run(&scenario.on_off, scenario.duration, scenario.step)
-                .map_err(|e| format!("{shown}: {e}"))?;
+            let run = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
             let end = run.time.last().copied().unwrap_or(0.0);
-            let mut said = counted(run.switches.len(), end, run.cut);
+            let mut said = switched(run.switches.len(), end, run.cut);
             let cycle = on_off::settled(&scenario.on_off).map_err(|e| format!("{shown}: {e}"))?;
-            let _ = writeln!(said, "{}", cycle.text);
+            say_settled(&mut said, &cycle.text, scenario.noise);
             let samples = (run.time.as_slice(), run.output.as_slice());
-            (said, table(samples, &run.input, None), run.time.len())
+            (
+                said,
+                table(samples, &run.input, scenario.noise),
+                run.time.len(),
+            )
         }
         AnyScenario::Servo(scenario) => {
-            let run = hunting::run(&scenario.servo, scenario.duration, scenario.step)
-                .map_err(|e| format!("{shown}: {e}"))?;
-            let found = hunting::settled(&scenario.servo).map_err(|e| format!("{shown}: {e}"))?;
-            let said = servo_summary(&run, &found);
-            (said, servo_table(&run), run.time.len())
+            let located = |e: HuntingError| format!("{shown}: {e}");
+            let run = scenario.run().map_err(located)?;
+            let found = hunting::settled(&scenario.servo).map_err(|e| located(e.into()))?;
+            let said = servo_summary(&run, &found.text, scenario.noise);
+            (said, servo_table(&run, scenario.noise), run.time.len())
         }
         AnyScenario::Drive(input) => {
             let run = drive::run(&input).map_err(|e| format!("{shown}: {e}"))?;
@@ -62,7 +66,12 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
     if let Some(path) = &arguments.csv {
         std::fs::write(path, table)
             .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
-        let _ = writeln!(text, "{samples} samples written to {}.", path.display());
+        let _ = writeln!(
+            text,
+            "{} written to {}.",
+            counted(samples, "sample"),
+            path.display()
+        );
     }
     Ok(text)
 }
@@ -82,8 +91,9 @@ pub fn read(path: &Path) -> Result<AnyScenario, String> {
 }
 
 /// How many switches there were, and why no more.
-fn counted(switches: usize, end: f64, cut: Option<Cut>) -> String {
-    let mut text = format!("{switches} switches up to {end:.6} s.\n");
+fn switched(switches: usize, end: f64, cut: Option<Cut>) -> String {
+    let switches = counted(switches, "switch");
+    let mut text = format!("{switches} up to {end:.6} s.\n");
     let why = cut.map(|cut| match cut {
         Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
         Cut::TooManySwitches => {
@@ -100,13 +110,13 @@ fn counted(switches: usize, end: f64, cut: Option<Cut>) -> String {
 }
 
 fn summary(run: &Trajectory) -> String {
-    let mut text = counted(run.rises.len() + run.falls.len(), run.end(), run.cut);
+    let mut text = switched(run.rises.len() + run.falls.len(), run.end(), run.cut);
     if !run.sliding.is_empty() {
         let total: f64 = run.sliding.iter().map(|s| s[1] - s[0]).sum();
         let _ = writeln!(
             text,
-            "The output slides along the threshold {} times, {total:.6} s in all.",
-            run.sliding.len()
+            "The output slides along the threshold {}, {total:.6} s in all.",
+            counted(run.sliding.len(), "time")
         );
     }
     match run.settled(SETTLED) {
@@ -124,10 +134,25 @@ fn summary(run: &Trajectory) -> String {
     text
 }
 
+/// What becomes of a loop, which is found without the noise.
+fn say_settled(text: &mut String, settled: &str, noise: Option<Noise>) {
+    let without = if noise.is_some() {
+        "Without the noise: "
+    } else {
+        ""
+    };
+    let _ = writeln!(text, "{without}{settled}");
+}
+
+/// Noise at the sampling instants.
+fn noise_at(noise: Option<Noise>, time: &[f64]) -> Vec<f64> {
+    noise.map_or_else(|| vec![0.0; time.len()], |noise| noise.at(time))
+}
+
 /// Input and output at the sampling instants, in the columns that `hysteron diagnose` reads: the output as a recorder
 /// would have it, with what the relay sees of the noise.
 fn table((time, output): (&[f64], &[f64]), input: &[[f64; 2]], noise: Option<Noise>) -> String {
-    let noise = noise.map_or_else(|| vec![0.0; time.len()], |noise| noise.at(time));
+    let noise = noise_at(noise, time);
     let mut text = String::from("t [s],u [1],y [1]\n");
     let mut inputs = input.iter().peekable();
     let mut u = 0.0;
@@ -146,9 +171,9 @@ fn drive_summary(input: &DriveInput, run: &DriveRun) -> String {
     let end = run.time.last().copied().unwrap_or(0.0);
     let _ = writeln!(
         text,
-        "{} switches and {} impacts up to {end:.6} s.",
-        run.switches(),
-        run.impacts()
+        "{} and {} up to {end:.6} s.",
+        counted(run.switches(), "switch"),
+        counted(run.impacts(), "impact")
     );
     if let Some(time) = run.chattering {
         let _ = writeln!(
@@ -169,7 +194,8 @@ fn drive_summary(input: &DriveInput, run: &DriveRun) -> String {
         let mean = found.traverses.iter().map(|t| t.travel).sum::<f64>() / count as f64;
         let _ = writeln!(
             text,
-            "It crosses the gap {count} times, {mean:.6} rad (or m) from contact to contact; the gap is {:.6}.",
+            "It crosses the gap {}, {mean:.6} rad (or m) from contact to contact; the gap is {:.6}.",
+            counted(count, "time"),
             2.0 * input.drive.half_gap
         );
     }
@@ -187,29 +213,30 @@ fn drive_table(run: &DriveRun) -> String {
 }
 
 /// What a servo did, and what becomes of it.
-fn servo_summary(run: &HuntingRun, found: &hunting::Settled) -> String {
+fn servo_summary(run: &HuntingRun, settled: &str, noise: Option<Noise>) -> String {
     let end = run.time.last().copied().unwrap_or(0.0);
-    let stuck: f64 = run.stuck.iter().map(|s| s[1] - s[0]).sum();
+    let stuck = run.stuck.iter().fold(0.0, |sum, s| sum + (s[1] - s[0]));
     let mut text = format!(
-        "The motor sticks {} times up to {end:.6} s, {stuck:.6} s in all.\n",
-        run.stuck.len()
+        "The motor sticks {} up to {end:.6} s, {stuck:.6} s in all.\n",
+        counted(run.stuck.len(), "time")
     );
     if run.cut {
         let _ = writeln!(text, "It runs away, and the run was cut there.");
     }
-    let _ = writeln!(text, "{}", found.text);
+    say_settled(&mut text, settled, noise);
     text
 }
 
-/// The controller's output, the motor, and what is behind the play, at the sampling instants.
-fn servo_table(run: &HuntingRun) -> String {
+/// The controller's output, the motor, and what the controller sees behind the play, at the sampling instants.
+fn servo_table(run: &HuntingRun, noise: Option<Noise>) -> String {
+    let noise = noise_at(noise, &run.time);
     let mut text = String::from("t [s],u [N m],x1 [rad],v1 [rad/s],x2 [rad]\n");
     for (i, t) in run.time.iter().enumerate() {
         let (u, x1, v1, x2) = (
             run.input[i],
             run.position[i],
             run.velocity[i],
-            run.measured[i],
+            run.measured[i] + noise[i],
         );
         let _ = writeln!(text, "{t},{u},{x1},{v1},{x2}");
     }

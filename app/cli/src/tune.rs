@@ -205,7 +205,9 @@ fn of_file(file: &Path, arguments: &Arguments, wishes: &Wishes) -> Result<Measur
         OpenError::Log(e) => format!("{shown}: {e}"),
         OpenError::Import(e) => e.to_string(),
     })?;
-    opened.tune(wishes).map_err(|e| format!("{shown}: {e}"))
+    let mut result = opened.tune(wishes).map_err(|e| format!("{shown}: {e}"))?;
+    result.name = name.into_owned();
+    Ok(result)
 }
 
 fn json(result: &MeasuredTuning) -> serde_json::Value {

@@ -61,7 +61,7 @@ fn line_ui(ui: &mut egui::Ui, line: &'static str) -> Option<&'static str> {
                 Piece::Emphasis(text) => {
                     ui.label(RichText::new(text).italics());
                 }
-                Piece::Formula(text) if text.contains('=') => {
+                Piece::Formula(text) if text.contains(['=', '/', '^']) => {
                     equation_ui(ui, text, &|_| None);
                 }
                 Piece::Formula(text) => {

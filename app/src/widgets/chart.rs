@@ -9,10 +9,10 @@ use egui_plot::{
     PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
 };
 
-pub use super::chart_axes::round_step;
 use super::chart_axes::{
     LABELS, beside, grid, grid_x, label, power_label, powers, scale, shown_from, title,
 };
+pub use super::chart_axes::{round_step, span_decades};
 pub use super::chart_caption::{Key, Shape, caption_ui};
 use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
 use super::chart_keys::Worked;
@@ -44,8 +44,8 @@ pub struct Chart<'a> {
     zoom: (String, [bool; 2]),
     /// Names of the axes with their units, in English.
     axes: [String; 2],
-    /// The x of what is drawn are logarithms to base 10.
-    decades: bool,
+    /// The x, and the y, of what is drawn are logarithms to base 10.
+    decades: [bool; 2],
     /// It can be dragged only while it is zoomed: else a finger on it moves the page.
     drag_zoomed: bool,
     /// Least width of the labels of y, and height, points.
@@ -81,7 +81,7 @@ impl<'a> Chart<'a> {
             salt,
             zoom: (name, [true; 2]),
             axes,
-            decades: false,
+            decades: [false; 2],
             drag_zoomed: false,
             width,
             height,
@@ -94,8 +94,15 @@ impl<'a> Chart<'a> {
     /// With a logarithmic x: what is drawn has the logarithm to base 10 there, and what is read its power.
     #[must_use]
     pub fn decades(mut self) -> Self {
-        self.decades = true;
+        self.decades[0] = true;
         self
+    }
+
+    /// The same with y.
+    #[must_use]
+    pub fn decades_up(mut self) -> Self {
+        self.decades[1] = true;
+        self.with(|plot| plot.y_grid_spacer(|input| powers(&input)))
     }
 
     /// With more of what a plot can do.
@@ -179,12 +186,12 @@ impl<'a> Chart<'a> {
         let read = read.unwrap_or_else(|| {
             let [across, up] = factors;
             reading(names.clone(), move |p| {
-                let x = if decades { 10_f64.powf(p.x) } else { p.x };
-                [x / across, p.y / up]
+                let [x, y] = plain(decades, [p.x, p.y]);
+                [x / across, y / up]
             })
         });
         plot = plot.grid_color(theme::grid(ui.visuals()));
-        plot = with_axes(plot, names, factors, decades, [width, height]);
+        plot = with_axes(ui, plot, names, factors, decades, [width, height]);
         let menu = egui::Popup::is_any_open(&ctx);
         let keys = chart_cursor::live(&ctx).is_some();
         if menu || keys {
@@ -194,10 +201,12 @@ impl<'a> Chart<'a> {
             let read = read.clone();
             plot = plot.label_formatter(move |at| read(at));
         }
+        let mut stays = zoomed == [true, false];
         if drag_zoomed {
             let memory = PlotMemory::load(&ctx, id);
             let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
             plot = plot.allow_drag(zoomed);
+            stays |= !zoomed;
         }
         let zoom = Zoomed::new(id, &name, zoomed);
         let change = zoom.change(&ctx);
@@ -237,6 +246,10 @@ impl<'a> Chart<'a> {
         }
         let (inner, table, asked) = shown.inner;
         let (response, transform) = (shown.response, shown.transform);
+        if stays && response.dragged() && ctx.input(egui::InputState::any_touches) {
+            // A finger that goes up or down over a plot that stays moves the page, which the plot would keep it from.
+            ui.scroll_with_delta(egui::vec2(0.0, response.drag_delta().y));
+        }
         let live = chart_cursor::live(&ctx);
         let cursor = live.as_ref().filter(|r| r.plot == id).map(|r| &r.cursor);
         if let Some(group) = linked {
@@ -282,7 +295,7 @@ impl<'a> Chart<'a> {
 }
 
 /// The units in which the axes of a plot are read, by what it showed last.
-fn scales_of(ctx: &egui::Context, id: Id, axes: &[String; 2], decades: bool) -> [Scale; 2] {
+fn scales_of(ctx: &egui::Context, id: Id, axes: &[String; 2], decades: [bool; 2]) -> [Scale; 2] {
     let memory = PlotMemory::load(ctx, id);
     [0, 1].map(|i| {
         let size = memory.as_ref().map_or(0.0, |memory| {
@@ -290,39 +303,54 @@ fn scales_of(ctx: &egui::Context, id: Id, axes: &[String; 2], decades: bool) -> 
             bounds.min()[i].abs().max(bounds.max()[i].abs())
         });
         // A logarithmic axis shows powers of its unit.
-        let size = if decades && i == 0 { 0.0 } else { size };
+        let size = if decades[i] { 0.0 } else { size };
         scale(&axes[i], size)
     })
 }
 
+/// What is drawn at a place, where logarithms may stand for it.
+fn plain(decades: [bool; 2], at: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|i| {
+        if decades[i] {
+            10_f64.powf(at[i])
+        } else {
+            at[i]
+        }
+    })
+}
+
 /// The axes with their names and labels; `size` is the least width of the labels of y and the height of the plot.
-fn with_axes(
-    plot: Plot<'_>,
+fn with_axes<'a>(
+    ui: &egui::Ui,
+    plot: Plot<'a>,
     [x, y]: [String; 2],
     [across, up]: [f64; 2],
-    decades: bool,
+    decades: [bool; 2],
     [width, height]: [f32; 2],
-) -> Plot<'_> {
+) -> Plot<'a> {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let wide = |text: &str| theme::text_width(ui, text.to_owned(), font.clone());
     let y = AxisHints::new_y()
-        .label(beside(&y, height))
+        .label(beside(&y, height, wide))
         .min_thickness(width)
-        .label_spacing(shown_from(LABELS[1][1]))
-        .formatter(move |mark, _| label(mark, up));
-    let plot = plot.custom_y_axes(vec![y]);
-    let x = AxisHints::new_x().label(x);
-    if decades {
-        let x = x
-            .label_spacing(shown_from(LABELS[0][1]))
-            .formatter(|mark, _| power_label(mark.value));
-        return plot
-            .custom_x_axes(vec![x])
-            .x_grid_spacer(|input| powers(&input));
-    }
-    let x = x
-        .label_spacing(shown_from(LABELS[0][1]))
-        .formatter(move |mark, _| label(mark, across));
-    plot.custom_x_axes(vec![x])
-        .x_grid_spacer(uniform_grid_spacer(move |input| grid_x(&input, across)))
+        .label_spacing(shown_from(LABELS[1][1]));
+    let y = if decades[1] {
+        y.formatter(|mark, _| power_label(mark.value))
+    } else {
+        y.formatter(move |mark, _| label(mark, up))
+    };
+    let x = AxisHints::new_x()
+        .label(x)
+        .label_spacing(shown_from(LABELS[0][1]));
+    let (x, plot) = if decades[0] {
+        let x = x.formatter(|mark, _| power_label(mark.value));
+        (x, plot.x_grid_spacer(|input| powers(&input)))
+    } else {
+        let x = x.formatter(move |mark, _| label(mark, across));
+        let lines = uniform_grid_spacer(move |input| grid_x(&input, across));
+        (x, plot.x_grid_spacer(lines))
+    };
+    plot.custom_x_axes(vec![x]).custom_y_axes(vec![y])
 }
 
 /// Draws in a plot, and notes the numbers of its curves where they are asked for.
@@ -330,7 +358,7 @@ pub struct Pen<'p, 'd> {
     plot: &'p mut PlotUi<'d>,
     id: Id,
     axes: [String; 2],
-    decades: bool,
+    decades: [bool; 2],
     table: Option<Table>,
     /// What the keys can read, if they are here.
     curves: Option<Vec<Curve>>,
@@ -389,13 +417,8 @@ impl<'d> Pen<'_, 'd> {
         };
         let name = item.name().replace('\u{a0}', " ");
         let titles = distinct(table, &name, &self.axes);
-        let place = |p: &PlotPoint| {
-            if self.decades { 10_f64.powf(p.x) } else { p.x }
-        };
-        let values = [
-            points.iter().map(place).collect(),
-            points.iter().map(|p| p.y).collect(),
-        ];
+        let place = |p: &PlotPoint| plain(self.decades, [p.x, p.y]);
+        let values = [0, 1].map(|i| points.iter().map(|p| place(p)[i]).collect());
         table.columns.extend(titles.into_iter().zip(values));
     }
 }

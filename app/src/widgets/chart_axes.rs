@@ -1,6 +1,7 @@
 //! The labels of the axes of plots, and the lines of their grids.
 
 use egui_plot::{GridInput, GridMark};
+use hysteron_core::curve::extremes;
 use hysteron_core::uncertain::{Scale, power_of_ten, titled};
 
 use crate::language::tr_number;
@@ -17,9 +18,8 @@ const FINEST: f64 = 8.0;
 const LETTER: f64 = 7.5;
 const APART: f64 = 6.0;
 
-/// Width of a letter of the name of an axis, about, and what a name of y leaves free of the height of its plot, points.
-const LETTER_OF_NAME: f64 = 6.5;
-const ABOVE_AND_BELOW: f32 = 20.0;
+/// Height of the labels and of the name of x below a plot, points.
+const BELOW: f32 = 40.0;
 
 /// Numbers without a unit, or with one that takes no prefix, have a power of ten below this.
 const LEAST_PLAIN: f64 = 1e-3;
@@ -78,15 +78,26 @@ fn unit_of(axis: &str) -> &str {
     inner.map_or("", |(_, unit)| unit)
 }
 
-/// The name of y beside a plot of this height: its unit on a line of its own where both on one would
-/// lie over what is above and below.
-pub(super) fn beside(name: &str, height: f32) -> String {
-    let room = f64::from(height - ABOVE_AND_BELOW);
-    let longer = LETTER_OF_NAME * name.chars().count() as f64 > room;
-    match name.rsplit_once(" [").filter(|_| longer) {
-        Some((plain, unit)) => format!("{plain}\n[{unit}"),
-        None => name.to_owned(),
+/// The name of y beside a chart of this height, on more lines where one would lie over what is above and below; its
+/// unit stays together.
+pub(super) fn beside(name: &str, height: f32, width: impl Fn(&str) -> f32) -> String {
+    let room = height - BELOW;
+    if width(name) <= room {
+        return name.to_owned();
     }
+    let (plain, unit) = match name.rsplit_once(" [") {
+        Some((plain, unit)) => (plain, Some(format!("[{unit}"))),
+        None => (name, None),
+    };
+    let mut lines: Vec<String> = Vec::new();
+    for word in plain.split(' ').chain(unit.as_deref()) {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match (lines.last_mut(), longer) {
+            (Some(line), Some(longer)) if width(&longer) <= room => *line = longer,
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
 }
 
 /// Grid lines of x, whose labels stand beside each other: so far apart that none touches the next.
@@ -174,6 +185,15 @@ pub(super) fn powers(input: &GridInput) -> Vec<GridMark> {
 /// Decades that have grid lines, at most: what a plot spans before it has anything to show may be wild.
 const MOST_DECADES: i32 = 40;
 
+/// Decades that an axis must span for its values to be read better as powers.
+const FEWEST_DECADES: f64 = 1.0;
+
+/// Whether positive values are so far apart that a logarithmic axis shows them better.
+pub fn span_decades(values: impl Iterator<Item = f64>) -> bool {
+    let (low, high) = extremes(values);
+    low > 0.0 && (high / low).log10() >= FEWEST_DECADES
+}
+
 /// The power of ten at a line of [`powers`]; nothing at the fine ones.
 pub(super) fn power_label(exponent: f64) -> String {
     if exponent.fract() != 0.0 {
@@ -253,14 +273,24 @@ mod tests {
 
     #[test]
     fn a_name_that_is_longer_than_its_plot_is_high_has_its_unit_on_a_line_of_its_own() {
+        let width = |text: &str| 7.0 * text.chars().count() as f32;
         let long = "Mittelwert [× Rauschen]";
-        assert_eq!(beside(long, 150.0), "Mittelwert\n[× Rauschen]");
-        assert_eq!(beside(long, 200.0), long);
-        assert_eq!(beside("rms [× Rauschen]", 150.0), "rms [× Rauschen]");
-        assert_eq!(
-            beside("a name without a unit", 100.0),
-            "a name without a unit"
-        );
+        for (name, height, lines) in [
+            (long, 150.0, "Mittelwert\n[× Rauschen]"),
+            (long, 210.0, long),
+            ("x1 [mrad]", 82.0, "x1\n[mrad]"),
+            ("x1 [mrad]", 104.0, "x1 [mrad]"),
+            ("x1 - model [µrad]", 137.0, "x1 - model\n[µrad]"),
+            ("momentum [mN m s]", 150.0, "momentum\n[mN m s]"),
+            ("a name without a unit", 120.0, "a name\nwithout a\nunit"),
+            (
+                "its rate of change [1/s]",
+                150.0,
+                "its rate of\nchange [1/s]",
+            ),
+        ] {
+            assert_eq!(beside(name, height, width), lines, "{height}");
+        }
     }
 
     #[test]

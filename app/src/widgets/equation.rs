@@ -147,8 +147,12 @@ fn group(chars: &[char], at: &mut usize, close: Option<char>) -> Vec<Part> {
                 if spaced && chars.get(*at) == Some(&' ') {
                     *at += 1;
                 }
+                let from = *at;
                 let mut below = atom(chars, at, true);
                 if chars.get(*at) == Some(&'^') {
+                    // Of a power the brackets belong to what is raised.
+                    *at = from;
+                    below = atom(chars, at, false);
                     *at += 1;
                     below.push(Part::Raised(atom(chars, at, true)));
                 }
@@ -443,6 +447,9 @@ mod tests {
             ),
             ("as long as |input| <= c", "as long as |input| ≤ c"),
             ("y/K", "{y//K}"),
+            ("P(s) = 1/(s+1)^3", "P(s) = {1//(s+1)^{3}}"),
+            ("(s+2)^2/(s+1)", "{(s+2)^{2}//s+1}"),
+            ("a/x^2", "{a//x^{2}}"),
         ] {
             assert_eq!(read(&parse(text)), typeset);
         }

@@ -3,9 +3,9 @@
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::hunting::{self, HuntingData};
 use hysteron_core::on_off::{self, OnOffData, OnOffInput};
-use hysteron_core::scenario::AnyScenario;
+use hysteron_core::scenario::{AnyScenario, keys_of_run};
 
-use crate::tasks::{News, OnOffTask, ScenarioReport, ScenarioTask, ServoTask};
+use crate::tasks::{News, OnOffTask, ReadScenario, ScenarioReport, ScenarioTask, ServoTask};
 use crate::work::{Say, Work};
 
 impl Work for OnOffTask {
@@ -21,12 +21,26 @@ impl Work for ServoTask {
 }
 
 impl Work for ScenarioTask {
-    fn run(self, say: Say<'_, ScenarioReport>) {
+    fn run(self, say: Say<'_, ReadScenario>) {
         tell(read(&self.0), say);
     }
 }
 
-fn read(text: &str) -> Result<ScenarioReport, String> {
+fn read(text: &str) -> Result<ReadScenario, String> {
+    let report = report(text)?;
+    let shown: &[&str] = match &report {
+        ScenarioReport::Loop(_) => &["noise"],
+        ScenarioReport::OnOff(_) => &["initial"],
+        ScenarioReport::Servo(_) => &[],
+        // Its page runs it as the file says.
+        ScenarioReport::Drive(_) => &["duration", "start", "step"],
+    };
+    let mut left_out = keys_of_run(text);
+    left_out.retain(|key| !shown.contains(&key.as_str()));
+    Ok(ReadScenario { report, left_out })
+}
+
+fn report(text: &str) -> Result<ScenarioReport, String> {
     match AnyScenario::from_toml(text).map_err(|e| e.to_string())? {
         AnyScenario::Loop(scenario) => {
             let input = ExploreInput {

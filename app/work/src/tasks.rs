@@ -212,9 +212,18 @@ pub enum ScenarioReport {
     Drive(Box<DriveInput>),
 }
 
+/// A scenario as it was read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReadScenario {
+    /// What is in it.
+    pub report: ScenarioReport,
+    /// What its table `[run]` sets and a page that shows the cycle does not.
+    pub left_out: Vec<String>,
+}
+
 impl Task for ScenarioTask {
     const NAME: &'static str = "scenario";
-    type Report = ScenarioReport;
+    type Report = ReadScenario;
 }
 
 /// Tells what a measured relay test tells.

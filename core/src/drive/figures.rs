@@ -4,6 +4,7 @@ use super::{
     Adhesion, Body, Command, Contact, Direction, Drive, DriveInput, DriveRun, EventKind, Summary,
     VelocityRelay, drifting_cycle, engaged_drift,
 };
+use crate::count::counted;
 use crate::figures::{Check, digits};
 use crate::relay::Relay;
 
@@ -213,7 +214,10 @@ fn hands_its_momentum_over(input: &DriveInput, run: &DriveRun) -> Vec<Check> {
     let widest = widest.fold(0.0, f64::max);
     vec![
         check(
-            format!("{} impacts at the ends of the gap", run.impacts()),
+            format!(
+                "{} at the ends of the gap",
+                counted(run.impacts(), "impact")
+            ),
             run.impacts() > 0,
         ),
         check(
@@ -359,7 +363,7 @@ fn changes_its_drift_at_the_ends(
     }
     let count = summary.traverses.len();
     all.push(check(
-        format!("it crosses the gap {count} times"),
+        format!("it crosses the gap {}", counted(count, "time")),
         count >= 2,
     ));
     let mean = summary.traverses.iter().map(|t| t.travel).sum::<f64>() / count.max(1) as f64;

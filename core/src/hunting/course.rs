@@ -3,6 +3,7 @@
 use super::runge_kutta::step;
 use super::servo::Servo;
 use crate::root::illinois;
+use crate::simulate::{Noise, NoiseAlong};
 
 /// Accuracy of a step, as a share of the scales of the motion.
 const TOLERANCE: f64 = 1e-11;
@@ -33,6 +34,15 @@ pub(super) struct Place {
     pub integral: f64,
     /// Position behind the play.
     pub w: f64,
+    /// By how much the controller sees that wrong; 0 without noise.
+    pub noise: f64,
+}
+
+impl Place {
+    /// The position that the controller sees.
+    pub fn seen(&self) -> f64 {
+        self.w + self.noise
+    }
 }
 
 /// What ended a piece of the motion.
@@ -61,6 +71,7 @@ pub(super) struct Course<'a> {
     steps: usize,
     /// Size of positions, for the accuracy.
     size: f64,
+    noise: Option<NoiseAlong>,
 }
 
 impl<'a> Course<'a> {
@@ -73,6 +84,7 @@ impl<'a> Course<'a> {
             h: 0.01 * servo.typical_time(),
             steps: 0,
             size,
+            noise: None,
         };
         if place.v == 0.0 {
             course.set_off();
@@ -82,9 +94,23 @@ impl<'a> Course<'a> {
         course
     }
 
+    /// A servo at rest at a place, with noise on the position that its controller sees.
+    pub fn in_noise(servo: &'a Servo, place: Place, size: f64, noise: Option<Noise>) -> Self {
+        let noise = noise.map(|noise| NoiseAlong::new(noise, 0));
+        let seen = noise.as_ref().map_or(0.0, |noise| noise.at(0.0));
+        let place = Place {
+            noise: seen,
+            ..place
+        };
+        Self {
+            noise,
+            ..Self::new(servo, place, size)
+        }
+    }
+
     /// Force on a motor at rest, but for friction.
     fn force(&self, place: &Place) -> f64 {
-        let u = self.servo.asked(place.w, place.v, place.integral);
+        let u = self.servo.asked(place.seen(), place.v, place.integral);
         self.servo.limited(u) - self.servo.cogging(place.x)
     }
 
@@ -98,10 +124,20 @@ impl<'a> Course<'a> {
 
     /// Moves on to the next event, at most to `until` s.
     pub fn advance(&mut self, until: f64) -> End {
-        if self.way == 0.0 {
-            self.stick(until)
+        let mut slope = 0.0;
+        let mut until = until;
+        if let Some(noise) = &mut self.noise {
+            noise.go_to(self.now);
+            self.place.noise = noise.at(self.now);
+            slope = noise.slope();
+            until = until.min(noise.end());
+        }
+        if self.way != 0.0 {
+            self.slip(until, slope)
+        } else if self.noise.is_some() {
+            self.stick_in_noise(until, slope)
         } else {
-            self.slip(until)
+            self.stick(until)
         }
     }
 
@@ -139,8 +175,44 @@ impl<'a> Course<'a> {
         End::Breakaway
     }
 
-    /// Moves in one direction, until it stands or the time is up.
-    fn slip(&mut self, until: f64) -> End {
+    /// The same while the noise moves by `slope` a second, which makes a parabola of the output that is asked for.
+    fn stick_in_noise(&mut self, until: f64, slope: f64) -> End {
+        let (servo, place) = (self.servo, self.place);
+        let c = &servo.controller;
+        let asked = servo.asked(place.seen(), 0.0, place.integral);
+        let rate = servo.integral_rate(place.seen(), 0.0, place.integral);
+        let parabola = [
+            asked,
+            rate - c.proportional * slope,
+            -0.5 * c.integral * slope,
+        ];
+        let cogging = servo.cogging(place.x);
+        let breaks = |side: f64| {
+            let needed = side * servo.friction.breakaway() + cogging;
+            let reachable = servo.limited(needed) == needed;
+            // How far beyond what friction holds.
+            let [start, slope, bend] = parabola;
+            let beyond = [side * (start - needed), side * slope, side * bend];
+            Some(side).zip(first_above(beyond).filter(|_| reachable))
+        };
+        let both = [1.0, -1.0].into_iter().filter_map(breaks);
+        let first = both.min_by(|a, b| a.1.total_cmp(&b.1));
+        let left = until - self.now;
+        let broken = first.filter(|(_, wait)| *wait <= left);
+        let wait = broken.map_or(left, |(_, wait)| wait);
+        self.place.integral += wait * (rate - 0.5 * c.integral * slope * wait);
+        self.place.noise += slope * wait;
+        let Some((side, _)) = broken else {
+            self.now = until;
+            return End::Time;
+        };
+        self.now += wait;
+        self.way = side;
+        End::Breakaway
+    }
+
+    /// Moves in one direction, until it stands or the time is up, while the noise moves by `noise` a second.
+    fn slip(&mut self, until: f64, noise: f64) -> End {
         let way = self.way;
         loop {
             self.steps += 1;
@@ -152,8 +224,15 @@ impl<'a> Course<'a> {
             if left <= 0.0 {
                 return End::Time;
             }
-            let slip = Slip::new(self.servo, way, &mut self.place);
-            let from = [self.place.x, self.place.v, self.place.integral];
+            let slip = Slip::new(self.servo, way, noise, &mut self.place);
+            let Place {
+                x,
+                v,
+                integral,
+                noise: seen,
+                ..
+            } = self.place;
+            let from = [x, v, integral, seen];
             let (mut h, mut to) = self.step(&slip, &from, left);
             let at = |h: f64| step(&|y| slip.rate(y), &from, h).0;
             let mut stands = way * to[1] <= 0.0 && way * from[1] > 0.0;
@@ -176,8 +255,14 @@ impl<'a> Course<'a> {
             } else {
                 slip.behind(to[0])
             };
-            let [x, v, integral] = to;
-            self.place = Place { x, v, integral, w };
+            let [x, v, integral, noise] = to;
+            self.place = Place {
+                x,
+                v,
+                integral,
+                w,
+                noise,
+            };
             if stands || failed {
                 self.set_off();
                 return End::Standstill;
@@ -186,7 +271,7 @@ impl<'a> Course<'a> {
     }
 
     /// A step of `left` s at most that is accurate enough, and where it leads.
-    fn step(&mut self, slip: &Slip<'_>, from: &[f64; 3], left: f64) -> (f64, [f64; 3]) {
+    fn step(&mut self, slip: &Slip<'_>, from: &[f64; 4], left: f64) -> (f64, [f64; 4]) {
         let typical = self.servo.typical_time();
         let reach = self.size.max(from[0].abs()).max(from[1].abs() * typical);
         let stiffness = self.servo.controller.proportional;
@@ -212,13 +297,15 @@ impl<'a> Course<'a> {
 struct Slip<'a> {
     servo: &'a Servo,
     way: f64,
+    /// How the noise moves, 1/s.
+    noise: f64,
     along: bool,
     fixed: f64,
 }
 
 impl<'a> Slip<'a> {
     /// The motion from a place, of which what is behind the play is set right where it goes along.
-    fn new(servo: &'a Servo, way: f64, place: &mut Place) -> Self {
+    fn new(servo: &'a Servo, way: f64, noise: f64, place: &mut Place) -> Self {
         let taken = place.x - way * servo.half_gap;
         let along = way * (taken - place.w) >= 0.0;
         if along {
@@ -227,6 +314,7 @@ impl<'a> Slip<'a> {
         Self {
             servo,
             way,
+            noise,
             along,
             fixed: place.w,
         }
@@ -250,10 +338,10 @@ impl<'a> Slip<'a> {
         self.way * (self.taken(x) - self.fixed)
     }
 
-    /// How position, velocity and integral change.
-    fn rate(&self, y: &[f64; 3]) -> [f64; 3] {
-        let ([x, v, integral], servo) = (*y, self.servo);
-        let w = self.behind(x);
+    /// How position, velocity, integral and noise change.
+    fn rate(&self, y: &[f64; 4]) -> [f64; 4] {
+        let ([x, v, integral, noise], servo) = (*y, self.servo);
+        let w = self.behind(x) + noise;
         let u = servo.limited(servo.asked(w, v, integral));
         let dry = self.way * servo.friction.moving(v);
         let force = u - servo.viscous * v - dry - servo.cogging(x);
@@ -261,6 +349,23 @@ impl<'a> Slip<'a> {
             v,
             force / servo.inertia,
             servo.integral_rate(w, v, integral),
+            self.noise,
         ]
     }
+}
+
+/// When `a + b t + c t^2`, which is not above 0 at first, rises through 0; at once where it is there and rises.
+fn first_above([a, b, c]: [f64; 3]) -> Option<f64> {
+    if a >= 0.0 && (b > 0.0 || (b == 0.0 && c > 0.0)) {
+        return Some(0.0);
+    }
+    let a = a.min(0.0);
+    // The root at which it rises, written so that no digits are lost.
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let time = if b > 0.0 {
+        -2.0 * a / (b + root)
+    } else {
+        (root - b) / (2.0 * c)
+    };
+    (time.is_finite() && time > 0.0).then_some(time)
 }

@@ -263,6 +263,7 @@ impl Map<'_> {
             v: 0.0,
             integral: integral.unwrap_or_default(),
             w: w.unwrap_or_default(),
+            noise: 0.0,
         }
     }
 

@@ -16,6 +16,6 @@ mod view;
 
 pub use cycle::{HuntingCycle, Settled, settled};
 pub use describing_function::{HuntingBalance, describing_function, friction_gain};
-pub use run::{HuntingRun, run};
+pub use run::{HuntingError, HuntingRun, run};
 pub use servo::{Cogging, Controller, Friction, Servo, ServoError};
 pub use view::{HuntingData, view};

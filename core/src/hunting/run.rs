@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::course::{Course, End, Place};
 use super::servo::{Servo, ServoError};
+use crate::simulate::{Noise, Options, SimulateError};
 
 /// A run from rest at 0, sampled.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -16,7 +17,7 @@ pub struct HuntingRun {
     pub position: Vec<f64>,
     /// Its velocity, rad/s (or m/s).
     pub velocity: Vec<f64>,
-    /// Position behind the play, which the controller sees.
+    /// Position behind the play, which the controller sees, without the noise.
     pub measured: Vec<f64>,
     /// Intervals in which the motor stuck, s.
     pub stuck: Vec<[f64; 2]>,
@@ -24,8 +25,16 @@ pub struct HuntingRun {
     pub cut: bool,
 }
 
-/// Samples that a run may have.
-const MAX_SAMPLES: f64 = 10_000_000.0;
+/// Why a servo cannot be run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum HuntingError {
+    /// The servo.
+    #[error("[servo]: {0}")]
+    Servo(#[from] ServoError),
+    /// Duration, step or noise.
+    #[error("[run]: {0}")]
+    Run(#[from] SimulateError),
+}
 
 /// At rest at 0, in the middle of the play.
 pub(super) fn at_rest(servo: &Servo) -> (Place, f64) {
@@ -34,32 +43,31 @@ pub(super) fn at_rest(servo: &Servo) -> (Place, f64) {
         v: 0.0,
         integral: 0.0,
         w: 0.0,
+        noise: 0.0,
     };
     let size = servo.reference.abs() + servo.half_gap;
     (place, if size > 0.0 { size } else { 1.0 })
 }
 
-/// Runs a servo for `duration` s with samples every `step` s.
+/// Runs a servo for `duration` s with samples every `step` s; with noise on the position that the controller sees, if there
+/// is some (the velocity that it sees is that of the motor).
 ///
 /// # Errors
-/// What of the servo or of these times cannot be.
-pub fn run(servo: &Servo, duration: f64, step: f64) -> Result<HuntingRun, ServoError> {
+/// What of the servo, of these times or of the noise cannot be.
+pub fn run(
+    servo: &Servo,
+    duration: f64,
+    step: f64,
+    noise: Option<Noise>,
+) -> Result<HuntingRun, HuntingError> {
     servo.validate()?;
-    for (name, value) in [("duration", duration), ("step", step)] {
-        if !(value.is_finite() && value > 0.0) {
-            let range = "above 0 s";
-            return Err(ServoError { name, value, range });
-        }
-    }
-    if duration / step > MAX_SAMPLES {
-        return Err(ServoError {
-            name: "number of samples",
-            value: duration / step,
-            range: "at most 10,000,000: a shorter duration or a longer step",
-        });
-    }
+    let options = Options {
+        noise,
+        ..Options::new(duration, step)
+    };
+    options.check(0)?;
     let (place, size) = at_rest(servo);
-    let mut course = Course::new(servo, place, size);
+    let mut course = Course::in_noise(servo, place, size, noise);
     let mut run = HuntingRun::default();
     let mut stuck_since = (course.way == 0.0).then_some(0.0);
     for k in 0..=(duration / step) as u64 {
@@ -80,7 +88,7 @@ pub fn run(servo: &Servo, duration: f64, step: f64) -> Result<HuntingRun, ServoE
             }
         }
         let place = course.place;
-        let asked = servo.asked(place.w, place.v, place.integral);
+        let asked = servo.asked(place.seen(), place.v, place.integral);
         run.time.push(until);
         run.input.push(servo.limited(asked));
         run.position.push(place.x);

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::cycle::{HuntingCycle, settled};
 use super::describing_function::{HuntingBalance, describing_function};
-use super::run::{HuntingRun, run};
-use super::servo::{Servo, ServoError};
+use super::run::{HuntingError, HuntingRun, run};
+use super::servo::Servo;
 
 /// What there is to see.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -38,14 +38,14 @@ const SAMPLES: f64 = 3000.0;
 ///
 /// # Errors
 /// What of the servo cannot be.
-pub fn view(servo: &Servo) -> Result<HuntingData, ServoError> {
+pub fn view(servo: &Servo) -> Result<HuntingData, HuntingError> {
     let settled = settled(servo)?;
     let typical = servo.typical_time();
     let cycle = settled.exact.as_ref().or(settled.simulated.as_ref());
     let periods = cycle.map_or(0.0, |c| PERIODS * c.period);
     let duration = (TIMES * typical + periods).min(LONGEST * typical);
     Ok(HuntingData {
-        run: run(servo, duration, duration / SAMPLES)?,
+        run: run(servo, duration, duration / SAMPLES, None)?,
         exact: settled.exact,
         simulated: settled.simulated,
         error_at_rest: settled.error_at_rest,

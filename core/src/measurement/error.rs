@@ -1,6 +1,7 @@
 //! Why a file cannot be imported, in one line.
 
 use super::unit::ACCEPTED;
+use crate::count::counted;
 
 /// Why a file cannot be imported. Shown as one line: file, line, column, what was expected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -44,10 +45,6 @@ fn place(line: Option<usize>, column: Option<&str>) -> String {
     let line = line.map_or_else(String::new, |line| format!(", line {line}"));
     let column = column.map_or_else(String::new, |column| format!(", column {column}"));
     line + &column
-}
-
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }
 
 impl Problem {
@@ -152,7 +149,7 @@ pub enum Problem {
         "rotational and translational units are mixed ({one} and {other}); use N m with rad, or N with m"
     )]
     Mixed { one: String, other: String },
-    #[error("{found} field{}, but the header has {expected}{hint}", plural(*found))]
+    #[error("{}, but the header has {expected}{hint}", counted(*found, "field"))]
     Ragged {
         found: usize,
         expected: usize,
@@ -170,6 +167,6 @@ pub enum Problem {
         "time does not increase ({now} s after {before} s); rows must be in order of time, each time once"
     )]
     TimeOrder { before: String, now: String },
-    #[error("only {found} row{} of numbers; at least {expected} are needed to tell noise from signal", plural(*found))]
+    #[error("only {} of numbers; at least {expected} are needed to tell noise from signal", counted(*found, "row"))]
     TooShort { found: usize, expected: usize },
 }

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::header::{Field, Role, addresses};
 
-/// First values that are kept of a column.
+/// First values that are kept of a column, and stretches of which its course is kept, at most: an even number.
 const FIRST: usize = 3;
+const STRETCHES: usize = 64;
 
 /// A column of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,6 +34,11 @@ pub struct Numbers {
     pub range: Option<[f64; 2]>,
     /// Whether they were dates or times of day, which count in s from the first.
     pub dates: bool,
+    /// How they go: the least and the largest of stretches of equal length one after another, of which the last may be
+    /// shorter; nothing where none of a stretch is finite.
+    pub course: Vec<Option<[f64; 2]>>,
+    /// How often the length of a stretch was doubled.
+    doubled: u32,
     /// Whether one of them is not larger than the one before.
     turns: bool,
     last: Option<f64>,
@@ -45,6 +51,7 @@ impl Numbers {
     }
 
     pub(super) fn take(&mut self, value: f64) {
+        self.follow(value);
         self.count += 1;
         if self.first.len() < FIRST {
             self.first.push(value);
@@ -55,6 +62,32 @@ impl Numbers {
         }
         self.turns |= !self.last.is_none_or(|last| value > last);
         self.last = Some(value);
+    }
+
+    /// Takes the next value into the course; where it is full, two stretches become one.
+    fn follow(&mut self, value: f64) {
+        if self.count.is_multiple_of(1 << self.doubled) {
+            if self.course.len() == STRETCHES {
+                let pairs = self.course.chunks(2);
+                self.course = pairs
+                    .map(|pair| both(pair[0], pair[pair.len() - 1]))
+                    .collect();
+                self.doubled += 1;
+            }
+            self.course.push(None);
+        }
+        let one = value.is_finite().then_some([value; 2]);
+        if let Some(last) = self.course.last_mut() {
+            *last = both(*last, one);
+        }
+    }
+}
+
+/// The least and the largest of two stretches.
+fn both(one: Option<[f64; 2]>, other: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    match (one, other) {
+        (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
+        (one, other) => one.or(other),
     }
 }
 
@@ -72,4 +105,37 @@ pub(super) fn addressed(seen: Vec<(Field, Numbers)>) -> Vec<FoundColumn> {
             numbers,
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn course(values: impl IntoIterator<Item = f64>) -> Vec<Option<[f64; 2]>> {
+        let mut numbers = Numbers::default();
+        values.into_iter().for_each(|v| numbers.take(v));
+        numbers.course
+    }
+
+    #[test]
+    fn the_course_keeps_what_is_least_and_largest_however_long_a_column_is() {
+        assert_eq!(course([]), []);
+        assert_eq!(course([2.0, f64::NAN]), [Some([2.0; 2]), None]);
+        for count in [64_usize, 65, 1000, 12_345] {
+            let course = course((0..count).map(|k| if k == 40 { -1.0 } else { k as f64 }));
+            assert!(
+                (STRETCHES / 2..=STRETCHES).contains(&course.len()),
+                "{count}"
+            );
+            let all = course.iter().copied().fold(None, both);
+            assert_eq!(all, Some([-1.0, (count - 1) as f64]), "{count}");
+            // One after another, without a gap.
+            let highs = course.iter().flatten().map(|[_, high]| *high);
+            let begins = highs.filter(|high| *high >= 0.0);
+            assert!(
+                begins.clone().zip(begins.skip(1)).all(|(a, b)| a < b),
+                "{count}"
+            );
+        }
+    }
 }

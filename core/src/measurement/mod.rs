@@ -41,4 +41,4 @@ pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
 pub use period::{Period, PeriodError};
 pub use record::{Channel, MIN_SAMPLES, Measurement};
 pub use table::{columns, import, import_csv};
-pub use unit::{COUNTS, needs_torque_constant, usual_units};
+pub use unit::{COUNTS, constant_per, needs_torque_constant, usual_units};

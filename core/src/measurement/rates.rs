@@ -32,7 +32,7 @@ pub(super) fn contradiction(time: &[f64], outputs: &[Channel]) -> Option<String>
     let (x, v) = (&x.name, &v.name);
     if ratio < 0.0 && (ratio + 1.0).abs() < TOLERANCE {
         return Some(format!(
-            "{v} runs against {x}: turn the sign of one of them."
+            "{v} runs against {x}: flip the sign of one of them."
         ));
     }
     let mistaken = |size: f64| {

@@ -237,7 +237,7 @@ pub(super) fn resembles(role: Role, name: &str) -> bool {
 }
 
 /// The words of a name, such as `motor` and `pos` in `motor_pos`, or `u` and `Est` in `uEst`.
-pub(super) fn words(name: &str) -> impl DoubleEndedIterator<Item = &str> {
+fn words(name: &str) -> impl DoubleEndedIterator<Item = &str> {
     let parts = name.split(|c: char| !c.is_alphanumeric() && c != '/');
     parts.filter(|w| !w.is_empty()).flat_map(|part| {
         // The first small letter before a capital one ends a word.

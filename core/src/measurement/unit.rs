@@ -72,7 +72,14 @@ pub const COUNTS: &str = "counts";
 
 /// Whether this is a unit of a current, a voltage or a command, which a torque constant makes a torque or a force.
 pub fn needs_torque_constant(unit: &str) -> bool {
-    parse_input(unit).is_some_and(|(measures, _)| measures.needs_torque_constant())
+    constant_per(unit).is_some()
+}
+
+/// What a torque constant is given by where the input has this unit, such as the `A` of `N m/A` for `mA`; nothing where
+/// it needs none.
+pub fn constant_per(unit: &str) -> Option<&'static str> {
+    let (measures, _) = parse_input(unit)?;
+    measures.needs_torque_constant().then(|| measures.si())
 }
 
 /// Quantity and factor of a unit that the input of a drive may have: also of a command, which is no physical one.
@@ -93,10 +100,7 @@ pub(super) fn parse_input(text: &str) -> Option<(Measures, f64)> {
 /// much).
 pub(super) fn parse(text: &str) -> Option<(Measures, f64)> {
     if let Some((name, resolution)) = text.split_once([',', ';', ':'])
-        && matches!(
-            name.trim().to_lowercase().as_str(),
-            "count" | "counts" | "cnt" | "inc" | "increments"
-        )
+        && is_bare_counts(name)
     {
         return counts(resolution.trim());
     }
@@ -107,7 +111,7 @@ pub(super) fn parse(text: &str) -> Option<(Measures, f64)> {
 pub(super) fn is_bare_counts(text: &str) -> bool {
     matches!(
         text.trim().to_lowercase().as_str(),
-        "count" | "counts" | "cnt" | "inc" | "increments"
+        "count" | "counts" | "cnt" | "inc" | "increments" | "tick" | "ticks" | "inkremente"
     )
 }
 
@@ -138,10 +142,10 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         .map(|c| if c == 'µ' || c == 'μ' { 'u' } else { c })
         .collect();
     let exact = match compact.as_str() {
-        "mNm" => Some((Torque, 1e-3)),
+        "mNm" | "mnm" => Some((Torque, 1e-3)),
         "MNm" => Some((Torque, 1e6)),
         "mN" => Some((Force, 1e-3)),
-        "mA" => Some((Current, 1e-3)),
+        "mA" | "ma" => Some((Current, 1e-3)),
         "mV" => Some((Voltage, 1e-3)),
         _ => None,
     };
@@ -158,8 +162,8 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "nm" | "n.m" | "n-m" | "newtonmetre" | "newtonmeter" => (Torque, 1.0),
         "knm" => (Torque, 1e3),
         "ncm" => (Torque, 1e-2),
-        "a" | "amp" | "ampere" => (Current, 1.0),
-        "v" | "volt" => (Voltage, 1.0),
+        "a" | "amp" | "amps" | "ampere" => (Current, 1.0),
+        "v" | "volt" | "volts" => (Voltage, 1.0),
         "n" | "newton" => (Force, 1.0),
         "kn" => (Force, 1e3),
         "rad" | "radian" | "radians" => (Angle, 1.0),
@@ -172,8 +176,10 @@ fn plain(text: &str) -> Option<(Measures, f64)> {
         "um" => (Length, 1e-6),
         "rad/s" | "rad/sec" | "rads^-1" | "rads-1" => (AngularVelocity, 1.0),
         "mrad/s" => (AngularVelocity, 1e-3),
-        "deg/s" | "deg/sec" | "°/s" => (AngularVelocity, PI / 180.0),
-        "rpm" | "rev/min" | "1/min" | "min-1" | "min^-1" => (AngularVelocity, TAU / 60.0),
+        "deg/s" | "deg/sec" | "dps" | "°/s" => (AngularVelocity, PI / 180.0),
+        "rpm" | "rev/min" | "u/min" | "upm" | "1/min" | "min-1" | "min^-1" => {
+            (AngularVelocity, TAU / 60.0)
+        }
         "rev/s" | "rps" => (AngularVelocity, TAU),
         "m/s" => (Speed, 1.0),
         "mm/s" => (Speed, 1e-3),
@@ -208,6 +214,17 @@ mod tests {
             assert!(needs_torque_constant(unit), "{unit}");
         }
         assert!(!needs_torque_constant("N m") && !needs_torque_constant("degC"));
+        for (unit, per) in [
+            ("mA", "A"),
+            ("V", "V"),
+            ("percent", "%"),
+            ("ticks", "counts"),
+        ] {
+            let per_one = constant_per(unit).unwrap_or_default();
+            assert_eq!(per_one, per, "{unit}");
+            let constant = format!("2 mN m/{per_one}").parse();
+            assert!(constant.is_ok_and(|c: crate::measurement::TorqueConstant| c.value() == 2e-3));
+        }
     }
 
     #[test]
@@ -246,6 +263,18 @@ mod tests {
             std::f64::consts::TAU / 4096.0,
         );
         check("mA", Measures::Current, 1e-3);
+        check("mnm", Measures::Torque, 1e-3);
+        check("MNm", Measures::Torque, 1e6);
+        check(
+            "ticks, 4096/rev",
+            Measures::Angle,
+            std::f64::consts::TAU / 4096.0,
+        );
+        check(
+            "U/min",
+            Measures::AngularVelocity,
+            std::f64::consts::TAU / 60.0,
+        );
         assert!(
             parse("furlong").is_none()
                 && parse("counts, 0/rev").is_none()

@@ -7,7 +7,7 @@ use super::plant::Motion;
 use super::relay::{OnOffRelay, Position};
 use super::run::{Cause, OnOffLoop, OnOffRun, Switch};
 use crate::simulate::series::{Curve, first_rise, is_resolved, value};
-use crate::simulate::{Cut, Flow, MAX_STEPS, State};
+use crate::simulate::{Cut, Flow, MAX_STEPS, Noise, NoiseAlong, State};
 
 /// Times are the same that differ by less than this share of the sampling time.
 const SAME_TICK: f64 = 1e-9;
@@ -27,6 +27,8 @@ pub(super) struct Course<'a> {
     pub now: f64,
     u: f64,
     pub position: Position,
+    /// Noise on the output that the controller sees.
+    noise: Option<NoiseAlong>,
     /// When it may switch again, while it may not.
     held_until: Option<f64>,
     /// Changes of the input on their way: when, and to what.
@@ -55,6 +57,7 @@ impl<'a> Course<'a> {
             now: 0.0,
             u,
             position,
+            noise: None,
             held_until: None,
             pending: VecDeque::new(),
             level: 0,
@@ -66,6 +69,20 @@ impl<'a> Course<'a> {
                 ..OnOffRun::default()
             },
         }
+    }
+
+    /// Adds noise to what the controller sees, from the start on.
+    pub fn add_noise(&mut self, noise: Noise) {
+        self.noise = Some(NoiseAlong::new(noise, 0));
+        self.position = self.relay.first(self.seen());
+        self.u = self.relay.output(self.position);
+        self.out.input = vec![[self.now, self.u]];
+    }
+
+    /// The output as the controller sees it now.
+    fn seen(&self) -> f64 {
+        let noise = self.noise.as_ref().map_or(0.0, |noise| noise.at(self.now));
+        self.motion.output(&self.x) + noise
     }
 
     /// The same just after a switch to `position`, with what is on its way.
@@ -116,6 +133,7 @@ impl<'a> Course<'a> {
             self.pending.front().map(|change| change.0),
             self.clock.map(|clock| self.ticks as f64 * clock),
             self.held_until.filter(|_| self.clock.is_none()),
+            (self.noise.as_ref().map(NoiseAlong::end)).filter(|_| self.clock.is_none()),
             self.record.map(|(step, count)| count as f64 * step),
         ];
         due.into_iter()
@@ -124,8 +142,11 @@ impl<'a> Course<'a> {
             .fold(end, f64::min)
     }
 
-    /// Lets changes of the input arrive.
+    /// Lets changes of the input arrive, and the noise go on.
     fn arrive(&mut self) {
+        if let Some(noise) = &mut self.noise {
+            noise.go_to(self.now);
+        }
         let tolerance = match self.motion {
             Motion::Flow(_) => 0.0,
             Motion::Steps(plant) => SAME_TICK * plant.sampling,
@@ -145,7 +166,7 @@ impl<'a> Course<'a> {
 
     /// Looks at the output where it is time to: at a sampling instant, or at the end of a hold.
     fn decide(&mut self) {
-        let y = self.motion.output(&self.x);
+        let y = self.seen();
         if let Some(clock) = self.clock {
             if self.now < self.ticks as f64 * clock {
                 return;
@@ -227,7 +248,15 @@ impl<'a> Course<'a> {
         let whole = span >= h;
         let end = if whole { 1.0 } else { 2.0 * span / h - 1.0 };
         let looks = self.clock.is_none() && self.held_until.is_none();
-        let crossing = looks.then(|| self.crossing(&mut curve, end)).flatten();
+        let crossing = match &self.noise {
+            _ if !looks => None,
+            None => self.crossing(&mut curve, end),
+            Some(noise) => {
+                let mut seen = *curve.coefficients();
+                noise.add_to(&mut seen, self.now, h);
+                self.crossing(&mut Curve::new(seen), end)
+            }
+        };
         let z = crossing.map_or(end, |(z, _)| z);
         self.watch(&mut curve, end, z);
         if crossing.is_none() && whole {
@@ -242,8 +271,8 @@ impl<'a> Course<'a> {
                 limit
             };
         }
-        let y = flow.output(&self.x, 0);
-        self.note(y);
+        self.note(flow.output(&self.x, 0));
+        let y = self.seen();
         if let Some((_, rising)) = crossing {
             let (next, cause) = if rising {
                 (self.relay.next(self.position, true, y), Cause::Rising)

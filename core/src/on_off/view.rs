@@ -141,7 +141,7 @@ pub fn view(input: &OnOffInput) -> Result<OnOffData, SimulateError> {
         c.period * PERIODS.max(SWITCHES / c.positions.len() as f64)
     });
     let duration = duration.min(LONGEST * typical);
-    let run = run(&on_off, duration, duration / SAMPLES)?;
+    let run = run(&on_off, duration, duration / SAMPLES, None)?;
     let describing_function = describing_function(&on_off);
     let drawn = curves(&on_off, describing_function.as_deref().unwrap_or_default());
     Ok(OnOffData {

@@ -1,5 +1,7 @@
 //! A file of any kind.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
@@ -8,6 +10,17 @@ use super::on_off::{OnOffScenario, is_on_off};
 use super::relay_loop::Scenario;
 use super::servo::ServoScenario;
 use crate::drive::{DriveFile, DriveInput};
+
+/// The keys that a file sets in its table `[run]`, in the order of the alphabet; none of a text that is no TOML.
+pub fn keys_of_run(text: &str) -> Vec<String> {
+    #[derive(Default, Deserialize)]
+    struct Tables {
+        #[serde(default)]
+        run: BTreeMap<String, IgnoredAny>,
+    }
+    let tables: Tables = toml::from_str(text).unwrap_or_default();
+    tables.run.into_keys().collect()
+}
 
 /// What a file can hold.
 #[derive(Clone, Debug, PartialEq)]

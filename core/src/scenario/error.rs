@@ -40,9 +40,6 @@ pub enum ScenarioError {
     /// The run.
     #[error("[run]: {0}")]
     Run(SimulateError),
-    /// Noise on a loop that knows none.
-    #[error("[run]: noise is for a relay without dead zone, reference, minimum times and sampling")]
-    Noise,
     /// A servo.
     #[error("[servo]: {0}")]
     Servo(ServoError),

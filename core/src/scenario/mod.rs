@@ -18,7 +18,7 @@
 //! duration = 60.0                        # s
 //! step = 0.01                            # s; a two-thousandth of the duration if left out
 //! initial = [0.0, 0.0, 0.0]              # state; at rest if left out
-//! noise = { std_dev = 0.01, interval = 0.01, seed = 1 }
+//! noise = { std_dev = 0.01, interval = 0.01, seed = 1 }  # on the output that the relay sees; none if left out
 //! ```
 //!
 //! The relay may be an on-off controller as it is built, with one or more of:
@@ -49,7 +49,11 @@
 //! reference = 1.0                        # rad
 //! [run]
 //! duration = 10.0                        # s
+//! noise = { std_dev = 1e-4, interval = 0.01 }  # on the position that the controller sees; none if left out
 //! ```
+//!
+//! `[run]` is what `hysteron simulate` runs. *Explore* shows as much of a loop as its cycle needs: of `[run]` it takes the
+//! noise of a relay with two levels and the output at the start of an on-off controller, and says what it leaves out.
 //!
 //! With `[drive]` in place of `[plant]` it is a motor and a load with play between them, under a relay on
 //! the motor's velocity; see [`crate::drive`] for its parameters.
@@ -62,7 +66,7 @@ mod relay;
 mod relay_loop;
 mod servo;
 
-pub use any::AnyScenario;
+pub use any::{AnyScenario, keys_of_run};
 pub use error::ScenarioError;
 pub use on_off::OnOffScenario;
 pub use relay_loop::Scenario;

@@ -8,7 +8,8 @@ use super::error::{ScenarioError, located};
 use super::plant::PlantTable;
 use super::relay::RelayTable;
 use super::relay_loop::{RunTable, SAMPLES};
-use crate::on_off::{OnOffLoop, OnOffPlant};
+use crate::on_off::{OnOffLoop, OnOffPlant, OnOffRun, run};
+use crate::simulate::{Noise, SimulateError};
 
 /// A loop and how to run it.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +20,8 @@ pub struct OnOffScenario {
     pub duration: f64,
     /// Distance of its samples, s.
     pub step: f64,
+    /// Noise on the output that the controller sees.
+    pub noise: Option<Noise>,
 }
 
 /// Whether a file has a key that only an on-off controller or a plant in discrete time has.
@@ -78,21 +81,30 @@ impl OnOffScenario {
             let (plant, space) = file.plant.read()?;
             OnOffPlant::Continuous(plant, space)
         };
-        if file.run.noise.is_some() {
-            return Err(ScenarioError::Noise);
-        }
         let on_off = OnOffLoop {
             plant,
             relay: file.relay.on_off()?,
             initial: file.run.initial.map(DVector::from_vec),
         };
         on_off.validate().map_err(ScenarioError::Run)?;
-        let duration = file.run.duration;
+        let (duration, noise) = (file.run.duration, file.run.noise);
+        if let Some(noise) = noise {
+            noise.check(duration).map_err(ScenarioError::Run)?;
+        }
         let step = file.run.step.unwrap_or(duration / SAMPLES);
         Ok(Self {
             on_off,
             duration,
             step,
+            noise,
         })
+    }
+
+    /// Runs the loop as the file says.
+    ///
+    /// # Errors
+    /// What is wrong with its times.
+    pub fn run(&self) -> Result<OnOffRun, SimulateError> {
+        run(&self.on_off, self.duration, self.step, self.noise)
     }
 }

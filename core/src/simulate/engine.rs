@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use super::flow::{Flow, State};
-use super::noise::{Piece, Source};
+use super::noise::NoiseAlong;
 use super::series::{Curve, TERMS, first_rise, is_resolved, power_derivative, value};
 use super::sliding::Sliding;
 use super::trajectory::{Cut, Trajectory};
@@ -32,7 +32,7 @@ struct Channel {
     /// Delay from switch to input, dead time included, s.
     lag: f64,
     high: bool,
-    noise: Option<(Source, Piece, f64)>,
+    noise: Option<NoiseAlong>,
     swing: Option<[f64; 2]>,
     out: Trajectory,
 }
@@ -122,9 +122,7 @@ impl<'a> Engine<'a> {
     /// Adds noise to what the relays see.
     pub fn add_noise(&mut self, noise: super::Noise) {
         for (i, channel) in self.channels.iter_mut().enumerate() {
-            let mut source = Source::new(noise, i as u64);
-            let (piece, end) = source.piece();
-            channel.noise = Some((source, piece, end));
+            channel.noise = Some(NoiseAlong::new(noise, i as u64));
         }
     }
 
@@ -188,8 +186,8 @@ impl<'a> Engine<'a> {
                 limit = limit.min(change.time);
             }
             for channel in &self.channels {
-                if let Some((_, _, piece_end)) = &channel.noise {
-                    limit = limit.min(*piece_end);
+                if let Some(noise) = &channel.noise {
+                    limit = limit.min(noise.end());
                 }
             }
             if limit > self.now {
@@ -243,10 +241,8 @@ impl<'a> Engine<'a> {
             self.record_input(change.channel);
         }
         for channel in &mut self.channels {
-            if let Some((source, piece, end)) = &mut channel.noise
-                && *end <= self.now
-            {
-                (*piece, *end) = source.piece();
+            if let Some(noise) = &mut channel.noise {
+                noise.go_to(self.now);
             }
         }
     }
@@ -327,11 +323,9 @@ impl<'a> Engine<'a> {
     fn analyse(&self, i: usize, curve: &mut Curve, h: f64, step: &mut Step) {
         let channel = &self.channels[i];
         let mut noisy;
-        let seen = if let Some((_, piece, _)) = &channel.noise {
-            let half = 0.5 * h * piece.slope;
+        let seen = if let Some(noise) = &channel.noise {
             let mut c = *curve.coefficients();
-            c[0] += piece.value + piece.slope * (self.now - piece.start) + half;
-            c[1] += half;
+            noise.add_to(&mut c, self.now, h);
             noisy = Curve::new(c);
             &mut noisy
         } else {
@@ -389,7 +383,7 @@ impl<'a> Engine<'a> {
             channel.out.falls.push(now);
         }
         let value = channel.relay.output(channel.high);
-        let noise_slope = channel.noise.as_ref().map_or(0.0, |n| n.1.slope);
+        let noise_slope = channel.noise.as_ref().map_or(0.0, NoiseAlong::slope);
         if channel.lag > 0.0 {
             let change = Change {
                 time: now + channel.lag,
@@ -422,7 +416,7 @@ impl<'a> Engine<'a> {
             return false;
         };
         let relay = self.channels[0].relay;
-        let slope = self.channels[0].noise.as_ref().map_or(0.0, |n| n.1.slope);
+        let slope = (self.channels[0].noise.as_ref()).map_or(0.0, NoiseAlong::slope);
         let step = sliding.step(
             &self.x,
             slope,

@@ -17,6 +17,7 @@ pub use engine::MAX_STEPS;
 pub(crate) use engine::{Change, Engine};
 pub(crate) use flow::{Flow, State};
 pub use noise::Noise;
+pub(crate) use noise::NoiseAlong;
 pub use trajectory::{Cut, Trajectory};
 
 use crate::plant::{MAX_ORDER, Multivariable, PlantError, StateSpace};
@@ -57,13 +58,6 @@ impl Options {
     }
 
     pub(crate) fn check(&self, order: usize) -> Result<(), SimulateError> {
-        let fits = |name, value: f64, least: bool, range| {
-            if value.is_finite() && least {
-                Ok(())
-            } else {
-                Err(SimulateError::Option { name, value, range })
-            }
-        };
         fits("duration", self.duration, self.duration > 0.0, "above 0 s")?;
         if let Some(step) = self.step {
             fits("step", step, step > 0.0, "above 0 s")?;
@@ -75,24 +69,7 @@ impl Options {
             )?;
         }
         if let Some(noise) = self.noise {
-            fits(
-                "noise std_dev",
-                noise.std_dev,
-                noise.std_dev >= 0.0,
-                "0 or more",
-            )?;
-            fits(
-                "noise interval",
-                noise.interval,
-                noise.interval > 0.0,
-                "above 0 s",
-            )?;
-            fits(
-                "number of noise values",
-                self.duration / noise.interval,
-                self.duration / noise.interval <= MAX_SAMPLES as f64,
-                "at most 10,000,000: a shorter duration or a longer interval",
-            )?;
+            noise.check(self.duration)?;
         }
         if let Some(x) = &self.initial {
             if x.len() != order {
@@ -106,6 +83,38 @@ impl Options {
             }
         }
         Ok(())
+    }
+}
+
+impl Noise {
+    /// Checks it for a run of `duration` s.
+    pub(crate) fn check(self, duration: f64) -> Result<(), SimulateError> {
+        let Self {
+            std_dev, interval, ..
+        } = self;
+        fits("noise std_dev", std_dev, std_dev >= 0.0, "0 or more")?;
+        fits("noise interval", interval, interval > 0.0, "above 0 s")?;
+        let values = duration / interval;
+        fits(
+            "number of noise values",
+            values,
+            values <= MAX_SAMPLES as f64,
+            "at most 10,000,000: a shorter duration or a longer interval",
+        )
+    }
+}
+
+/// An option that is a number and what it must be, or the error that says so.
+fn fits(
+    name: &'static str,
+    value: f64,
+    fits: bool,
+    range: &'static str,
+) -> Result<(), SimulateError> {
+    if value.is_finite() && fits {
+        Ok(())
+    } else {
+        Err(SimulateError::Option { name, value, range })
     }
 }
 

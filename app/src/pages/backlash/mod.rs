@@ -297,6 +297,13 @@ impl Backlash {
         } else {
             theme::answer_ui(ui, &scene.answer());
         }
+    }
+
+    /// What the answer rests on.
+    fn reasons_ui(&self, ui: &mut egui::Ui) {
+        let Some(scene) = &self.scene else {
+            return;
+        };
         if let Some(why) = scene.refusal() {
             ui.label(tr(why));
         }
@@ -346,6 +353,7 @@ impl Backlash {
             // Large type leaves less room than the plots need.
             theme::scroll("backlash").show(ui, |ui| {
                 self.answer_ui(ui);
+                self.reasons_ui(ui);
                 self.playback_ui(ui, targets);
                 let Some(scene) = &self.scene else {
                     return;
@@ -369,18 +377,40 @@ impl Backlash {
     }
 
     fn narrow_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
+        // The answer and one plot stay in view while a slider below them is turned.
+        let pinned = layout::pins(ui);
+        if pinned {
+            egui::Panel::top("backlash_answer").show(ui, |ui| {
+                self.answer_ui(ui);
+                if let Some(scene) = &self.scene {
+                    plots::time_ui(ui, scene, self.playback.clock, layout::PINNED);
+                }
+            });
+        }
         egui::CentralPanel::default().show(ui, |ui| {
             theme::scroll("backlash").show(ui, |ui| {
-                self.answer_ui(ui);
+                if !pinned {
+                    self.answer_ui(ui);
+                }
+                self.reasons_ui(ui);
                 self.playback_ui(ui, targets);
                 if let Some(scene) = &self.scene {
                     self.picture_ui(ui, scene);
-                    plots::time_ui(ui, scene, self.playback.clock, 220.0);
+                }
+                if pinned {
+                    self.side_ui(ui, recent, targets);
+                }
+                if let Some(scene) = &self.scene {
+                    if !pinned {
+                        plots::time_ui(ui, scene, self.playback.clock, 220.0);
+                    }
                     for plot_ui in self.beside(scene) {
                         plot_ui(ui, scene, self.playback.clock, 240.0);
                     }
                 }
-                self.side_ui(ui, recent, targets);
+                if !pinned {
+                    self.side_ui(ui, recent, targets);
+                }
             });
         });
     }

@@ -1,7 +1,8 @@
 //! Which column is what, as someone chooses it: a plain value, and the mapping that it stands for.
 
 use hysteron_core::measurement::{
-    COUNTS, FoundColumn, Kind, Quantity, Role, guess, needs_torque_constant, usual_units,
+    COUNTS, FoundColumn, Kind, Quantity, Role, constant_per, guess, needs_torque_constant,
+    usual_units,
 };
 
 use hysteron_work::reading::Reading;
@@ -112,8 +113,10 @@ pub(super) struct Choice {
     pub kind: Kind,
     /// For each of [`CHANNELS`].
     pub chosen: [Chosen; CHANNELS.len()],
-    /// Such as `0.05 N m/A`; empty where it is not known.
+    /// Such as `0.05`, or with a unit of its own `0.05 N m/A`; empty where it is not known.
     pub torque_constant: String,
+    /// Its unit, where it was given none of its own.
+    pub constant_unit: String,
     /// The time from sample to sample where no column has the times, such as `4s`.
     pub period: String,
 }
@@ -126,6 +129,7 @@ impl Choice {
             kind: guess.kind,
             chosen: Default::default(),
             torque_constant: String::new(),
+            constant_unit: String::new(),
             period: String::new(),
         };
         for (channel, chosen) in CHANNELS.iter().zip(&mut choice.chosen) {
@@ -184,6 +188,28 @@ impl Choice {
             })
     }
 
+    /// Units that the torque constant can have: a torque or a force by what the input is.
+    pub fn constant_units(&self) -> Vec<String> {
+        let input = Role::Measured(Quantity::Input);
+        let mut inputs = self.mapped().filter(|(channel, ..)| channel.role == input);
+        let unit = inputs.next().map(|(_, chosen, _)| chosen.unit.as_str());
+        let Some(per) = unit.and_then(constant_per) else {
+            return Vec::new();
+        };
+        let gives = ["N m", "mN m", "N", "kN"];
+        gives.map(|gives| format!("{gives}/{per}")).to_vec()
+    }
+
+    /// The torque constant with its unit as the command line has it.
+    fn whole_constant(&self) -> String {
+        let typed = self.torque_constant.trim().replace(',', ".");
+        if typed.parse::<f64>().is_ok() {
+            format!("{typed} {}", self.constant_unit)
+        } else {
+            typed
+        }
+    }
+
     /// Whether no column has the times, so that a sampling period is needed.
     pub fn needs_period(&self) -> bool {
         self.mapped()
@@ -235,7 +261,7 @@ impl Choice {
             }
         }
         let torque_constant = if self.needs_torque_constant() {
-            self.torque_constant.trim().replace(',', ".")
+            self.whole_constant()
         } else {
             String::new()
         };

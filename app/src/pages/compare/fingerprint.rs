@@ -2,7 +2,7 @@
 
 use egui_plot::{Line, LineStyle};
 use hysteron_core::diagnosis::{Fingerprint, Profile, StepReport};
-use hysteron_core::effect::name_of;
+use hysteron_core::effect::{self, EffectId, name_of};
 use hysteron_core::measurement::Measurement;
 use hysteron_core::uncertain::titled;
 
@@ -22,6 +22,18 @@ const AXIS_WIDTH: f32 = 90.0;
 /// Likeness from which a fingerprint is the same at a glance, and from which it resembles.
 const SAME: f64 = 0.9;
 const ALIKE: f64 = 0.5;
+
+/// What the word says, where it first stands.
+pub(super) const FINGERPRINT: &str =
+    "A fingerprint is the residual that an effect would leave if it were missing.";
+
+/// With what its effect is in a sentence, since its name alone may say nothing yet.
+pub(super) fn explained(button: egui::Response, id: EffectId) -> egui::Response {
+    match effect::find(id) {
+        Some(effect) => button.on_hover_text(tr(effect.sentence())),
+        None => button,
+    }
+}
 
 pub(super) fn ui(
     page: &Compare,
@@ -50,7 +62,7 @@ pub(super) fn ui(
             } else {
                 format!("{} {}", tr(name_of(id)), tr_number(two_digits(likeness)))
             };
-            let button = ui.selectable_label(id == chosen, label);
+            let button = explained(ui.selectable_label(id == chosen, label), id);
             targets.note(format!("print:{id}"), ui, &button);
             if button.clicked() {
                 commands.push(Command::Fingerprint(id));
@@ -63,9 +75,7 @@ pub(super) fn ui(
     if !page.is_guessing() {
         ui.label(tr(sentence(print)));
     }
-    ui.small(tr(
-        "A fingerprint is the residual that an effect would leave if it were missing.",
-    ));
+    ui.small(tr(FINGERPRINT));
     let name = format!("what {} would leave", name_of(chosen));
     caption_ui(
         ui,

@@ -10,7 +10,7 @@ use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
-use crate::widgets::chart::{Chart, Shape, caption_ui};
+use crate::widgets::chart::{Chart, Shape, caption_ui, span_decades};
 use crate::widgets::equation::equation_ui;
 
 /// Formulas with their parameters, and rows of others, at most.
@@ -174,10 +174,13 @@ impl Compare {
 
 /// Error against length: all that were tried, and the front.
 fn front_ui(discovery: &Discovery, ui: &mut egui::Ui) {
-    let at = |f: &FoundFormula| [f.length as f64, f.error];
+    let errors = discovery.formulas.iter().map(|f| f.error);
+    let decades = span_decades(errors.chain([discovery.before, 1.0]));
+    let scaled = |error: f64| if decades { error.log10() } else { error };
+    let at = |f: &FoundFormula| [f.length as f64, scaled(f.error)];
     let tried: Vec<[f64; 2]> = discovery.formulas.iter().map(at).collect();
     let class: Vec<[f64; 2]> = discovery.class().map(at).collect();
-    let mut line = vec![[0.0, discovery.before]];
+    let mut line = vec![[0.0, scaled(discovery.before)]];
     line.extend(discovery.front().map(at));
     let mut curves = vec![
         ("tried", theme::RESIDUAL, Shape::Circle),
@@ -191,9 +194,12 @@ fn front_ui(discovery: &Discovery, ui: &mut egui::Ui) {
     }
     caption_ui(ui, "", &curves);
     let axes = ["length of the formula", "error [× noise]"];
-    let chart = Chart::new("formulas", axes, HEIGHT, AXIS_WIDTH).still();
+    let mut chart = Chart::new("formulas", axes, HEIGHT, AXIS_WIDTH).still();
+    if decades {
+        chart = chart.decades_up();
+    }
     chart.show(ui, |plot| {
-        let noise = HLine::new(tr("noise"), 1.0).color(theme::NOISE);
+        let noise = HLine::new(tr("noise"), scaled(1.0)).color(theme::NOISE);
         plot.hline(noise.style(LineStyle::dashed_dense()));
         plot.line(
             Line::new(tr("least error for its length"), PlotPoints::from(line))

@@ -4,6 +4,7 @@ use hysteron_core::diagnosis::{Candidate, StepReport};
 use hysteron_core::effect::{EffectId, name_of};
 
 use super::command::Command;
+use super::fingerprint::explained;
 use super::hints::{LEFT, PRICE};
 use super::look::Look;
 use super::state::Compare;
@@ -58,7 +59,7 @@ impl Compare {
             };
             ui.horizontal_wrapped(|ui| {
                 let add = egui::Button::new(tr(format!("Add {}", name_of(id))));
-                let add = ui.add_enabled(self.job.is_none(), add);
+                let add = explained(ui.add_enabled(self.job.is_none(), add), id);
                 targets.note(format!("add:{id}"), ui, &add);
                 if add.clicked() {
                     commands.push(Command::Add(id));

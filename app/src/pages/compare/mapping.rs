@@ -3,7 +3,7 @@
 use egui::Ui;
 use hysteron_core::measurement::{FoundColumn, Kind, Role};
 
-use super::choice::{Channel, Chosen};
+use super::choice::{Channel, Choice, Chosen};
 use super::command::Command;
 use super::form::Form;
 use super::state::Compare;
@@ -16,6 +16,10 @@ use crate::widgets::chart::significant;
 const TITLE_WIDTH: f32 = 104.0;
 const COLUMN_WIDTH: f32 = 220.0;
 const UNIT_WIDTH: f32 = 90.0;
+
+/// Size of the course of a column, and width of its line, points.
+const COURSE: egui::Vec2 = egui::vec2(104.0, 30.0);
+const COURSE_WIDTH: f32 = 1.2;
 
 /// Width of the form in a wide window, points.
 const WIDEST: f32 = 940.0;
@@ -46,7 +50,7 @@ impl Form {
             period_ui(ui, &mut choice.period);
         }
         if choice.needs_torque_constant() {
-            torque_constant_ui(ui, &mut choice.torque_constant);
+            torque_constant_ui(ui, &mut choice);
         }
         if let Some(error) = &self.error {
             ui.colored_label(ui.visuals().warn_fg_color, tr(error));
@@ -96,7 +100,10 @@ impl Form {
             }
         });
         if let Some(column) = chosen.column.and_then(|i| self.columns.get(i)) {
-            ui.small(tr(values(column, chosen.unit.trim())));
+            ui.horizontal_wrapped(|ui| {
+                course_ui(ui, column, COURSE);
+                ui.small(tr(values(column, chosen.unit.trim())));
+            });
         }
     }
 
@@ -121,7 +128,11 @@ impl Form {
             .show_ui(ui, |ui| {
                 ui.selectable_value(chosen, None, tr(nothing));
                 for (i, column) in self.columns.iter().enumerate() {
-                    ui.selectable_value(chosen, Some(i), name_of(column));
+                    ui.horizontal(|ui| {
+                        let row = egui::vec2(COURSE.x, ui.spacing().interact_size.y);
+                        course_ui(ui, column, row);
+                        ui.selectable_value(chosen, Some(i), name_of(column));
+                    });
                 }
             });
         list.response.labelled_by(title);
@@ -230,17 +241,78 @@ fn period_ui(ui: &mut Ui, period: &mut String) {
     });
 }
 
-fn torque_constant_ui(ui: &mut Ui, constant: &mut String) {
+fn torque_constant_ui(ui: &mut Ui, choice: &mut Choice) {
     ui.horizontal_wrapped(|ui| {
         let label = label_ui(ui, "Torque constant, if it is known");
         ui.add(
-            theme::line(constant)
-                .hint_text(tr("0.05 N m/A"))
-                .desired_width(UNIT_WIDTH * 2.0),
+            theme::line(&mut choice.torque_constant)
+                .hint_text(tr("0.05"))
+                .desired_width(UNIT_WIDTH),
         )
         .labelled_by(label.id);
+        let units = choice.constant_units();
+        if !units.contains(&choice.constant_unit) {
+            // Of another input, or none yet.
+            choice.constant_unit = units.first().cloned().unwrap_or_default();
+        }
+        let label = label_ui(ui, "Unit of the torque constant");
+        let list = egui::ComboBox::from_id_salt("Unit of the torque constant")
+            .selected_text(&choice.constant_unit)
+            .width(UNIT_WIDTH)
+            .show_ui(ui, |ui| {
+                for unit in units {
+                    let text = unit.clone();
+                    ui.selectable_value(&mut choice.constant_unit, unit, text);
+                }
+            });
+        list.response.labelled_by(label.id);
     });
     ui.small(tr("Without it, inertia, friction and loads are given in multiples of it; times and gaps do not depend on it."));
+}
+
+/// How the numbers of a column go, from the first to the last; what is not finite is a gap.
+fn course_ui(ui: &mut Ui, column: &FoundColumn, size: egui::Vec2) {
+    let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+    let numbers = &column.numbers;
+    let Some([least, largest]) = numbers.range else {
+        return;
+    };
+    let rect = place.shrink(COURSE_WIDTH);
+    let count = numbers.course.len().max(2) - 1;
+    let at = |i: usize, value: f64| {
+        // What never changes goes through the middle.
+        let up = if largest > least {
+            (value - least) / (largest - least)
+        } else {
+            0.5
+        };
+        let across = i as f32 / count as f32;
+        egui::pos2(
+            rect.left() + across * rect.width(),
+            rect.bottom() - up as f32 * rect.height(),
+        )
+    };
+    let mut line: Vec<egui::Pos2> = Vec::new();
+    let stroke = egui::Stroke::new(COURSE_WIDTH, theme::MEASURED);
+    for (i, stretch) in numbers.course.iter().enumerate() {
+        match *stretch {
+            Some([low, high]) => {
+                let mut ends = [at(i, low), at(i, high)];
+                // The nearer end comes first, so that the line goes no way twice.
+                if line
+                    .last()
+                    .is_some_and(|p| (p.y - ends[1].y).abs() < (p.y - ends[0].y).abs())
+                {
+                    ends.reverse();
+                }
+                line.extend(ends);
+            }
+            None => {
+                ui.painter().line(std::mem::take(&mut line), stroke);
+            }
+        }
+    }
+    ui.painter().line(line, stroke);
 }
 
 impl Compare {

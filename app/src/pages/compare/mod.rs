@@ -185,7 +185,10 @@ impl Compare {
                 if look == Look::Reveal && self.sealed.is_none() {
                     continue;
                 }
-                let tab = ui.selectable_label(self.look == look, tr(title));
+                let mut tab = ui.selectable_label(self.look == look, tr(title));
+                if look == Look::Fingerprint {
+                    tab = tab.on_hover_text(tr(fingerprint::FINGERPRINT));
+                }
                 targets.note(format!("look:{id}"), ui, &tab);
                 if tab.clicked() {
                     commands.push(Command::Look(look));

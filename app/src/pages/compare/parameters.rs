@@ -122,8 +122,10 @@ fn value_text(p: &Parameter, value: f64) -> String {
 
 /// Its symbol, value, meaning and interval.
 fn row_ui(p: &Parameter, value: f64, marked: bool, ui: &mut egui::Ui) {
-    let owner = p.effect.map_or("baseline", name_of);
-    let hover = format!("{}, {owner}", p.label);
+    let hover = match p.effect {
+        Some(effect) => format!("{}, {}", p.label, name_of(effect)),
+        None => format!("{}, of the baseline to which effects are added", p.label),
+    };
     let text = value_text(p, value);
     ui.horizontal(|ui| {
         if marked {

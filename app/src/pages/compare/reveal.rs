@@ -8,6 +8,7 @@ use hysteron_core::uncertain::{quantity, with_error, written_like};
 use super::command::Command;
 use super::sealed::Sealed;
 use super::state::Compare;
+use super::waterfall::BASELINE;
 use crate::hook::Targets;
 use crate::jobs::Job;
 use crate::language::tr;
@@ -208,8 +209,11 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
             }
             ui.end_row();
             for number in &reveal.numbers {
-                for cell in cells(number) {
-                    ui.label(tr(cell));
+                for (i, cell) in cells(number).into_iter().enumerate() {
+                    let cell = ui.label(tr(cell));
+                    if i == 0 && number.effect.is_none() {
+                        cell.on_hover_text(tr(BASELINE));
+                    }
                 }
                 ui.end_row();
             }

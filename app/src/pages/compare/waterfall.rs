@@ -20,6 +20,9 @@ const LEAST_BAR: f32 = 50.0;
 const LEAST_LABEL: f32 = 140.0;
 const NUMBERS: f32 = 90.0;
 
+/// What the word says, where it first stands.
+pub(super) const BASELINE: &str = "The baseline is the plain model to which effects are added: inertia and viscous friction of a drive, gain and time constant of a process.";
+
 /// The error from the baseline to the noise floor. A click on a step goes back to it.
 pub(super) fn ui(
     page: &Compare,
@@ -57,7 +60,7 @@ pub(super) fn ui(
     let width = (room - names).clamp(LEAST_BAR, BAR_WIDTH);
     egui::Grid::new("waterfall").num_columns(3).show(ui, |ui| {
         for (n, (label, report)) in steps.iter().enumerate() {
-            let row = ui
+            let mut row = ui
                 .allocate_ui_with_layout(
                     egui::vec2(names, 22.0),
                     egui::Layout::left_to_right(egui::Align::Center),
@@ -68,6 +71,9 @@ pub(super) fn ui(
                 )
                 .inner
                 .on_hover_text(tr("Show this step"));
+            if n == 0 && page.model_file.is_none() {
+                row = row.on_hover_text(tr(BASELINE));
+            }
             targets.note(format!("step:{n}"), ui, &row);
             if row.clicked() && page.job.is_none() && n != at {
                 commands.push(Command::Step(n));

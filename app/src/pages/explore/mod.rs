@@ -68,6 +68,8 @@ pub struct Explore {
     reading: Option<Job<ScenarioTask>>,
     opened: Option<ScenarioReport>,
     message: Option<String>,
+    /// What the page does not show of the scenario that was opened last.
+    left_out: Option<String>,
 }
 
 /// What the page is about.
@@ -146,6 +148,9 @@ impl View for Explore {
         }
         if let Some(message) = &self.message {
             state["message"] = message.as_str().into();
+        }
+        if let Some(left_out) = &self.left_out {
+            state["left_out"] = left_out.as_str().into();
         }
         state
     }
@@ -304,28 +309,49 @@ impl Explore {
     }
 
     fn narrow_ui(&mut self, ui: &mut egui::Ui) {
-        // The sliders stand below the plots: the answer stays in view while one is turned.
-        egui::Panel::top("explore_answer").show(ui, |ui| self.answer_ui(ui));
+        // The answer and one plot stay in view while a slider below them is turned.
+        let pinned = layout::pins(ui);
+        egui::Panel::top("explore_answer").show(ui, |ui| {
+            self.answer_ui(ui);
+            if pinned {
+                self.first_ui(ui, layout::PINNED);
+            }
+        });
         egui::CentralPanel::default().show(ui, |ui| {
             theme::scroll("explore").show(ui, |ui| {
                 self.reasons_ui(ui);
-                match self.about() {
-                    About::Relay => {}
-                    About::OnOff => self.on_off.plots_ui(ui, 320.0),
-                    About::Servo => self.servo.plots_ui(ui, 480.0),
-                }
-                if self.about() != About::Relay {
+                if pinned {
                     self.controls_ui(ui);
-                    self.numbers_ui(ui);
-                    return;
+                    self.others_ui(ui);
+                } else {
+                    self.first_ui(ui, 220.0);
+                    self.others_ui(ui);
+                    self.controls_ui(ui);
                 }
-                self.nyquist_ui(ui, 260.0);
-                self.time_ui(ui, 220.0);
-                self.controls_ui(ui);
                 self.numbers_ui(ui);
-                self.phase_ui(ui, 260.0);
             });
         });
+    }
+
+    /// The plot over time.
+    fn first_ui(&mut self, ui: &mut egui::Ui, height: f32) {
+        match self.about() {
+            About::Relay => self.time_ui(ui, height),
+            About::OnOff => self.on_off.time_ui(ui, height),
+            About::Servo => self.servo.position_ui(ui, height),
+        }
+    }
+
+    /// The plots but that over time, beneath each other.
+    fn others_ui(&mut self, ui: &mut egui::Ui) {
+        match self.about() {
+            About::Relay => {
+                self.nyquist_ui(ui, 260.0);
+                self.phase_ui(ui, 260.0);
+            }
+            About::OnOff => self.on_off.curves_ui(ui, 320.0),
+            About::Servo => self.servo.others_ui(ui, 240.0),
+        }
     }
 
     fn answer_ui(&self, ui: &mut egui::Ui) {

@@ -33,7 +33,14 @@ impl Explore {
         match ended(&mut self.reading, |_, _| ()) {
             Some(Ok(report)) => {
                 self.message = None;
-                self.opened = Some(report);
+                let keys = report.left_out.join(", ");
+                self.left_out = (!keys.is_empty()).then(|| {
+                    format!(
+                        "Explore shows as much as the cycle needs. Of the run in the file it leaves out: {keys}. The command line \
+                         has it: hysteron simulate."
+                    )
+                });
+                self.opened = Some(report.report);
             }
             Some(Err(error)) => self.message = Some(error),
             None => {}
@@ -85,13 +92,16 @@ impl Explore {
         }
     }
 
-    /// What was wrong with a file.
+    /// What was wrong with a file, or is not shown of it.
     pub(super) fn message_ui(&mut self, ui: &mut egui::Ui) {
         if let Some(message) = self.files.refused() {
             self.message = Some(message);
         }
         if let Some(message) = &self.message {
             ui.colored_label(ui.visuals().warn_fg_color, tr(message));
+        }
+        if let Some(left_out) = &self.left_out {
+            ui.weak(tr(left_out));
         }
     }
 }

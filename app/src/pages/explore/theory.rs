@@ -48,12 +48,12 @@ impl Theory {
             return;
         };
         let keys = [
-            ("-H_h(-1)", theme::SIMULATED, Shape::Line),
+            ("-Hₕ(-1)", theme::SIMULATED, Shape::Line),
             ("ε/k", theme::NOISE, Shape::Dashes),
             ("exact, by (3)", theme::EXACT, Shape::Circle),
         ];
         caption_ui(ui, "", &keys);
-        still("z form", "half period h [s]", "-H_h(-1)", HEIGHT).show(ui, |plot| {
+        still("z form", "half period h [s]", "-Hₕ(-1)", HEIGHT).show(ui, |plot| {
             let [form, threshold, exact] = keys.map(|k| k.0);
             plot.hline(
                 HLine::new(tr(threshold), level)
@@ -68,7 +68,7 @@ impl Theory {
             );
         });
         ui.label(tr(format!(
-            "By (3) h = {h:.6} s; there -H_h(-1) = {value:.6}, and ε/k = {level:.6}: the same equation in z = -1."
+            "By (3) h = {h:.6} s; there -Hₕ(-1) = {value:.6}, and ε/k = {level:.6}: the same equation in z = -1."
         )));
     }
 

@@ -1,6 +1,7 @@
 //! The experiment, and what to hide.
 
 use egui::Ui;
+use hysteron_core::effect::find;
 use hysteron_core::measurement::Kind;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
@@ -168,6 +169,11 @@ impl Bench {
                 other.is_none() && !full,
                 egui::Checkbox::new(&mut chosen, tr(name)),
             );
+            // Its name alone may say nothing yet.
+            let tick = match find(effect.id) {
+                Some(named) => tick.on_hover_text(tr(named.sentence())),
+                None => tick,
+            };
             desk.targets
                 .note(format!("mystery:hide:{}", effect.id), ui, &tick);
             if let Some(other) = other {

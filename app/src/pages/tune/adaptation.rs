@@ -1,6 +1,7 @@
 //! Step 3: the gain for a phase margin, by the relay of equation (7) and the adaptation (8).
 
 use egui_plot::{Line, MarkerShape, Points};
+use hysteron_core::count::counted;
 use hysteron_core::tuning::{AdaptationStep, PhaseMarginReport};
 use hysteron_core::uncertain::significant;
 
@@ -160,8 +161,8 @@ fn secant_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
         )));
     } else {
         ui.label(tr(format!(
-            "It has the wanted amplitude after {} runs; Steffensen's steps took {}.",
-            secant.steps.len(),
+            "It has the wanted amplitude after {}; Steffensen's steps took {}.",
+            counted(secant.steps.len(), "run"),
             found
                 .adaptation
                 .steps

@@ -26,6 +26,9 @@ const MUCH_HYSTERESIS: f64 = 0.2;
 /// A static gain is told with at most this relative error.
 const GAIN_TOLD: f64 = 0.2;
 
+/// Share of the motion that a model may miss and still be told whose gain is not.
+const FOLLOWED: f64 = 0.5;
+
 /// Where no rule has what it needs.
 const NO_GAINS: &str =
     "No gains follow: neither the gain of a model nor a point of the curve is known well enough.";
@@ -126,9 +129,10 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     let omega = point.map_or(2.0 * PI / scale, |p| p.omega);
     let ultimate = ultimate::ultimate(&fits, point.as_ref(), omega);
     let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
+    let followed = models.first().is_some_and(follows);
     let basis = Basis {
-        model: models.first(),
-        models: &models,
+        model: models.first().filter(|_| followed),
+        models: if followed { &models } else { &[] },
         ultimate: ultimate.as_ref(),
         point: point.as_ref(),
         sampling: record.sampling(),
@@ -155,7 +159,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         .first()
         .filter(|m| !m.structure.integrates())
         .map(|m| m.gain)
-        .filter(|k| k.std_error <= GAIN_TOLD * k.value.abs());
+        .filter(is_told);
     let mut result = MeasuredTuning {
         name: record.name.clone(),
         cycle: cycle.as_ref().map(summary),
@@ -173,6 +177,15 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     };
     result.tell();
     Ok(result)
+}
+
+fn is_told(gain: &Value) -> bool {
+    gain.std_error <= GAIN_TOLD * gain.value.abs()
+}
+
+/// Whether a model is more of the record than what was left for it by chance.
+fn follows(model: &FittedModel) -> bool {
+    model.left <= FOLLOWED || is_told(&model.gain)
 }
 
 /// A time in the order of the plant's, s: that of a round of the output, or a part of the record.
@@ -301,6 +314,13 @@ impl MeasuredTuning {
         parts.extend(lags.map(|t| format!("time constant {}", seconds(t))));
         parts.extend(model.zero.iter().map(|z| format!("zero {}", seconds(z))));
         parts.push(format!("dead time {}", seconds(&model.dead_time)));
+        if !follows(model) {
+            return format!(
+                "No model follows the record: the one that comes nearest, {}, misses {} % of the motion of the output.",
+                model.structure.name(),
+                number(100.0 * model.left),
+            );
+        }
         format!(
             "The record prefers {}: {}. It misses {} % of the motion of the output.",
             model.structure.name(),

@@ -5,6 +5,7 @@ use super::evidence::{Evidence, Trouble, TroubleKind, of_unit, sensor_step, trou
 use super::minimum_time::minimum_time;
 use super::number::number;
 use super::record::Record;
+use crate::count::counted;
 use crate::order::{median, range};
 
 /// The shorter half period over the longer, below which heating and cooling count as of different strength.
@@ -354,9 +355,11 @@ fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
             true,
             rounds as f64,
             format!(
-                "In {} s the input switches {switched} times and the output goes round {rounds} times: the window is too \
-                 short, at least {WHOLE_PERIODS} whole periods after the first are needed.",
+                "In {} s the input switches {} and the output goes round {}: the window is too short, at least \
+                 {WHOLE_PERIODS} whole periods after the first are needed.",
                 n(e.record.span()),
+                counted(switched, "time"),
+                counted(rounds, "time"),
             ),
         )
     })

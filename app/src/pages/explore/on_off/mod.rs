@@ -79,8 +79,21 @@ impl OnOff {
             });
             return;
         }
-        plots::time_ui(ui, input, data, height);
-        if curves {
+        self.time_ui(ui, height);
+        self.curves_ui(ui, height);
+    }
+
+    /// Output and input over time.
+    pub fn time_ui(&self, ui: &mut egui::Ui, height: f32) {
+        if let Some((input, data)) = self.live.shown() {
+            plots::time_ui(ui, input, data, height);
+        }
+    }
+
+    /// The Nyquist plot, where there is one.
+    pub fn curves_ui(&self, ui: &mut egui::Ui, height: f32) {
+        let shown = self.live.shown().filter(|(_, d)| !d.nyquist.is_empty());
+        if let Some((_, data)) = shown {
             plots::curves_ui(ui, data, height);
         }
     }

@@ -67,19 +67,31 @@ impl Hunting {
     }
 
     pub fn plots_ui(&self, ui: &mut egui::Ui, height: f32) {
+        let half = 0.5 * height;
+        self.position_ui(ui, half);
+        self.others_ui(ui, half);
+    }
+
+    /// The position over time.
+    pub fn position_ui(&self, ui: &mut egui::Ui, height: f32) {
+        if let Some((servo, data)) = self.live.shown() {
+            plots::position_ui(ui, servo, data, height);
+        }
+    }
+
+    /// The torque and the phase portrait.
+    pub fn others_ui(&self, ui: &mut egui::Ui, height: f32) {
         let Some((servo, data)) = self.live.shown() else {
             return;
         };
-        let half = 0.5 * height;
-        plots::position_ui(ui, servo, data, half);
         if layout::room_for_two(ui) {
             ui.columns(2, |columns| {
-                plots::torque_ui(&mut columns[0], servo, data, half);
-                plots::phase_ui(&mut columns[1], data, half);
+                plots::torque_ui(&mut columns[0], servo, data, height);
+                plots::phase_ui(&mut columns[1], data, height);
             });
         } else {
-            plots::torque_ui(ui, servo, data, half);
-            plots::phase_ui(ui, data, half);
+            plots::torque_ui(ui, servo, data, height);
+            plots::phase_ui(ui, data, height);
         }
     }
 

@@ -92,9 +92,13 @@ impl Log {
             form: form.unwrap_or(self.settings.form),
             ..self.settings.clone()
         };
-        Ok(match &self.held {
-            Held::Record(record) => tune_record(record, &settings)?,
-            Held::Readings(readings) => tune_readings(readings, &settings)?,
+        let found = match &self.held {
+            Held::Record(record) => tune_record(record, &settings),
+            Held::Readings(readings) => tune_readings(readings, &settings),
+        };
+        found.map_err(|error| LogError::Impossible {
+            log: self.source,
+            error,
         })
     }
 }

@@ -58,6 +58,14 @@ pub enum LogError {
     #[error("the tuner gave up: '{0}'; {1}")]
     Failed(String, &'static str),
     /// It was read, but its numbers are impossible.
+    #[error("this looks like a log of {name}, but it cannot be used: {error}", name = .log.name(), error = .error)]
+    Impossible {
+        /// Whose log it is.
+        log: Source,
+        /// What is wrong.
+        error: RecordError,
+    },
+    /// The same of a record.
     #[error("{0}")]
     Numbers(#[from] RecordError),
 }
