@@ -46,7 +46,6 @@ struct Output {
 /// A model whose values can be set, on its record.
 pub struct ByHand {
     excitation: Excitation,
-    kind: Kind,
     baseline: Baseline,
     effects: Vec<&'static dyn Effect>,
     outputs: Vec<Output>,
@@ -104,7 +103,6 @@ impl ByHand {
         let values: Vec<f64> = step.parameters.iter().map(|p| p.value).collect();
         let mut hand = Self {
             excitation: excitation(measurement, from, &outputs, false)?,
-            kind: measurement.kind,
             baseline,
             effects,
             outputs,
@@ -245,7 +243,6 @@ impl ByHand {
             output.or(self.outputs.first()).map_or(1.0, |o| o.noise)
         };
         let steps = [MOVED * noise(false), MOVED * noise(true)];
-        let drive = self.kind == Kind::Drive;
         for _ in 0..STEPS {
             let here = self.run(values, &starts);
             let moved = |k: usize| -> Vec<Vec<f64>> {
@@ -255,7 +252,7 @@ impl ByHand {
                 }
                 self.run(values, &there)
             };
-            let by_position = drive.then(|| moved(0));
+            let by_position = moved(0);
             let by_velocity = moved(1);
             for (w, start) in starts.iter_mut().enumerate() {
                 let from = start.sample;
@@ -270,9 +267,7 @@ impl ByHand {
                     let modelled = here[o].iter().enumerate();
                     for (i, now) in modelled.skip(from).take(to - from) {
                         let left = output.values[i] - now;
-                        let x = by_position
-                            .as_ref()
-                            .map_or(0.0, |t| slope(t, o, i, steps[0]));
+                        let x = slope(&by_position, o, i, steps[0]);
                         let v = slope(&by_velocity, o, i, steps[1]);
                         if !(left + x + v).is_finite() {
                             continue;

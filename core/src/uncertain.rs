@@ -189,14 +189,27 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     if !is_told(value, error) {
         return NOT_TOLD.to_owned();
     }
-    let Some((scale, decimals)) = written(value, error, unit) else {
-        return quantity(value, unit);
+    let text = match written(value, error, unit) {
+        Some((scale, decimals)) => scale.write(value, decimals),
+        None => match digits_told(value, error) {
+            Some(digits) => {
+                let scale = Scale::of(value, unit);
+                joined(&number(value / scale.factor, digits, false), &scale.unit)
+            }
+            None => return quantity(value, unit),
+        },
     };
-    format!(
-        "{} ± {} %",
-        scale.write(value, decimals),
-        per_cent(error / value.abs())
-    )
+    format!("{text} ± {} %", per_cent(error / value.abs()))
+}
+
+/// Digits of a value that is written with a power of ten: the last one is no larger than the error.
+fn digits_told(value: f64, error: f64) -> Option<i32> {
+    let known = value.is_finite() && value != 0.0 && error.is_finite() && error > 0.0;
+    let place = |v: f64| libm::floor(libm::log10(v)) as i32;
+    known.then(|| {
+        let value = value.abs();
+        1 + place(value) - place(error.max(LEAST_SHARE * value))
+    })
 }
 
 /// The unit and the decimals of a value with its error: the last digit is no larger than the error.
@@ -331,6 +344,8 @@ mod tests {
             (1234.0, 56.7, "N m/rad", "1.23 kN m/rad ± 5 %"),
             (1234.0, 56.7, "rad/s", "1230 rad/s ± 5 %"),
             (-0.5, 0.25, "1", "-0.5 ± 50 %"),
+            (1.7604e-6, 3.693e-7, "1/s", "1.8 × 10⁻⁶ 1/s ± 21 %"),
+            (-2.5e7, 1.2e5, "1", "-2.50 × 10⁷ ± 0.5 %"),
             (3.5e-3, 1e-4, "N m s^2/rad^2", "3.5 mN m s²/rad² ± 3 %"),
             (2.0, f64::NAN, "1", "2"),
             (0.0, 0.0, "N m", "0 N m"),

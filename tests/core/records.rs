@@ -264,7 +264,8 @@ fn a_heater_with_a_second_storage_has_its_known_values() {
     let Some(d) = diagnose_shared("failing/incubator-exp1.csv") else {
         return;
     };
-    check(&d, &[LAG]);
+    // The box around it warms up for as long as the record lasts.
+    check(&d, &[&["load_ramp"], LAG]);
     for (name, from, to) in [
         ("K", 127.0, 144.0),
         ("T", 490.0, 580.0),

@@ -120,3 +120,32 @@ fn an_output_that_is_on_its_way_at_first_was_driven_before() {
         assert!(report.step.error < 1.1, "row {cut}: {}", report.step.error);
     }
 }
+
+/// A record that was cut out of a longer one: the wall holds what the heater gave before, of which the record says nothing.
+#[test]
+fn a_wall_that_is_warm_at_first_is_as_warm_as_the_record_shows() {
+    let classes: &[&str] = &["second_lag", "sensor_lag"];
+    for (seed, cut) in [(11, 300), (12, 340), (13, 380)] {
+        let whole = heater(seed, 10.0, 0.0, 0);
+        let rows: Vec<&str> = whole.lines().collect();
+        // It is switched off some seconds before the record begins.
+        let switched = |k: &usize| {
+            let heat = |row: &str| row.split(',').nth(1) == Some("0");
+            heat(rows[*k]) && !heat(rows[*k - 1])
+        };
+        let begin = (cut..rows.len()).find(switched).unwrap() + 5;
+        let part = [&rows[..1], &rows[begin..]].concat().join("\n");
+        let d = diagnose(&part);
+        check(&d, &[classes], &[("K", GAIN), ("ambient", ROOM)]);
+        let record = import_csv("heater", part.as_bytes(), None).unwrap();
+        for effect in [EffectId::new("second_lag"), EffectId::new("sensor_lag")] {
+            let effects = [effect];
+            let report = step(StepJob::new(&record, &effects).unwrap());
+            let first = report.replay.channels[0].modelled[..20].iter();
+            let measured = record.outputs[0].values.iter();
+            let square: f64 = first.zip(measured).map(|(m, y)| (m - y).powi(2)).sum();
+            let left = (square / 20.0).sqrt();
+            assert!(left < 2.0 * NOISE, "{effect:?}, row {begin}: {left}");
+        }
+    }
+}

@@ -41,6 +41,10 @@ pub(super) fn begins_at_zero(outputs: &[Output]) -> bool {
 /// Whether an output lay still at first, wherever that was, and went its way later though the input stayed about as it was:
 /// so that came on with the record, and the process is late.
 fn began_late(input: &[f64], output: &Output) -> bool {
+    // Without an input none came on: what moves then was stored before.
+    if input[0] == 0.0 {
+        return false;
+    }
     let stays = |u: &&f64| (**u - input[0]).abs() <= ABOUT * input[0].abs();
     let held = input.iter().take_while(stays).count();
     let values = &output.values[..held.min(output.values.len())];

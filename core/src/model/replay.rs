@@ -14,7 +14,8 @@ use super::{Engine, Load, Model, State};
 pub struct Start {
     /// Index of the first sample.
     pub sample: usize,
-    /// Position there, rad or m; 0 where it cannot be known.
+    /// Position there, rad or m; 0 where it cannot be known. A process has none: at its first sample this is by how much what
+    /// its lag had stored, or what its slow sensor showed, is off what the input and the output there say.
     pub position: f64,
     /// Velocity there, rad/s or m/s; the output of a process.
     pub velocity: f64,
@@ -218,6 +219,11 @@ impl Excitation {
                 lag,
                 time: &self.time,
                 shown: &self.shown,
+                off: if model.lag.is_none() {
+                    self.off_at_first(model, starts)
+                } else {
+                    0.0
+                },
             };
             for run in &self.runs {
                 slow.pass(signal, *run);
@@ -242,8 +248,21 @@ impl Excitation {
     fn stored(&self, model: &Model, starts: &[Start], before: f64) -> f64 {
         match starts.first().filter(|_| model.load_before_lag) {
             Some(start) if self.at_rest => model.viscous * start.velocity,
-            _ => before + model.early_load(0.0),
+            _ => before + model.early_load(0.0) + self.off_at_first(model, starts),
         }
+    }
+
+    /// Whether a process holds more than its output tells at first: the input before the record is not known, and what a lag
+    /// had stored of it, or had not shown yet, is a state of its own. Where nothing moved before, it is.
+    pub(crate) fn doubts_store_of(&self, model: &Model) -> bool {
+        let slow = model.lag.is_some() || model.sensor_lag.is_some();
+        self.position.is_empty() && !self.at_rest && slow
+    }
+
+    /// By how much that is off.
+    fn off_at_first(&self, model: &Model, starts: &[Start]) -> f64 {
+        let start = starts.first().filter(|_| self.doubts_store_of(model));
+        start.map_or(0.0, |s| s.position)
     }
 
     /// Load before the lag from sample `i` on, held at its value in the middle of the interval.

@@ -11,11 +11,14 @@ pub(super) struct SlowSensor<'a> {
     pub time: &'a [f64],
     /// What it showed; empty where that is not known.
     pub shown: &'a [f64],
+    /// By how much what it shows at the begin of the record is off the signal there.
+    pub off: f64,
 }
 
 impl SlowSensor<'_> {
     /// Passes a run of a signal through the lag, straight between its samples. A run that begins within
-    /// the record begins as if the signal had come the same way before, or so that what was shown comes out best.
+    /// the record begins as if the signal had come the same way before, or so that what was shown comes out best; the record
+    /// itself with a sensor that is `off` the signal.
     pub fn pass(&self, signal: &mut [f64], (from, end): (usize, usize)) {
         let lag = self.lag;
         let (Some(signal), Some(time)) = (signal.get_mut(from..end), self.time.get(from..end))
@@ -29,8 +32,10 @@ impl SlowSensor<'_> {
         let mut slow = before;
         if from > 0 {
             slow -= lag * (signal[1] - signal[0]) / (time[1] - time[0]);
-            signal[0] = slow;
+        } else {
+            slow += self.off;
         }
+        signal[0] = slow;
         for (value, time) in signal[1..].iter_mut().zip(time.windows(2)) {
             let (h, now) = (time[1] - time[0], *value);
             let (decay, slope) = (libm::exp(-h / lag), (now - before) / h);

@@ -59,10 +59,10 @@ impl Fit {
         let dx = 1e-6 * scales.travel.max(f64::MIN_POSITIVE);
         let dv = 1e-6 * scales.speed.max(f64::MIN_POSITIVE);
         let by_state = |k: usize| {
-            if k == 0 && !data.has_position {
+            if k == 0 && !data.has_position && !data.excitation.doubts_store_of(&model) {
                 return Motion::still(data.len());
             }
-            if k == 0 && model.is_same_everywhere() {
+            if k == 0 && data.has_position && model.is_same_everywhere() {
                 return super::shifted(data);
             }
             let step = [dx, dv, LOAD_DIFFERENCE, LOAD_DIFFERENCE][k];
