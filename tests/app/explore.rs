@@ -239,7 +239,7 @@ fn equation_3_in_z_and_play_stand_beside_the_exact_cycle() {
         .iter()
         .find(|t| t.starts_with("By (3) h = "))
         .expect("a sentence");
-    let [value, level] = ["-H_h(-1) = ", "ε/k = "].map(|key| {
+    let [value, level] = ["-Hₕ(-1) = ", "ε/k = "].map(|key| {
         let rest = z.split(key).nth(1).expect("a value");
         rest[..8].parse::<f64>().expect("a number")
     });
