@@ -87,9 +87,23 @@ fn a_record_gives_what_the_contract_says() {
     assert_eq!(found["stall"], Value::Null);
     let said = String::from_utf8(tune(&[&file]).stdout).unwrap();
     assert!(
-        said.contains("Ultimate gain") && said.contains("SIMC PI"),
+        said.contains("Ultimate gain") && said.contains("SIMC PI") && said.contains("ki [1/s]"),
         "{said}"
     );
+    // The ideal form has times: AMIGO's PI has the same gain, and kp/ki for its integral time.
+    let ideal = String::from_utf8(tune(&[&file, "--form", "ideal"]).stdout).unwrap();
+    assert!(
+        ideal.contains("ti [s]") && !ideal.contains("ki [1/s]"),
+        "{ideal}"
+    );
+    let row = |text: &str| -> Vec<f64> {
+        let row = text.lines().find(|line| line.starts_with("AMIGO PI "));
+        let numbers = row.unwrap().split_whitespace().skip(2).take(2);
+        numbers.map(|n| n.parse().unwrap()).collect()
+    };
+    let (parallel, ideal) = (row(&said), row(&ideal));
+    assert_eq!(parallel[0], ideal[0]);
+    assert!((parallel[0] / parallel[1] / ideal[1] - 1.0).abs() < 1e-3);
 }
 
 #[test]

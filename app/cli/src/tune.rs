@@ -309,14 +309,21 @@ fn text(result: &MeasuredTuning) -> String {
             100.0 * m.left
         );
     }
+    // These forms have times in the place of gains.
+    let of_times = |form| matches!(form, Form::Ideal | Form::Series);
     if let Some(first) = result.gains.first() {
+        let [integral, derivative] = if of_times(first.form) {
+            ["ti [s]", "td [s]"]
+        } else {
+            ["ki [1/s]", "kd [s]"]
+        };
         let _ = writeln!(
             out,
             "\n{:<22} {:>12} {:>12} {:>12} {:>13} {:>12}",
             format!("gains, {} form", first.form.id()),
             "kp",
-            "ki [1/s]",
-            "kd [s]",
+            integral,
+            derivative,
             "phase margin",
             "gain margin"
         );
@@ -334,12 +341,15 @@ fn text(result: &MeasuredTuning) -> String {
             "unstable on the model".to_owned()
         };
         let name = format!("{} {}", g.name, g.controller.to_uppercase());
+        let [integral, derivative] = if of_times(g.form) {
+            [g.ti.map_or_else(|| "-".to_owned(), short), short(g.td)]
+        } else {
+            [short(g.ki), short(g.kd)]
+        };
         let _ = writeln!(
             out,
-            "{name:<22} {:>12} {:>12} {:>12} {margins}",
+            "{name:<22} {:>12} {integral:>12} {derivative:>12} {margins}",
             short(g.kp),
-            short(g.ki),
-            short(g.kd)
         );
     }
     out

@@ -1,7 +1,5 @@
 //! A file of any kind.
 
-use std::collections::BTreeMap;
-
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
@@ -16,10 +14,12 @@ pub fn keys_of_run(text: &str) -> Vec<String> {
     #[derive(Default, Deserialize)]
     struct Tables {
         #[serde(default)]
-        run: BTreeMap<String, IgnoredAny>,
+        run: toml::Table,
     }
     let tables: Tables = toml::from_str(text).unwrap_or_default();
-    tables.run.into_keys().collect()
+    let mut keys: Vec<String> = tables.run.into_iter().map(|(key, _)| key).collect();
+    keys.sort_unstable();
+    keys
 }
 
 /// What a file can hold.
