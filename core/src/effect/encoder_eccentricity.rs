@@ -1,6 +1,6 @@
 //! Eccentric encoder: within a turn the reading runs ahead of the shaft and falls behind.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::atom::Values;
 use super::{
@@ -18,6 +18,10 @@ const LEAST_TRAVEL: f64 = PI;
 
 /// The largest that is one: a fifth of the radius is a broken mounting.
 const MOST: f64 = 0.2;
+
+/// Eccentricity and phases with which a fit begins.
+const USUAL: f64 = 0.02;
+const PHASES: [f64; 4] = [-FRAC_PI_2, 0.0, FRAC_PI_2, PI];
 
 impl Effect for EncoderEccentricity {
     fn id(&self) -> EffectId {
@@ -61,8 +65,12 @@ impl Effect for EncoderEccentricity {
         ]
     }
 
-    fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
-        Vec::new()
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
+        let (low, high) = probe.position_range();
+        if high - low < LEAST_TRAVEL {
+            return Vec::new();
+        }
+        PHASES.map(|phase| vec![USUAL, phase]).to_vec()
     }
 
     /// To first order `J dw/dt + d w = u` with `w = v - e v cos(x + phi)`.

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use super::atom::{Values, even};
 use super::spec::SEEN_PERIODS;
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Shape};
 use crate::measurement::Kind;
-use crate::model::Model;
+use crate::model::{Instant, Model};
 
 pub(super) const ID: EffectId = EffectId::new("periodic_disturbance");
 
@@ -19,6 +19,24 @@ const FREQUENCIES_PER_WAVE: f64 = 2.0;
 
 /// Samples in the shortest wave.
 const LEAST_SAMPLES: f64 = 8.0;
+
+/// Waves from which a fit begins.
+const STARTS: usize = 3;
+
+/// Angular frequencies, rad/s, that a record of this duration and step tells apart.
+fn frequencies(duration: f64, step: f64) -> Vec<Shape> {
+    let shortest = LEAST_SAMPLES * step / duration;
+    let most = MOST_WAVES.min(1.0 / shortest);
+    let wave = TAU / duration;
+    let count = (most - LEAST_WAVES) * FREQUENCIES_PER_WAVE;
+    even(LEAST_WAVES * wave, most * wave, count.max(0.0) as usize + 1)
+}
+
+/// Amplitude, period and phase of a disturbance of an angular frequency with these parts.
+fn disturbance(frequency: f64, sine: f64, cosine: f64) -> Vec<f64> {
+    let amplitude = libm::hypot(sine, cosine);
+    vec![amplitude, TAU / frequency, libm::atan2(cosine, sine)]
+}
 
 impl Effect for PeriodicDisturbance {
     fn id(&self) -> EffectId {
@@ -68,8 +86,13 @@ impl Effect for PeriodicDisturbance {
         ]
     }
 
-    fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
-        Vec::new()
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
+        let frequencies = frequencies(probe.scales.duration, probe.scales.step);
+        let frequencies: Vec<f64> = frequencies.iter().map(|shape| shape[0]).collect();
+        let wave = |m: &Instant, w: f64| [libm::sin(w * m.time), libm::cos(w * m.time)];
+        let best = probe.best_waves(&frequencies, STARTS, wave).into_iter();
+        best.map(|(w, [sine, cosine])| disturbance(w, sine, cosine))
+            .collect()
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
@@ -79,19 +102,11 @@ impl Effect for PeriodicDisturbance {
         ];
         vec![Atom {
             parts: COLUMNS,
-            grid: |extent| {
-                let shortest = LEAST_SAMPLES * extent.step / extent.duration;
-                let most = MOST_WAVES.min(1.0 / shortest);
-                let wave = TAU / extent.duration;
-                let count = (most - LEAST_WAVES) * FREQUENCIES_PER_WAVE;
-                even(LEAST_WAVES * wave, most * wave, count.max(0.0) as usize + 1)
-            },
+            grid: |extent| frequencies(extent.duration, extent.step),
             shapes: 1,
             values: Values::From(|solved| {
                 let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);
-                let amplitude = libm::hypot(sine, cosine);
-                let wave = vec![amplitude, TAU / solved.shape[0], libm::atan2(cosine, sine)];
-                Some((solved.body, wave))
+                Some((solved.body, disturbance(solved.shape[0], sine, cosine)))
             }),
         }]
     }

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::atom::{Values, even};
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Shape};
 use crate::measurement::Kind;
-use crate::model::Model;
+use crate::model::{Instant, Model};
 
 pub(super) const ID: EffectId = EffectId::new("torque_ripple");
 
@@ -19,6 +19,23 @@ const MOST_FREQUENCIES: f64 = 160.0;
 
 /// The largest share of the torque that ripples ([`Range::UnitInterval`]).
 const MOST: f64 = 1.0;
+
+/// Waves from which a fit begins.
+const STARTS: usize = 3;
+
+/// Spatial frequencies from a wave in the travel to the finest that samples show in which the body goes so far.
+fn frequencies(travel: f64, way: f64) -> Vec<Shape> {
+    let (first, last) = (TAU / travel, TAU / (LEAST_SAMPLES * way));
+    let apart = first / FREQUENCIES_PER_TURN;
+    let count = ((last - first) / apart).min(MOST_FREQUENCIES);
+    even(first, first + count.floor() * apart, count as usize + 1)
+}
+
+/// Share, spatial frequency and phase of a ripple with these parts; none where it is too large to be one.
+fn ripple(frequency: f64, sine: f64, cosine: f64) -> Option<Vec<f64>> {
+    let share = libm::hypot(sine, cosine);
+    (share <= MOST).then(|| vec![share, frequency, libm::atan2(cosine, sine)])
+}
 
 impl Effect for TorqueRipple {
     fn id(&self) -> EffectId {
@@ -68,8 +85,16 @@ impl Effect for TorqueRipple {
         ]
     }
 
-    fn starts(&self, _probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
-        Vec::new()
+    fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
+        let (low, high) = probe.position_range();
+        let frequencies = frequencies(high - low, probe.scales.speed * probe.scales.step);
+        let frequencies: Vec<f64> = frequencies.iter().map(|shape| shape[0]).collect();
+        let wave = |m: &Instant, n: f64| {
+            [libm::sin(n * m.position), libm::cos(n * m.position)].map(|wave| m.input * wave)
+        };
+        let best = probe.best_waves(&frequencies, STARTS, wave).into_iter();
+        best.filter_map(|(n, [sine, cosine])| ripple(n, sine, cosine))
+            .collect()
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
@@ -79,20 +104,11 @@ impl Effect for TorqueRipple {
         ];
         vec![Atom {
             parts: COLUMNS,
-            // From a wave in the travel to the finest that samples at the typical speed show.
-            grid: |extent| {
-                let shortest = LEAST_SAMPLES * extent.speed * extent.step;
-                let (first, last) = (TAU / extent.travel, TAU / shortest);
-                let apart = first / FREQUENCIES_PER_TURN;
-                let count = ((last - first) / apart).min(MOST_FREQUENCIES);
-                even(first, first + count.floor() * apart, count as usize + 1)
-            },
+            grid: |extent| frequencies(extent.travel, extent.speed * extent.step),
             shapes: 1,
             values: Values::From(|solved| {
                 let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);
-                let share = libm::hypot(sine, cosine);
-                let wave = vec![share, solved.shape[0], libm::atan2(cosine, sine)];
-                (share <= MOST).then_some((solved.body, wave))
+                Some((solved.body, ripple(solved.shape[0], sine, cosine)?))
             }),
         }]
     }

@@ -52,6 +52,28 @@ impl Probe {
         self.regress_forces(&own, stride)
     }
 
+    /// Of waves of force of these frequencies (radians per unit of what they go along), the sine and the cosine of each as a
+    /// function of the moment, the `count` that leave least: frequency and coefficients of both.
+    pub(in crate::effect) fn best_waves(
+        &self,
+        frequencies: &[f64],
+        count: usize,
+        wave: impl Fn(&Instant, f64) -> [f64; 2] + Sync,
+    ) -> Vec<(f64, [f64; 2])> {
+        let tried = self.crew.gather(frequencies.len(), |i| {
+            let frequency = frequencies[i];
+            let sine = |m: &Instant| wave(m, frequency)[0];
+            let cosine = |m: &Instant| wave(m, frequency)[1];
+            self.regress_instants(&[&sine, &cosine])
+                .map(|found| (frequency, found))
+        });
+        let mut found: Vec<(f64, Regression)> = tried.into_iter().flatten().collect();
+        found.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
+        let best = found.into_iter().take(count);
+        best.map(|(frequency, fit)| (frequency, [fit.coefficients[0], fit.coefficients[1]]))
+            .collect()
+    }
+
     /// The same for forces as functions of the interval, on one window in `stride`.
     pub(super) fn regress_forces(
         &self,

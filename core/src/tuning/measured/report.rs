@@ -131,7 +131,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
     let followed = models.first().is_some_and(follows);
     let basis = Basis {
-        model: models.first().filter(|_| followed),
+        model: models.first(),
         models: if followed { &models } else { &[] },
         ultimate: ultimate.as_ref(),
         point: point.as_ref(),
@@ -247,6 +247,15 @@ impl MeasuredTuning {
 
     fn of_point(&self) -> Option<String> {
         let (cycle, point) = (self.cycle.as_ref()?, self.point.as_ref()?);
+        if !point.is_known() {
+            return Some(format!(
+                "The cycle (period {} s, amplitude {}, half of peak to peak) does not show the plant: |P| at {} rad/s is \
+                 not determined by this record.",
+                number(cycle.period),
+                number(cycle.amplitude),
+                number(point.omega),
+            ));
+        }
         Some(format!(
             "The cycle (period {} s, amplitude {}, half of peak to peak) shows the plant at {} rad/s: |P| {}, phase {} \
              degrees.",
@@ -273,6 +282,9 @@ impl MeasuredTuning {
             ));
         }
         let (point, cycle) = (self.point.as_ref()?, self.cycle.as_ref()?);
+        if !point.is_known() {
+            return Some("The ultimate gain does not follow.".to_owned());
+        }
         let off = point.phase_deg + 180.0;
         let remedy = if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
             format!(
