@@ -1,5 +1,6 @@
 //! What few machines have is tried last, where everything else leaves more than noise.
 
+use super::hidden_body::is_hidden_body;
 use super::sketch::{Sketch, first_guess};
 use super::tuning::ALIKE;
 use super::{Explain, Stage};
@@ -22,8 +23,14 @@ impl Explain {
         self.stage = Stage::Seldom;
         session.look_where_left(&self.trials[self.best].scored.fit);
         self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
+        // A hidden body makes each simulation far slower, and few machines have both.
+        let hides = |trial: usize| {
+            let mut effects = self.trials[trial].effects().iter();
+            effects.any(|e| is_hidden_body(*e))
+        };
         let mut places = vec![0, self.best];
         places.dedup();
+        places.retain(|trial| *trial == 0 || !hides(*trial));
         for from in places {
             let fit = &self.trials[from].scored.fit;
             let open = session.seldom().filter(|e| self.is_open(from, *e));
