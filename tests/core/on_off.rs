@@ -431,12 +431,12 @@ fn a_view_begins_where_it_should_and_its_curves_meet_on_both() {
     assert!((again.start - 1.0).abs() < 1e-12);
 }
 
-fn noise(std_dev: f64, interval: f64, seed: u64) -> Option<Noise> {
-    Some(Noise {
+fn noise(std_dev: f64, interval: f64, seed: u64) -> Noise {
+    Noise {
         std_dev,
         interval,
         seed,
-    })
+    }
 }
 
 /// Two positions without anything more are the relay of the textbook, whose simulation is another program.
@@ -445,7 +445,7 @@ fn in_noise_two_positions_switch_as_the_plain_relay_does() {
     let plant = three_lags(0.4);
     let loop_ = continuous(plant.clone(), relay(1.0, 0.05));
     // It begins within the threshold: the plain relay looks at its noise from the first crossing on only.
-    let noise = noise(0.1, 0.02, 3);
+    let noise = Some(noise(0.1, 0.02, 3));
     let found = run(&loop_, 40.0, 0.1, noise).unwrap();
     let options = Options {
         noise,
@@ -476,9 +476,9 @@ fn in_noise_a_dead_zone_with_shortest_times_follows_its_recursion() {
         initial: None,
     };
     let noise = noise(0.15, 0.07, 3);
-    let found = run(&loop_, 60.0, 1.0, noise).unwrap();
+    let found = run(&loop_, 60.0, 1.0, Some(noise)).unwrap();
     let times: Vec<f64> = (0..=300).map(|k| 0.2 * f64::from(k)).collect();
-    let seen = noise.unwrap().at(&times);
+    let seen = noise.at(&times);
     let (mut y, mut u, mut held, mut switches) = (0.0_f64, 0.0_f64, 0, 0);
     for (k, (noise, output)) in seen.iter().zip(&found.output).enumerate() {
         assert!((y - output).abs() < 1e-12, "{k}: {y} {output}");
