@@ -269,11 +269,6 @@ impl Signals {
             } else {
                 high - low
             },
-            places: if self.place.is_empty() {
-                [0.0; 2]
-            } else {
-                [low, high]
-            },
             acceleration: rms(&rate),
             rotates: self.rotates,
             range: [least, most],
