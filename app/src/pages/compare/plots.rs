@@ -45,8 +45,11 @@ const RESTARTED: &str = "The model starts afresh from an estimated state in each
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
 
-/// Least width of the labels of y, so that the plots line up.
+/// Least width of the labels of y before one plot was seen to need more, points.
 const AXIS_WIDTH: f32 = 76.0;
+
+/// Widths that differ by less are the same, points.
+const SAME: f32 = 0.5;
 
 /// Height of a signal, of that of both: what the model leaves is what the page is about, the signal where it is.
 const SIGNAL: f32 = 0.75;
@@ -68,14 +71,20 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
         above += note.rect.height() + ui.spacing().item_spacing.y;
     }
     let each = ((height - above) / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
+    // The plots line up: all have the room that the widest labels of y took in the last frame.
+    let text = egui::TextStyle::Body.resolve(ui.style()).size;
+    let id = egui::Id::unique(("labels of y", &measurement.name, text.to_bits()));
+    let labels = ui.data(|data| data.get_temp(id)).unwrap_or(AXIS_WIDTH);
+    let left = ui.cursor().left();
+    let mut widest = labels;
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
         let hand = page.hand().and_then(|hand| by_hand(hand, index));
         let size = |share: f32| Size {
             height: share * each,
-            labels: AXIS_WIDTH,
+            labels,
         };
-        signal_plot(
+        let begins = signal_plot(
             ui,
             measurement,
             output,
@@ -83,12 +92,19 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
             finding,
             size(SIGNAL),
         );
+        widest = widest.max(begins - left);
         if let Some(modelled) = modelled {
             let before = page.report_before().filter(|_| page.before);
             let before = before.and_then(|r| r.replay.channels.get(index));
             let models = (modelled, before, hand);
-            residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
+            let begins =
+                residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
+            widest = widest.max(begins - left);
         }
+    }
+    if widest > labels + SAME {
+        ui.data_mut(|data| data.insert_temp(id, widest));
+        ui.ctx().request_repaint();
     }
 }
 
@@ -197,6 +213,7 @@ fn fit(plot: &mut Pen<'_, '_>, time: &[f64], curves: &[&[f64]], others: &[f64], 
     }
 }
 
+/// Where its plot begins, points.
 fn signal_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
@@ -204,7 +221,7 @@ fn signal_plot(
     (modelled, hand): (Option<&ReplayChannel>, Option<Near<'_>>),
     finding: Option<&Finding>,
     size: Size,
-) {
+) -> f32 {
     let label = titled(output.title(), &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
@@ -254,8 +271,10 @@ fn signal_plot(
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
+    shown.transform.frame().left()
 }
 
+/// Where its plot begins, points.
 fn residual_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
@@ -263,7 +282,7 @@ fn residual_plot(
     (modelled, before, hand): (&ReplayChannel, Option<&ReplayChannel>, Option<Near<'_>>),
     finding: Option<&Finding>,
     size: Size,
-) {
+) -> f32 {
     let label = titled(&format!("{} - model", output.title()), &output.unit);
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
@@ -329,6 +348,7 @@ fn residual_plot(
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
+    shown.transform.frame().left()
 }
 
 /// Where the selected finding says that the error lies.
