@@ -55,8 +55,7 @@ pub fn sized_equation_ui(
                 ui.allocate_exact_size(vec2(row.width, row.ascent + row.descent), Sense::hover());
             // A screen reader says the whole line once.
             if index == 0 {
-                response
-                    .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, line));
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, line));
             }
             let origin = rect.left_top() + vec2(0.0, row.ascent);
             row.paint(ui.painter(), origin, color);

@@ -18,7 +18,7 @@ pub const STAGE: Stage = Stage {
     question: "Which proportional gain gives the wanted phase margin?",
     answer,
     next: "One test with an asymmetric relay gives a whole model: step 4.",
-    plot,
+    plot: errors_ui,
     ui,
 };
 
@@ -64,7 +64,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     );
 }
 
-fn plot(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
+fn errors_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
     if let Ok(found) = &seen.report.phase_margin {
         convergence_ui(ui, found, height);
     }
