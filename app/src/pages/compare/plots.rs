@@ -75,8 +75,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let text = egui::TextStyle::Body.resolve(ui.style()).size;
     let id = egui::Id::unique(("labels of y", &measurement.name, text.to_bits()));
     let labels = ui.data(|data| data.get_temp(id)).unwrap_or(AXIS_WIDTH);
-    let left = ui.cursor().left();
-    let mut widest = labels;
+    let mut begins: Vec<f32> = Vec::new();
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
         let hand = page.hand().and_then(|hand| by_hand(hand, index));
@@ -84,26 +83,32 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
             height: share * each,
             labels,
         };
-        let begins = signal_plot(
+        begins.push(signal_plot(
             ui,
             measurement,
             output,
             (modelled, hand),
             finding,
             size(SIGNAL),
-        );
-        widest = widest.max(begins - left);
+        ));
         if let Some(modelled) = modelled {
             let before = page.report_before().filter(|_| page.before);
             let before = before.and_then(|r| r.replay.channels.get(index));
             let models = (modelled, before, hand);
-            let begins =
-                residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
-            widest = widest.max(begins - left);
+            begins.push(residual_plot(
+                ui,
+                measurement,
+                output,
+                models,
+                finding,
+                size(2.0 - SIGNAL),
+            ));
         }
     }
-    if widest > labels + SAME {
-        ui.data_mut(|data| data.insert_temp(id, widest));
+    let (first, last) = extremes(begins.iter().map(|left| f64::from(*left)));
+    let wider = (last - first) as f32;
+    if wider > SAME {
+        ui.data_mut(|data| data.insert_temp(id, labels + wider));
         ui.ctx().request_repaint();
     }
 }

@@ -184,7 +184,8 @@ impl Tune {
         } else {
             self.seen(true).is_some()
         };
-        let pinned = layout::pins(ui) && shows;
+        let room = layout::pins(ui);
+        let pinned = room && shows;
         if pinned {
             egui::Panel::top("tune_answer").show(ui, |ui| {
                 if measured {
@@ -206,7 +207,7 @@ impl Tune {
                     self.steps_ui(ui, desk);
                 }
                 egui::CollapsingHeader::new(tr(name))
-                    .default_open(pinned)
+                    .default_open(room)
                     .show(ui, |ui| self.side_ui(ui, desk));
                 self.main_ui(ui, desk, pinned, 520.0);
             });
