@@ -45,11 +45,8 @@ const RESTARTED: &str = "The model starts afresh from an estimated state in each
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
 
-/// Least width of the labels of y before one plot was seen to need more, points.
-const AXIS_WIDTH: f32 = 76.0;
-
-/// Widths that differ by less are the same, points.
-const SAME: f32 = 0.5;
+/// Least width of the labels of y, so that the plots line up: that of a name on two lines with long numbers, points.
+const AXIS_WIDTH: f32 = 86.0;
 
 /// Height of a signal, of that of both: what the model leaves is what the page is about, the signal where it is.
 const SIGNAL: f32 = 0.75;
@@ -71,45 +68,27 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
         above += note.rect.height() + ui.spacing().item_spacing.y;
     }
     let each = ((height - above) / (2.0 * count) - 8.0).max(LEAST_HEIGHT);
-    // The plots line up: all have the room that the widest labels of y took in the last frame.
-    let text = egui::TextStyle::Body.resolve(ui.style()).size;
-    let id = egui::Id::unique(("labels of y", &measurement.name, text.to_bits()));
-    let labels = ui.data(|data| data.get_temp(id)).unwrap_or(AXIS_WIDTH);
-    let mut begins: Vec<f32> = Vec::new();
     for (index, output) in measurement.outputs.iter().enumerate() {
         let modelled = report.and_then(|r| r.replay.channels.get(index));
         let hand = page.hand().and_then(|hand| by_hand(hand, index));
         let size = |share: f32| Size {
             height: share * each,
-            labels,
+            labels: AXIS_WIDTH,
         };
-        begins.push(signal_plot(
+        signal_plot(
             ui,
             measurement,
             output,
             (modelled, hand),
             finding,
             size(SIGNAL),
-        ));
+        );
         if let Some(modelled) = modelled {
             let before = page.report_before().filter(|_| page.before);
             let before = before.and_then(|r| r.replay.channels.get(index));
             let models = (modelled, before, hand);
-            begins.push(residual_plot(
-                ui,
-                measurement,
-                output,
-                models,
-                finding,
-                size(2.0 - SIGNAL),
-            ));
+            residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
         }
-    }
-    let (first, last) = extremes(begins.iter().map(|left| f64::from(*left)));
-    let wider = (last - first) as f32;
-    if wider > SAME {
-        ui.data_mut(|data| data.insert_temp(id, labels + wider));
-        ui.ctx().request_repaint();
     }
 }
 
@@ -218,7 +197,6 @@ fn fit(plot: &mut Pen<'_, '_>, time: &[f64], curves: &[&[f64]], others: &[f64], 
     }
 }
 
-/// Where its plot begins, points.
 fn signal_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
@@ -226,7 +204,7 @@ fn signal_plot(
     (modelled, hand): (Option<&ReplayChannel>, Option<Near<'_>>),
     finding: Option<&Finding>,
     size: Size,
-) -> f32 {
+) {
     let label = titled(output.title(), &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
@@ -276,10 +254,8 @@ fn signal_plot(
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
-    shown.transform.frame().left()
 }
 
-/// Where its plot begins, points.
 fn residual_plot(
     ui: &mut egui::Ui,
     measurement: &Measurement,
@@ -287,7 +263,7 @@ fn residual_plot(
     (modelled, before, hand): (&ReplayChannel, Option<&ReplayChannel>, Option<Near<'_>>),
     finding: Option<&Finding>,
     size: Size,
-) -> f32 {
+) {
     let label = titled(&format!("{} - model", output.title()), &output.unit);
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
@@ -353,7 +329,6 @@ fn residual_plot(
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
-    shown.transform.frame().left()
 }
 
 /// Where the selected finding says that the error lies.
