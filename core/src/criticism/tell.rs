@@ -10,7 +10,7 @@ use super::one_way::OneWay;
 use super::ranking::{noise_floor, rank};
 use super::residual_test::residual_tests;
 use super::score::share_left;
-use super::select::{delta_bic, is_noise, outweighs};
+use super::select::{delta_bic, is_all_that_counters_show, is_noise, outweighs};
 use super::session::{Rest, Scored, Session, small_share};
 use super::verdict::{
     Class, PartOfTheWay, Refused, add_both_ways, add_dry_friction, add_experiments, add_glitches,
@@ -240,15 +240,29 @@ fn part_of_the_way(
     tried: &[(&'static dyn Effect, &Trial)],
 ) -> Option<PartOfTheWay> {
     let better = |t: &&(&'static dyn Effect, &Trial)| between(session, model, t.1).is_better();
-    let (best, trial) = tried.iter().find(better)?;
-    let same = |t: &&(&'static dyn Effect, &Trial)| {
-        t.0.id() == best.id() || between(session, trial, t.1).is_same()
+    let better: Vec<&(&'static dyn Effect, &Trial)> = tried.iter().filter(better).collect();
+    // Of what leaves noise, that which needs the fewest values.
+    let noise = better.iter().filter(|t| leaves_noise(session, t.1));
+    let plain = noise.min_by_key(|t| t.1.values());
+    let (best, trial) = plain.or(better.first())?;
+    let same = |t: &&&(&'static dyn Effect, &Trial)| {
+        let alike = t.1.values() <= trial.values() && between(session, trial, t.1).is_same();
+        t.0.id() == best.id() || alike
     };
-    let class = tried.iter().filter(better).filter(same);
+    let class = better.iter().filter(same);
     Some(PartOfTheWay {
         class: class.map(|t| t.0.id()).collect(),
         error: session.completed(&trial.scored).score.error,
         refused: refused(session, model, trial, best.id()),
+    })
+}
+
+/// Whether a model leaves noise of either half.
+fn leaves_noise(session: &Session, trial: &Trial) -> bool {
+    let small = small_share(&trial.scored.fit);
+    let mut halves = trial.halves();
+    halves.all(|half| {
+        is_all_that_counters_show(&half.score) || is_noise(&half.score, session.first(half), small)
     })
 }
 
@@ -259,10 +273,7 @@ fn refused(session: &Session, before: &Trial, after: &Trial, effect: EffectId) -
     let Some(place) = effects.iter().position(|e| e.id() == effect) else {
         return Refused::Other;
     };
-    let small = small_share(&scored.fit);
-    let mut halves = after.halves().map(|half| &half.score);
-    let noise = halves.all(|score| is_noise(score, session.first(scored), small));
-    if !noise && !outweighs(before.error(), after.error()) {
+    if !leaves_noise(session, after) && !outweighs(before.error(), after.error()) {
         Refused::LeavesMore
     } else if !scored.shows_marks_of(effects[place], &session.scales) {
         Refused::WithoutMarks
