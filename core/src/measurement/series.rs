@@ -14,6 +14,7 @@ use super::mapping::ImportOptions;
 use super::period::Period;
 use super::resembling::is_period;
 use super::size::wrong_size;
+use super::times;
 
 /// One series of numbers with the name by which it is addressed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -162,8 +163,7 @@ impl Table {
             let found = listed(self.series.iter().map(|s| s.name.as_str()));
             return Err(whole(Problem::NotMapped { found }));
         }
-        map(&mut fields, &options.mapping).map_err(whole)?;
-        let mut notes = Vec::new();
+        let mut notes = map(&mut fields, &options.mapping).map_err(whole)?;
         let mut options = options.clone();
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
             notes.push(format!(
@@ -180,7 +180,8 @@ impl Table {
         let mut header =
             understand(fields, &options).map_err(|(column, p)| (column.map(|(_, n)| n), p))?;
         header.notes.splice(..0, notes);
-        let values = columns(&header, series)?;
+        let (values, mended) = columns(&header, series)?;
+        header.notes.extend(mended);
         header.doubt_seconds(&values)?;
         assemble(name, &header, values).map_err(whole)
     }
@@ -236,8 +237,11 @@ fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<String
     ))
 }
 
-/// The columns of a header in SI units, checked as the rows of a text are.
-fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Located> {
+/// The columns of a header in SI units, checked as the rows of a text are, and what was done to the times.
+fn columns(
+    header: &Header,
+    mut series: Vec<Series>,
+) -> Result<(Vec<Vec<f64>>, Vec<String>), Located> {
     let mut all: Vec<Vec<f64>> = Vec::new();
     for column in &header.columns {
         let mut values = series
@@ -263,18 +267,20 @@ fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Lo
                 return Err((here(i), Problem::NotFinite { text }));
             }
         }
-        let pairs = || values.iter().zip(values.iter().skip(1));
-        if column.role == Role::Time
-            && let Some((i, (before, now))) = pairs().enumerate().find(|(_, (a, b))| b <= a)
-        {
-            let (before, now) = (format!("{before}"), format!("{now}"));
-            return Err((here(i + 1), Problem::TimeOrder { before, now }));
-        }
         if let Some(i) = wrong_size(column.role, &values) {
             let text = format!("{:e}", values[i] / column.factor);
             return Err((here(i), Problem::Size { text }));
         }
         all.push(values);
     }
-    Ok(all)
+    let Some(time) = header.columns.iter().position(|c| c.role == Role::Time) else {
+        return Ok((all, Vec::new()));
+    };
+    let mended = times::mend(&mut all[time], header.kind).map_err(|(i, problem)| {
+        let name = shorten(&header.columns[time].name);
+        (Some(format!("{name}, sample {}", i + 1)), problem)
+    })?;
+    let others = all.iter_mut().enumerate().filter(|(i, _)| *i != time);
+    others.for_each(|(_, values)| times::leave_out(values, &mended.out));
+    Ok((all, mended.notes))
 }
