@@ -9,7 +9,7 @@ use super::guess::guess;
 use super::mapping::{ImportOptions, Mapping};
 use super::period::Period;
 use super::resembling::{WANTED, resembles};
-use super::unit::{COUNTS, parse};
+use super::unit::{COUNTS, is_bare_counts, parse};
 use super::{Kind, Quantity};
 
 const INPUT: Role = Role::Measured(Quantity::Input);
@@ -187,7 +187,8 @@ impl Words {
         let shown = words.iter().map(|w| part(w, w.open.unwrap_or(address(w))));
         let mut shown: Vec<String> = shown.collect();
         // Nothing else is taken by its name.
-        let others = columns.iter().filter_map(|c| c.known_as);
+        let unused = (0..columns.len()).filter(|i| words.iter().all(|w| w.column != *i));
+        let others = unused.filter_map(|i| columns[i].known_as);
         for role in others.filter(|role| words.iter().all(|w| w.role != *role)) {
             let out = format!("{}=-", role.name());
             if !parts.contains(&out) && role != Role::Time {
@@ -355,8 +356,20 @@ impl<'a> Settler<'a> {
             .collect()
     }
 
+    /// Those of them whose unit, where the file says one, this role may have.
+    fn fitting(&self, role: Role) -> Vec<usize> {
+        let mut signals = self.signals();
+        if matches!(role, POSITION | VELOCITY) {
+            signals.retain(|i| {
+                let unit = self.columns[*i].unit.as_deref();
+                unit.is_none_or(|unit| is_bare_counts(unit) || role.takes(Kind::Drive, unit))
+            });
+        }
+        signals
+    }
+
     fn named(&self, role: Role) -> Option<usize> {
-        let mut signals = self.signals().into_iter();
+        let mut signals = self.fitting(role).into_iter();
         signals.find(|i| resembles(role, &self.columns[*i].name))
     }
 
@@ -378,7 +391,7 @@ impl<'a> Settler<'a> {
         if role == POSITION && (self.named(VELOCITY).is_some() || speeds(self.columns)) {
             return Some(());
         }
-        let signals = self.signals();
+        let signals = self.fitting(role);
         let only = match (signals.as_slice(), role) {
             ([one], INPUT) if self.has_output() => Some(*one),
             ([one], _) if role != INPUT && self.has(INPUT) && self.is_settled(INPUT) => Some(*one),

@@ -1,5 +1,6 @@
 //! Comma-separated files, as people have them.
 
+use super::average;
 use super::clock::{Clock, unit_from_1970};
 use super::error::{ImportError, Problem};
 use super::fill::fill;
@@ -369,11 +370,13 @@ pub(super) fn assemble(
     })?;
     outputs.sort_by_key(|c| c.quantity != Quantity::Position);
     let step = switched_on::from_rest(&mut time, &mut input, &mut outputs, &mut reference);
+    let thinned = average::thin(header.kind, &mut time, &mut input, &mut outputs);
     let warnings = rates::contradiction(&time, &outputs)
         .into_iter()
         .chain(header.ignored.iter().map(|n| ignored(n, header.kind)))
         .chain(header.notes.iter().cloned())
         .chain(step)
+        .chain(thinned)
         .chain(gaps::said(header.kind, &time))
         .collect();
     Ok(Measurement {

@@ -5,6 +5,7 @@
 //! refuses anything else, so that no later module has to check again.
 
 mod advice;
+mod average;
 mod cell;
 mod clock;
 mod column;

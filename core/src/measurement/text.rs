@@ -124,7 +124,10 @@ pub(super) fn open(
 
 /// A line without the quotes around all of its columns, which some programs write.
 fn unwrapped(line: &str) -> &str {
-    let inside = line.trim().strip_prefix('"').and_then(|l| l.strip_suffix('"'));
+    let inside = line
+        .trim()
+        .strip_prefix('"')
+        .and_then(|l| l.strip_suffix('"'));
     let whole = inside.filter(|l| !l.contains('"') && l.contains([',', ';', '\t']));
     whole.unwrap_or(line)
 }
