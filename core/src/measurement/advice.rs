@@ -293,7 +293,11 @@ impl Open {
         let count = columns[first.column].numbers.count;
         let free =
             (0..columns.len()).filter(|i| !settled(*i) && columns[*i].numbers.count == count);
-        let free: Vec<&FoundColumn> = free.map(|i| &columns[i]).filter(|c| is_signal(c)).collect();
+        let free: Vec<&FoundColumn> = free.map(|i| &columns[i]).collect();
+        // What is the same throughout may be the input where nothing goes in steps.
+        let steps = free.iter().any(|c| is_signal(c) && c.numbers.step());
+        let may_be = |c: &&FoundColumn| is_signal(c) || (!steps && is_held(c));
+        let free: Vec<&FoundColumn> = free.into_iter().filter(may_be).collect();
         let addresses = |all: &[&FoundColumn]| all.iter().map(|c| c.address.clone()).collect();
         let stepping: Vec<&FoundColumn> =
             free.iter().copied().filter(|c| c.numbers.step()).collect();
@@ -396,7 +400,9 @@ impl<'a> Settler<'a> {
             ([one], INPUT) if self.has_output() => Some(*one),
             ([one], _) if role != INPUT && self.has(INPUT) && self.is_settled(INPUT) => Some(*one),
             (two @ [_, _], INPUT) if !self.has_output() => self.the_one_that_steps(two),
-            ([_], INPUT) if !self.has_output() => self.the_one_that_is_held(),
+            ([one], INPUT) if !self.has_output() => {
+                self.held().filter(|_| !self.columns[*one].numbers.step())
+            }
             _ => None,
         };
         if let Some(column) = only {
@@ -443,14 +449,15 @@ impl<'a> Settler<'a> {
     }
 
     /// The only column that has one value other than 0 throughout: the input of a single step.
-    fn the_one_that_is_held(&self) -> Option<usize> {
-        let held = |i: &usize| {
-            let numbers = &self.columns[*i].numbers;
-            matches!(numbers.range, Some([least, largest]) if least == largest && least != 0.0)
-        };
-        let mut all = self.free().filter(held);
+    fn held(&self) -> Option<usize> {
+        let mut all = self.free().filter(|i| is_held(&self.columns[*i]));
         all.next().filter(|_| all.next().is_none())
     }
+}
+
+/// Whether a column has one value other than 0 throughout.
+fn is_held(column: &FoundColumn) -> bool {
+    matches!(column.numbers.range, Some([least, largest]) if least == largest && least != 0.0)
 }
 
 /// Whether a column may be a signal by its values, and was not only wanted.

@@ -37,12 +37,12 @@ pub(super) fn thin(
         return None;
     }
     let sums = Sums::of(&input.values);
-    let outputs_sums: Vec<Sums> = outputs.iter().map(|o| Sums::of(&o.values)).collect();
+    let sums_of_outputs: Vec<Sums> = outputs.iter().map(|o| Sums::of(&o.values)).collect();
     let each = || {
         outputs
             .iter()
             .map(|o| o.values.as_slice())
-            .zip(&outputs_sums)
+            .zip(&sums_of_outputs)
     };
     let mut left: Vec<Vec<f64>> = each().map(|(values, _)| roughness(values)).collect();
     let mut every = 1;
@@ -50,11 +50,9 @@ pub(super) fn thin(
         let next: Vec<Vec<f64>> = each()
             .map(|(y, sums)| left_by(y, sums, 2 * every))
             .collect();
-        if !left
-            .iter()
-            .zip(&next)
-            .all(|(one, other)| is_noise(one, other))
-        {
+        let slow = sums_of_outputs.iter().all(|sums| is_slow(sums, 2 * every));
+        let mut pairs = left.iter().zip(&next);
+        if !slow || !pairs.all(|(one, other)| is_noise(one, other)) {
             break;
         }
         left = next;
@@ -64,7 +62,7 @@ pub(super) fn thin(
         return None;
     }
     let places = || (0..n).step_by(every);
-    for (output, sums) in outputs.iter_mut().zip(&outputs_sums) {
+    for (output, sums) in outputs.iter_mut().zip(&sums_of_outputs) {
         output.values = places().map(|at| sums.around(at, every)).collect();
     }
     input.values = places()
