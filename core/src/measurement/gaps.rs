@@ -9,6 +9,9 @@ const RARE: usize = 50;
 /// Where there are more, the clock jitters, and a gap is so many times as long as all steps but one in so many.
 const BESIDE_JITTER: f64 = 4.0;
 
+/// Average steps from which a gap of a process is said: over a shorter one hardly anything moves.
+const SAID: f64 = 5.0;
+
 /// First samples after gaps in times that increase.
 pub fn gaps(time: &[f64]) -> Vec<usize> {
     let step = |k: usize| time[k] - time[k - 1];
@@ -28,11 +31,10 @@ pub fn gaps(time: &[f64]) -> Vec<usize> {
 /// What is to be said of the gaps of a process, whose model runs on over them.
 pub(super) fn said(kind: Kind, time: &[f64]) -> Option<String> {
     let found = gaps(time);
-    let longest = found
-        .iter()
-        .map(|k| time[*k] - time[k - 1])
-        .max_by(f64::total_cmp)?;
-    (kind == Kind::Process).then(|| {
+    let step = |k: &usize| time[*k] - time[k - 1];
+    let longest = found.iter().map(step).max_by(f64::total_cmp)?;
+    let usual = (time.last()? - time.first()?) / time.len() as f64;
+    (kind == Kind::Process && longest > SAID * usual).then(|| {
         let count = match found.len() {
             1 => "1 gap".to_owned(),
             many => format!("{many} gaps"),
