@@ -131,7 +131,7 @@ impl Words {
                 places.push((role, column, false));
             }
         }
-        let mut settler = Settler::new(columns, places);
+        let mut settler = Settler::new(columns, kind, places);
         for role in needed {
             settler.settle(role)?;
         }
@@ -168,11 +168,16 @@ impl Words {
                 open: open.iter().find(|(r, _)| *r == role).map(|(_, word)| *word),
             }
         });
-        Self::write(words.collect(), columns, periodic)
+        Self::write(words.collect(), columns, kind, periodic)
     }
 
     /// Writes the mapping; `None` where a shell would not leave it as it is.
-    fn write(words: Vec<Word>, columns: &[FoundColumn], periodic: bool) -> Option<Self> {
+    fn write(
+        words: Vec<Word>,
+        columns: &[FoundColumn],
+        kind: Kind,
+        periodic: bool,
+    ) -> Option<Self> {
         let part = |word: &Word, source: &str| {
             let sign = if word.negative { "-" } else { "" };
             let mut part = format!("{}={sign}{source}", word.role.name());
@@ -196,7 +201,7 @@ impl Words {
                 shown.push(out);
             }
         }
-        let open = Open::of(&words, columns);
+        let open = Open::of(&words, kind, columns);
         let (map, shown) = (parts.join(", "), shown.join(", "));
         let special = |c: char| matches!(c, '"' | '$' | '`' | '\\' | '!');
         let quoted = if map.contains(special) { '\'' } else { '"' };
@@ -285,7 +290,7 @@ fn several(columns: &[String]) -> String {
 
 impl Open {
     /// What may stand for the words of a mapping that are open.
-    fn of(words: &[Word], columns: &[FoundColumn]) -> Self {
+    fn of(words: &[Word], kind: Kind, columns: &[FoundColumn]) -> Self {
         let settled = |i: usize| words.iter().any(|w| w.open.is_none() && w.column == i);
         let Some(first) = words.iter().find(|w| w.open.is_some()) else {
             return Self::default();
@@ -296,7 +301,12 @@ impl Open {
         let free: Vec<&FoundColumn> = free.map(|i| &columns[i]).collect();
         // What is the same throughout may be the input where nothing goes in steps.
         let steps = free.iter().any(|c| is_signal(c) && c.numbers.step());
-        let may_be = |c: &&FoundColumn| is_signal(c) || (!steps && is_held(c));
+        let open = words.iter().filter(|w| w.open.is_some());
+        let roles: Vec<Role> = open.map(|w| w.role).collect();
+        let may_be = |c: &&FoundColumn| {
+            let fit = roles.iter().any(|role| fits(*role, kind, c));
+            fit && (is_signal(c) || (!steps && is_held(c)))
+        };
         let free: Vec<&FoundColumn> = free.into_iter().filter(may_be).collect();
         let addresses = |all: &[&FoundColumn]| all.iter().map(|c| c.address.clone()).collect();
         let stepping: Vec<&FoundColumn> =
@@ -311,6 +321,7 @@ impl Open {
 /// Gives roles to columns by what their names, units and values say, and leaves open what they do not.
 struct Settler<'a> {
     columns: &'a [FoundColumn],
+    kind: Kind,
     places: Vec<(Role, usize, bool)>,
     open: Vec<(Role, &'static str)>,
     /// Values in a column of the record, which a file of MATLAB has beside others.
@@ -318,7 +329,7 @@ struct Settler<'a> {
 }
 
 impl<'a> Settler<'a> {
-    fn new(columns: &'a [FoundColumn], places: Vec<(Role, usize, bool)>) -> Self {
+    fn new(columns: &'a [FoundColumn], kind: Kind, places: Vec<(Role, usize, bool)>) -> Self {
         let counts = columns
             .iter()
             .filter(|c| is_signal(c))
@@ -330,6 +341,7 @@ impl<'a> Settler<'a> {
         let placed = places.first().map(|(_, i, _)| columns[*i].numbers.count);
         Self {
             columns,
+            kind,
             count: placed.or(usual).unwrap_or_default(),
             places,
             open: Vec::new(),
@@ -363,12 +375,7 @@ impl<'a> Settler<'a> {
     /// Those of them whose unit, where the file says one, this role may have.
     fn fitting(&self, role: Role) -> Vec<usize> {
         let mut signals = self.signals();
-        if matches!(role, POSITION | VELOCITY) {
-            signals.retain(|i| {
-                let unit = self.columns[*i].unit.as_deref();
-                unit.is_none_or(|unit| is_bare_counts(unit) || role.takes(Kind::Drive, unit))
-            });
-        }
+        signals.retain(|i| fits(role, self.kind, &self.columns[*i]));
         signals
     }
 
@@ -453,6 +460,12 @@ impl<'a> Settler<'a> {
         let mut all = self.free().filter(|i| is_held(&self.columns[*i]));
         all.next().filter(|_| all.next().is_none())
     }
+}
+
+/// Whether a column may have this role by its unit, where the file says one.
+fn fits(role: Role, kind: Kind, column: &FoundColumn) -> bool {
+    let unit = column.unit.as_deref();
+    unit.is_none_or(|unit| is_bare_counts(unit) || role.takes(kind, unit))
 }
 
 /// Whether a column has one value other than 0 throughout.

@@ -243,6 +243,7 @@ fn columns(
     mut series: Vec<Series>,
 ) -> Result<(Vec<Vec<f64>>, Vec<String>), Located> {
     let mut all: Vec<Vec<f64>> = Vec::new();
+    let mut in_order = None;
     for column in &header.columns {
         let mut values = series
             .get_mut(column.index)
@@ -267,20 +268,24 @@ fn columns(
                 return Err((here(i), Problem::NotFinite { text }));
             }
         }
+        if column.role == Role::Time {
+            let mut times = values.clone();
+            let mended = times::mend(&mut times, header.kind);
+            let mended = mended.map_err(|(i, problem)| (here(i), problem))?;
+            in_order = Some((all.len(), times, mended));
+        }
         if let Some(i) = wrong_size(column.role, &values) {
             let text = format!("{:e}", values[i] / column.factor);
             return Err((here(i), Problem::Size { text }));
         }
         all.push(values);
     }
-    let Some(time) = header.columns.iter().position(|c| c.role == Role::Time) else {
+    let Some((time, times, mended)) = in_order else {
         return Ok((all, Vec::new()));
     };
-    let mended = times::mend(&mut all[time], header.kind).map_err(|(i, problem)| {
-        let name = shorten(&header.columns[time].name);
-        (Some(format!("{name}, sample {}", i + 1)), problem)
-    })?;
-    let others = all.iter_mut().enumerate().filter(|(i, _)| *i != time);
-    others.for_each(|(_, values)| times::leave_out(values, &mended.out));
+    for values in &mut all {
+        times::leave_out(values, &mended.out);
+    }
+    all[time] = times;
     Ok((all, mended.notes))
 }

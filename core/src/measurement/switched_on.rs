@@ -81,13 +81,13 @@ mod tests {
         }
     }
 
-    /// What becomes of a record with this input and output, of 0.1 s a sample.
+    /// What becomes of a record with this input and output, of an eighth of a second a sample.
     fn read(
         quantity: Quantity,
         input: f64,
         value: impl Fn(f64) -> f64,
     ) -> (usize, Option<[f64; 3]>) {
-        let mut time: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k)).collect();
+        let mut time: Vec<f64> = (0..200).map(|k| 0.125 * f64::from(k)).collect();
         let mut outputs = [channel(quantity, time.iter().map(|t| value(*t)).collect())];
         let mut input = channel(Quantity::Input, vec![input; 200]);
         let said = from_rest(&mut time, &mut input, &mut outputs, &mut []);
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_step_from_rest_gets_the_row_before_it() {
-        let rest = |y: f64| (201, Some([-0.1, 0.0, y]));
+        let rest = |y: f64| (201, Some([-0.125, 0.0, y]));
         assert_eq!(read(Quantity::Velocity, 3.0, grown), rest(0.0));
         assert_eq!(read(Quantity::Velocity, -3.0, |t| -grown(t)), rest(0.0));
         let way = |t: f64| 7.0 + t - 2.0 * grown(t);
