@@ -22,7 +22,7 @@ pub(in crate::criticism) struct Difference {
     pub fall: f64,
     /// The same of the half where it is less.
     pub least_fall: f64,
-    /// The same without the block of each half that tells most of it; where blocks hang together, without its neighbours too.
+    /// The same without the block of each half that tells most of it, where blocks do not hang together.
     steady_fall: f64,
 }
 
@@ -58,9 +58,8 @@ pub(in crate::criticism) fn difference(session: &Session, from: &Trial, to: &Tri
     };
     let halves = || from.halves().zip(to.halves());
     let least = halves().map(|(a, b)| fall(a.score.error, b.score.error));
-    let beside = usize::from(!session.data.has_blocks_apart());
     let steady = halves().map(|(a, b)| {
-        let [a, b] = without_most(&a.score.held_blocks, &b.score.held_blocks, beside);
+        let [a, b] = without_most(&a.score.held_blocks, &b.score.held_blocks);
         fall(a.sqrt(), b.sqrt())
     });
     Difference {
@@ -68,17 +67,20 @@ pub(in crate::criticism) fn difference(session: &Session, from: &Trial, to: &Tri
         blocks: changes.len(),
         fall: fall(from.error(), to.error()),
         least_fall: least.fold(f64::INFINITY, f64::min),
-        steady_fall: steady.fold(f64::INFINITY, f64::min),
+        steady_fall: if session.data.has_blocks_apart() {
+            steady.fold(f64::INFINITY, f64::min)
+        } else {
+            f64::NEG_INFINITY
+        },
     }
 }
 
-/// Sums of two series without the place where the second is less by the most, and so many on either side of it.
-fn without_most(a: &[f64], b: &[f64], beside: usize) -> [f64; 2] {
-    let pairs = || a.iter().zip(b).enumerate();
-    let most = pairs().max_by(|(_, x), (_, y)| (x.0 - x.1).total_cmp(&(y.0 - y.1)));
-    let most = most.map_or(0, |(place, _)| place);
-    let others = pairs().filter(|(place, _)| place.abs_diff(most) > beside);
-    others.fold([0.0, 0.0], |[x, y], (_, (a, b))| [x + a, y + b])
+/// Sums of two series without the place where the second is less by the most.
+fn without_most(a: &[f64], b: &[f64]) -> [f64; 2] {
+    let pairs = || a.iter().zip(b);
+    let sums = pairs().fold([0.0, 0.0], |[x, y], (a, b)| [x + a, y + b]);
+    let most = pairs().max_by(|x, y| (x.0 - x.1).total_cmp(&(y.0 - y.1)));
+    most.map_or(sums, |(a, b)| [sums[0] - a, sums[1] - b])
 }
 
 /// Student's quantile for so many degrees of freedom, from that of the normal distribution (Cornish and Fisher 1960).
@@ -127,9 +129,8 @@ mod tests {
     fn the_block_that_tells_most_is_left_out() {
         let before = [9.0, 100.0, 9.0, 9.0];
         let after = [8.0, 1.0, 10.0, 8.0];
-        assert_eq!(without_most(&before, &after, 0), [27.0, 26.0]);
-        assert_eq!(without_most(&before, &after, 1), [9.0, 8.0]);
-        assert_eq!(without_most(&[], &[], 0), [0.0, 0.0]);
+        assert_eq!(without_most(&before, &after), [27.0, 26.0]);
+        assert_eq!(without_most(&[], &[]), [0.0, 0.0]);
     }
 
     #[test]
