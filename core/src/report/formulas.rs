@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::html::{Cell, escape, figure, legend, table};
+use super::escape::escape;
+use super::html::{Cell, figure, legend, table};
 use super::input::{Tongue, shell_word};
 use super::math::sentence;
 use super::model::experiments;

@@ -2,28 +2,9 @@
 
 use std::fmt::Write as _;
 
+use super::escape::escape;
 use super::input::Tongue;
 use super::math::math;
-
-/// Text from anywhere as text of a page: no tag, no attribute, no invisible character comes through.
-pub(super) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\n' | '\t' => out.push(' '),
-            // Marks that turn the direction of the text round can make it read as something else.
-            '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {}
-            c if c.is_control() => {}
-            c => out.push(c),
-        }
-    }
-    out
-}
 
 impl Tongue {
     /// A text in this language, as text of a page.
@@ -131,16 +112,3 @@ svg .before { stroke: var(--model); stroke-width: 1.6; stroke-dasharray: 2 3; } 
 svg .estimate { stroke: var(--residual); stroke-width: 2; } svg path.diamond { fill: var(--measured); } svg .band { fill: var(--residual); opacity: .25; stroke: none; }
 svg rect.bar { fill: var(--model); } svg rect.floor { fill: var(--noise); } svg rect.shade { fill: var(--band); opacity: .18; }
 "#;
-
-#[cfg(test)]
-mod tests {
-    use super::escape;
-
-    #[test]
-    fn nothing_from_a_file_becomes_markup() {
-        assert_eq!(
-            escape("<script src='//x'>\u{7}&\"\u{202e}x\n</script>"),
-            "&lt;script src=&#39;//x&#39;&gt;&amp;&quot;x &lt;/script&gt;"
-        );
-    }
-}

@@ -1,6 +1,6 @@
-//! Equations as MathML, which browsers set without a font or a script of ours.
+//! Equations as `MathML`, which browsers set without a font or a script of ours.
 
-use super::html::escape;
+use super::escape::escape;
 use crate::equation::{Part, Piece, parse, pieces};
 
 /// An equation in the line that it stands in; what the files have is its name for who copies or hears it.

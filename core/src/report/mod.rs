@@ -3,6 +3,7 @@
 //! The page is made from finished data alone, so that the command line, the app and a batch write the
 //! same one. Everything that comes from a file is escaped.
 
+mod escape;
 mod formulas;
 mod html;
 mod input;
@@ -18,7 +19,8 @@ use crate::diagnosis::ChannelNoise;
 use crate::measurement::Kind;
 use crate::uncertain::brief;
 use crate::user_model::UserModel;
-use html::{escape, figure, legend, section};
+use escape::escape;
+use html::{figure, legend, section};
 pub use input::{Provenance, ReportInput, Tongue, shell_word};
 pub use model::baseline;
 pub use sha256::sha256;
