@@ -71,8 +71,6 @@ pub struct Extent {
     pub speed: f64,
     /// Range of the position; 0 for a process.
     pub travel: f64,
-    /// Least and largest position; 0 for a process.
-    pub places: [f64; 2],
     /// Root mean square of the acceleration; of the rate of a process output.
     pub acceleration: f64,
     /// Whether it is a drive that turns.

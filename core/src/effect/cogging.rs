@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::atom::{Values, even};
 use super::{
-    Atom, BodyStart, Dimension, Effect, EffectId, Extent, ParameterSpec, Part, Probe, Range, Shape,
+    Atom, BodyStart, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Shape,
     gravity, hardening_spring, return_spring,
 };
 use crate::measurement::Kind;
@@ -23,13 +23,23 @@ const LEAST_SAMPLES: f64 = 8.0;
 const FREQUENCIES_PER_TURN: f64 = 2.0;
 const MOST_FREQUENCIES: f64 = 160.0;
 
-/// From a wave in the travel to the finest that samples at the typical speed show.
-pub(super) fn frequencies(extent: &Extent) -> Vec<Shape> {
-    let shortest = LEAST_SAMPLES * extent.speed * extent.step;
-    let (first, last) = (TAU / extent.travel, TAU / shortest);
+/// Spatial frequencies from a wave in the travel to the finest that samples show between which the body goes so far.
+pub(super) fn frequencies(travel: f64, way: f64) -> Vec<Shape> {
+    let (first, last) = (TAU / travel, TAU / (LEAST_SAMPLES * way));
     let apart = first / FREQUENCIES_PER_TURN;
     let count = ((last - first) / apart).min(MOST_FREQUENCIES);
     even(first, first + count.floor() * apart, count as usize + 1)
+}
+
+/// Amplitude and phase of `sine sin(n x) + cosine cos(n x)`.
+pub(super) fn wave(sine: f64, cosine: f64) -> [f64; 2] {
+    [libm::hypot(sine, cosine), libm::atan2(cosine, sine)]
+}
+
+/// The parameters from the frequency and these coefficients.
+fn parameters(n: f64, sine: f64, cosine: f64) -> Vec<f64> {
+    let [amplitude, phase] = wave(sine, cosine);
+    vec![amplitude, n, phase]
 }
 
 impl Effect for Cogging {
@@ -84,14 +94,13 @@ impl Effect for Cogging {
         probe
             .spatial_frequencies(BEST, share)
             .into_iter()
-            .map(|(n, sine, cosine)| vec![libm::hypot(sine, cosine), n, libm::atan2(cosine, sine)])
+            .map(|(n, sine, cosine)| parameters(n, sine, cosine))
             .collect()
     }
 
     fn starts_with_body(&self, probe: &Probe, _share: f64) -> Vec<BodyStart> {
         let found = probe.balanced_wave().map(|(n, balance)| {
-            let (sine, cosine) = (balance.forces[0], balance.forces[1]);
-            let wave = vec![libm::hypot(sine, cosine), n, libm::atan2(cosine, sine)];
+            let wave = parameters(n, balance.forces[0], balance.forces[1]);
             (balance.body, wave)
         });
         found.into_iter().collect()
@@ -109,13 +118,11 @@ impl Effect for Cogging {
         ];
         vec![Atom {
             parts: COLUMNS,
-            grid: frequencies,
+            grid: |extent| frequencies(extent.travel, extent.speed * extent.step),
             shapes: 1,
             values: Values::From(|solved| {
                 let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);
-                let amplitude = libm::hypot(sine, cosine);
-                let wave = vec![amplitude, solved.shape[0], libm::atan2(cosine, sine)];
-                Some((solved.body, wave))
+                Some((solved.body, parameters(solved.shape[0], sine, cosine)))
             }),
         }]
     }

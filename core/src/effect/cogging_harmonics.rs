@@ -1,7 +1,6 @@
 //! Cogging that is no pure wave: a second one, twice as fine, beside the first.
 
-use super::atom::Values;
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, cogging};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, cogging};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -12,15 +11,10 @@ pub(super) struct CoggingHarmonics;
 /// Spatial frequencies of the strongest wave that are followed, each as the first one and as the second.
 const BEST: usize = 3;
 
-/// Amplitude and phase of `s sin(n x) + c cos(n x)`.
-fn wave(sine: f64, cosine: f64) -> [f64; 2] {
-    [libm::hypot(sine, cosine), libm::atan2(cosine, sine)]
-}
-
 /// The parameters from the frequency of the first wave and the coefficients of both.
 fn parameters(n: f64, coefficients: &[f64]) -> Vec<f64> {
-    let [a, phi] = wave(coefficients[0], coefficients[1]);
-    let [b, psi] = wave(coefficients[2], coefficients[3]);
+    let [a, phi] = cogging::wave(coefficients[0], coefficients[1]);
+    let [b, psi] = cogging::wave(coefficients[2], coefficients[3]);
     vec![a, n, phi, b, psi]
 }
 
@@ -103,24 +97,6 @@ impl Effect for CoggingHarmonics {
             Some(parameters(n, &fit.coefficients))
         };
         firsts.filter_map(start).collect()
-    }
-
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[
-            Part::Force(|m, n| libm::sin(n[0] * m.position)),
-            Part::Force(|m, n| libm::cos(n[0] * m.position)),
-            Part::Force(|m, n| libm::sin(2.0 * n[0] * m.position)),
-            Part::Force(|m, n| libm::cos(2.0 * n[0] * m.position)),
-        ];
-        vec![Atom {
-            parts: COLUMNS,
-            grid: cogging::frequencies,
-            shapes: 1,
-            values: Values::From(|solved| {
-                let values = parameters(solved.shape[0], solved.coefficients);
-                Some((solved.body, values))
-            }),
-        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

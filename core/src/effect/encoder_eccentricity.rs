@@ -2,10 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::atom::Values;
-use super::{
-    Atom, Dimension, Effect, EffectId, NO_SHAPE, ParameterSpec, Part, Probe, Range, Series,
-};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::{Eccentricity, Model};
 
@@ -15,9 +12,6 @@ pub(super) struct EncoderEccentricity;
 
 /// Travel in rad from which on its wave is told from any other curve.
 const LEAST_TRAVEL: f64 = PI;
-
-/// The largest that is one: a fifth of the radius is a broken mounting.
-const MOST: f64 = 0.2;
 
 /// Eccentricity and phases with which a fit begins.
 const USUAL: f64 = 0.02;
@@ -67,40 +61,10 @@ impl Effect for EncoderEccentricity {
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let (low, high) = probe.position_range();
-        if high - low < LEAST_TRAVEL {
+        if !probe.rotates || high - low < LEAST_TRAVEL {
             return Vec::new();
         }
         PHASES.map(|phase| vec![USUAL, phase]).to_vec()
-    }
-
-    /// To first order `J dw/dt + d w = u` with `w = v - e v cos(x + phi)`.
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Motion(|track, _| {
-            let along = |wave: fn(f64) -> f64| {
-                let moments = track.velocity.iter().zip(track.position);
-                moments.map(|(v, x)| v * wave(*x)).collect()
-            };
-            [libm::cos as fn(f64) -> f64, libm::sin]
-                .map(|wave| Series {
-                    derivative: 1,
-                    values: along(wave),
-                })
-                .into()
-        })];
-        vec![Atom {
-            grid: |extent| {
-                let turns = extent.rotates && extent.travel >= LEAST_TRAVEL;
-                turns.then_some(NO_SHAPE).into_iter().collect()
-            },
-            ..Atom::linear(
-                COLUMNS,
-                Values::From(|solved| {
-                    let (cosine, sine) = (solved.coefficients[0], -solved.coefficients[1]);
-                    let size = libm::hypot(cosine, sine) / solved.body[0].abs();
-                    (size <= MOST).then(|| (solved.body, vec![size, libm::atan2(sine, cosine)]))
-                }),
-            )
-        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -1,7 +1,6 @@
 //! End stops: a spring with damping that pushes the body back where its way ends.
 
-use super::atom::{Values, geometric, shape};
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -12,11 +11,6 @@ pub(super) struct EndStop;
 /// Natural frequencies of the body on a stop that a fit begins with, in radians per sample: from one that gives way over many
 /// samples to one that throws the body back within a few.
 const STIFFNESSES: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
-
-/// The same of the places that the screen tries: so many, from the softest to the hardest.
-const PLACES: usize = 8;
-const SOFTEST: f64 = 0.02;
-const HARDEST: f64 = 1.5;
 
 /// Most of the travel that a stop takes.
 const DEEPEST: f64 = 0.35;
@@ -115,45 +109,6 @@ impl Effect for EndStop {
             [[upper, lower], [upper, low], [high, lower]].map(|[x, y]| vec![stiffness, 0.0, x, y])
         });
         all.collect()
-    }
-
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[
-            Part::Force(|m, ends| {
-                (ends[1] - m.position).max(0.0) - (m.position - ends[0]).max(0.0)
-            }),
-            Part::Force(|m, ends| {
-                let inside = m.position <= ends[0] && m.position >= ends[1];
-                if inside { 0.0 } else { -m.velocity }
-            }),
-        ];
-        vec![Atom {
-            parts: COLUMNS,
-            grid: |extent| {
-                let [low, high] = extent.places;
-                let travel = high - low;
-                let fastest = extent.range[1].max(-extent.range[0]);
-                let depths: Vec<f64> = geometric(SOFTEST, HARDEST, PLACES)
-                    .iter()
-                    .map(|radians| depth(radians[0], fastest, extent.step, travel))
-                    .chain([0.0])
-                    .collect();
-                let pairs = depths
-                    .iter()
-                    .flat_map(|a| depths.iter().map(move |b| (a, b)));
-                pairs
-                    .filter(|(a, b)| **a > 0.0 || **b > 0.0)
-                    .map(|(a, b)| shape([high - a, low + b]))
-                    .collect()
-            },
-            shapes: 2,
-            values: Values::From(|solved| {
-                let [stiffness, damping] = [solved.coefficients[0], solved.coefficients[1]];
-                let [upper, lower, ..] = solved.shape;
-                (stiffness > 0.0)
-                    .then(|| (solved.body, vec![stiffness, damping.max(0.0), upper, lower]))
-            }),
-        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

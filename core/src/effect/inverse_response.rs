@@ -1,10 +1,7 @@
 //! Inverse response: the output first goes the wrong way.
 
-use super::atom::Values;
 use super::effect::slower_is_the_process;
-use super::{
-    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series, second_lag,
-};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, second_lag};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -67,31 +64,6 @@ impl Effect for InverseResponse {
 
     fn order(&self, kind: Kind, body: &mut [f64], values: &mut [f64]) -> bool {
         slower_is_the_process(kind, body, values)
-    }
-
-    /// `T T2 y'' + (T + T2) y' + y = K (u - T_z u')`.
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Motion(|track, _| {
-            let negative = |values: &[f64]| values.iter().map(|y| -y).collect();
-            vec![
-                Series {
-                    derivative: 2,
-                    values: negative(track.velocity),
-                },
-                Series {
-                    derivative: 1,
-                    values: negative(track.input),
-                },
-            ]
-        })];
-        vec![Atom::linear(
-            COLUMNS,
-            Values::From(|solved| {
-                let (body, lag) = second_lag::lags(solved.body, solved.coefficients[0])?;
-                let zero = solved.coefficients[1];
-                (zero > 0.0).then(|| (body, vec![lag, zero]))
-            }),
-        )]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

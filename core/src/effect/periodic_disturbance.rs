@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::atom::{Values, even};
+use super::atom::even;
+use super::cogging::wave;
 use super::spec::SEEN_PERIODS;
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Shape};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range, Shape};
 use crate::measurement::Kind;
 use crate::model::{Instant, Model};
 
@@ -20,9 +21,6 @@ const FREQUENCIES_PER_WAVE: f64 = 2.0;
 /// Samples in the shortest wave.
 const LEAST_SAMPLES: f64 = 8.0;
 
-/// Waves from which a fit begins.
-const STARTS: usize = 3;
-
 /// Angular frequencies, rad/s, that a record of this duration and step tells apart.
 fn frequencies(duration: f64, step: f64) -> Vec<Shape> {
     let shortest = LEAST_SAMPLES * step / duration;
@@ -34,8 +32,8 @@ fn frequencies(duration: f64, step: f64) -> Vec<Shape> {
 
 /// Amplitude, period and phase of a disturbance of an angular frequency with these parts.
 fn disturbance(frequency: f64, sine: f64, cosine: f64) -> Vec<f64> {
-    let amplitude = libm::hypot(sine, cosine);
-    vec![amplitude, TAU / frequency, libm::atan2(cosine, sine)]
+    let [amplitude, phase] = wave(sine, cosine);
+    vec![amplitude, TAU / frequency, phase]
 }
 
 impl Effect for PeriodicDisturbance {
@@ -88,27 +86,10 @@ impl Effect for PeriodicDisturbance {
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let frequencies = frequencies(probe.scales.duration, probe.scales.step);
-        let frequencies: Vec<f64> = frequencies.iter().map(|shape| shape[0]).collect();
-        let wave = |m: &Instant, w: f64| [libm::sin(w * m.time), libm::cos(w * m.time)];
-        let best = probe.best_waves(&frequencies, STARTS, wave).into_iter();
+        let at = |m: &Instant, w: f64| [libm::sin(w * m.time), libm::cos(w * m.time)];
+        let best = probe.best_waves(&frequencies, at).into_iter();
         best.map(|(w, [sine, cosine])| disturbance(w, sine, cosine))
             .collect()
-    }
-
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[
-            Part::Force(|m, waves| libm::sin(waves[0] * m.time)),
-            Part::Force(|m, waves| libm::cos(waves[0] * m.time)),
-        ];
-        vec![Atom {
-            parts: COLUMNS,
-            grid: |extent| frequencies(extent.duration, extent.step),
-            shapes: 1,
-            values: Values::From(|solved| {
-                let (sine, cosine) = (solved.coefficients[0], solved.coefficients[1]);
-                Some((solved.body, disturbance(solved.shape[0], sine, cosine)))
-            }),
-        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

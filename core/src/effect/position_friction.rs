@@ -1,7 +1,6 @@
 //! Dry friction that grows along the way, as of a guide that is tighter at one end.
 
-use super::atom::Values;
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -47,11 +46,6 @@ impl Effect for PositionFriction {
         let rubbing = probe.signature(|x, v| -x * v.signum());
         let found = probe.regress(&[&rubbing]).map(|fit| fit.coefficients);
         found.into_iter().collect()
-    }
-
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Force(|m, _| -m.position * m.direction)];
-        vec![Atom::linear(COLUMNS, Values::Coefficients)]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

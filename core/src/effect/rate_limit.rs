@@ -1,18 +1,12 @@
 //! Rate limit: the actuator follows the command at a limited rate.
 
-use super::atom::{Values, geometric};
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
-use crate::model::{Actuator, Model, given};
+use crate::model::{Actuator, Model};
 
 pub(super) const ID: EffectId = EffectId::new("rate_limit");
 
 pub(super) struct RateLimit;
-
-/// Samples that a way over the largest input takes, from the first to the second, so many.
-const LEAST: f64 = 0.7;
-const MOST: f64 = 300.0;
-const RATES: usize = 16;
 
 impl Effect for RateLimit {
     fn id(&self) -> EffectId {
@@ -53,21 +47,6 @@ impl Effect for RateLimit {
         [2.0, 8.0, 30.0]
             .map(|samples| vec![largest / (samples * probe.scales.step)])
             .to_vec()
-    }
-
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Input(|track, rate| {
-            given(Actuator::Rate(rate[0]), track.input, track.step)
-        })];
-        vec![Atom {
-            parts: COLUMNS,
-            grid: |extent| {
-                let rate = |samples: f64| extent.input / (samples * extent.step);
-                geometric(rate(MOST), rate(LEAST), RATES)
-            },
-            shapes: 1,
-            values: Values::Shape,
-        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

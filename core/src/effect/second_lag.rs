@@ -12,7 +12,7 @@ pub(super) struct SecondLag;
 
 /// Body of the slower of two lags and time constant of the faster one, where `inertia y' + damping y` stands beside this
 /// coefficient times `y''`; none where one of them would not settle.
-pub(super) fn lags([inertia, damping]: [f64; 2], coefficient: f64) -> Option<([f64; 2], f64)> {
+fn lags([inertia, damping]: [f64; 2], coefficient: f64) -> Option<([f64; 2], f64)> {
     // Of the polynomial 1 + sum s + product s^2.
     let (sum, product) = (inertia / damping, coefficient / damping);
     let root = (sum * sum / 4.0 - product).max(0.0).sqrt();

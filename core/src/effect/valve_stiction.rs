@@ -1,17 +1,12 @@
 //! Valve stiction: the stem sticks until the command has moved far enough, and slips.
 
-use super::atom::{Values, shape};
-use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range};
+use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
-use crate::model::{Actuator, Model, given};
+use crate::model::{Actuator, Model};
 
 pub(super) const ID: EffectId = EffectId::new("valve_stiction");
 
 pub(super) struct ValveStiction;
-
-/// Distances that are tried, as shares of the largest input, each with jumps of these times it.
-const DISTANCES: [f64; 9] = [0.01, 0.02, 0.035, 0.05, 0.075, 0.1, 0.15, 0.22, 0.35];
-const JUMPS: [f64; 4] = [0.0, 0.5, 1.5, 5.0];
 
 impl Effect for ValveStiction {
     fn id(&self) -> EffectId {
@@ -60,27 +55,6 @@ impl Effect for ValveStiction {
         [0.02, 0.07, 0.2]
             .map(|share| vec![share * largest, 0.0])
             .to_vec()
-    }
-
-    fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Input(|track, [behind, jump, ..]| {
-            let (behind, jump) = (*behind, *jump);
-            given(Actuator::Stiction { behind, jump }, track.input, track.step)
-        })];
-        vec![Atom {
-            parts: COLUMNS,
-            grid: |extent| {
-                let pairs = DISTANCES.iter().flat_map(|d| JUMPS.map(|j| (d, j)));
-                pairs
-                    .map(|(d, jump)| shape([d * extent.input, jump * d * extent.input]))
-                    .collect()
-            },
-            shapes: 2,
-            values: Values::From(|solved| {
-                let [behind, jump, ..] = solved.shape;
-                Some((solved.body, vec![behind, jump]))
-            }),
-        }]
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {

@@ -71,23 +71,14 @@ impl Remembering {
     }
 }
 
-/// What an actuator gives after each sample of commands `step` seconds apart, at rest before.
-pub(crate) fn given(actuator: Actuator, commands: &[f64], step: f64) -> Vec<f64> {
-    let before = commands.first().copied().unwrap_or(0.0);
-    let mut remembering = Remembering::new(actuator, before);
-    commands
-        .iter()
-        .map(|u| remembering.after(*u, step))
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn from_rest(actuator: Actuator, commands: &[f64]) -> Vec<f64> {
-        let all: Vec<f64> = std::iter::once(&0.0).chain(commands).copied().collect();
-        given(actuator, &all, 1.0).split_off(1)
+        let mut remembering = Remembering::new(actuator, 0.0);
+        let given = commands.iter().map(|u| remembering.after(*u, 1.0));
+        given.collect()
     }
 
     #[test]

@@ -34,7 +34,6 @@ mod state;
 mod swing;
 
 pub use actuator::Actuator;
-pub(crate) use actuator::given;
 pub use closed_loop::{Run, run_controlled, run_controlled_from};
 pub(crate) use contact::dahl;
 pub use encoder::Eccentricity;

@@ -31,14 +31,14 @@ impl Explain {
         let mut places = vec![0, self.best];
         places.dedup();
         places.retain(|trial| *trial == 0 || !hides(*trial));
+        let told = session.screened_body.map(Vec::from);
+        let bodies: Vec<Vec<f64>> = first_guess(session).into_iter().chain(told).collect();
         for from in places {
             let fit = &self.trials[from].scored.fit;
             let open = session.seldom().filter(|e| self.is_open(from, *e));
             let sketches = open.flat_map(|e| Sketch::beside(session, screened, fit, e));
             let mut sketches: Vec<Sketch> = sketches.collect();
-            let told = session.screened_body.map(Vec::from);
-            let bodies = first_guess(session).into_iter().chain(told);
-            Sketch::with_other_bodies(&mut sketches, fit, bodies);
+            Sketch::with_other_bodies(&mut sketches, fit, bodies.iter().cloned());
             self.take(session, sketches);
         }
     }

@@ -53,10 +53,7 @@ impl Prepared {
             kind: signals.kind,
             extent: signals.extent(longest as f64 * signals.step),
             weights: vec![1.0; rows.len()],
-            library: effect::library()
-                .filter(|e| !effect::is_seldom(e.id()))
-                .chain(own.iter().copied())
-                .collect(),
+            library: effect::library().chain(own.iter().copied()).collect(),
             choices: Vec::new(),
             dull: vec![false; widths.len()],
             rows,

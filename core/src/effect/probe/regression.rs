@@ -4,11 +4,15 @@ use nalgebra::{DMatrix, DVector};
 
 use super::equations::{solved, spans_stride};
 use super::{BASE, Probe};
+use crate::effect::Shape;
 use crate::model::Instant;
 use crate::sums::dot;
 
 /// Samples at most that enter a scan over very many forces.
 const SCANNED: usize = 6_000;
+
+/// Waves of force that are followed.
+const WAVES: usize = 3;
 
 /// Outcome of a regression on force signatures.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,23 +57,22 @@ impl Probe {
     }
 
     /// Of waves of force of these frequencies (radians per unit of what they go along), the sine and the cosine of each as a
-    /// function of the moment, the `count` that leave least: frequency and coefficients of both.
+    /// function of the moment, those that leave least: frequency and coefficients of both.
     pub(in crate::effect) fn best_waves(
         &self,
-        frequencies: &[f64],
-        count: usize,
-        wave: impl Fn(&Instant, f64) -> [f64; 2] + Sync,
+        frequencies: &[Shape],
+        at: impl Fn(&Instant, f64) -> [f64; 2] + Sync,
     ) -> Vec<(f64, [f64; 2])> {
         let tried = self.crew.gather(frequencies.len(), |i| {
-            let frequency = frequencies[i];
-            let sine = |m: &Instant| wave(m, frequency)[0];
-            let cosine = |m: &Instant| wave(m, frequency)[1];
+            let frequency = frequencies[i][0];
+            let sine = |m: &Instant| at(m, frequency)[0];
+            let cosine = |m: &Instant| at(m, frequency)[1];
             self.regress_instants(&[&sine, &cosine])
                 .map(|found| (frequency, found))
         });
         let mut found: Vec<(f64, Regression)> = tried.into_iter().flatten().collect();
         found.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
-        let best = found.into_iter().take(count);
+        let best = found.into_iter().take(WAVES);
         best.map(|(frequency, fit)| (frequency, [fit.coefficients[0], fit.coefficients[1]]))
             .collect()
     }
