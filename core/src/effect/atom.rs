@@ -59,14 +59,10 @@ pub struct Track<'a> {
 pub struct Extent {
     /// Sampling time, s.
     pub step: f64,
-    /// Length of the record, s.
-    pub duration: f64,
     /// The longest window that is integrated over, s: what is slower is hardly seen.
     pub window: f64,
     /// Largest input without its sign.
     pub input: f64,
-    /// Mean of the input.
-    pub mean_input: f64,
     /// Root mean square of the velocity about 0; of a process output about its mean.
     pub speed: f64,
     /// Range of the position; 0 for a process.

@@ -14,9 +14,6 @@ pub(super) const ID: EffectId = EffectId::new("cogging");
 
 pub(super) struct Cogging;
 
-/// Spatial frequencies that are followed.
-const BEST: usize = 3;
-
 /// Samples in the shortest wave that is looked for, at the typical speed; frequencies that are tried for each wave that the
 /// travel holds, half of what tells two waves apart; and how many at most.
 const LEAST_SAMPLES: f64 = 8.0;
@@ -92,7 +89,7 @@ impl Effect for Cogging {
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
         probe
-            .spatial_frequencies(BEST, share)
+            .spatial_frequencies(share)
             .into_iter()
             .map(|(n, sine, cosine)| parameters(n, sine, cosine))
             .collect()

@@ -8,9 +8,6 @@ pub(super) const ID: EffectId = EffectId::new("cogging_harmonics");
 
 pub(super) struct CoggingHarmonics;
 
-/// Spatial frequencies of the strongest wave that are followed, each as the first one and as the second.
-const BEST: usize = 3;
-
 /// The parameters from the frequency of the first wave and the coefficients of both.
 fn parameters(n: f64, coefficients: &[f64]) -> Vec<f64> {
     let [a, phi] = cogging::wave(coefficients[0], coefficients[1]);
@@ -83,7 +80,8 @@ impl Effect for CoggingHarmonics {
     }
 
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>> {
-        let found = probe.spatial_frequencies(BEST, share).into_iter();
+        // Each that is followed may be the first wave or the second.
+        let found = probe.spatial_frequencies(share).into_iter();
         let firsts = found.flat_map(|(n, _, _)| [n, n / 2.0]);
         let start = |n: f64| {
             let of = |f: fn(f64) -> f64, k: f64| probe.signature(move |x, _| f(k * n * x));

@@ -87,7 +87,7 @@ pub trait Effect: Sync {
     }
 
     /// What it adds to the equation of motion of such a system: columns of a regression that may find it. Several where it
-    /// may be in several places; each alone is the effect.
+    /// may be in several places; each alone is the effect. None where the screen is not to look for it.
     fn atoms(&self, _kind: Kind) -> Vec<Atom> {
         Vec::new()
     }

@@ -127,7 +127,7 @@ pub fn is_seldom(id: EffectId) -> bool {
     .contains(&id)
 }
 
-/// Every effect that the screen looks for, in the order in which equals are listed.
+/// Every effect, in the order in which equals are listed: the screen looks for those that have atoms.
 pub fn library() -> impl Iterator<Item = &'static dyn Effect> {
     registry().iter().chain(screened_only()).copied()
 }

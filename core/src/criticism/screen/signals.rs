@@ -256,10 +256,8 @@ impl Signals {
         let (least, most) = range(&self.speed);
         Extent {
             step: self.step,
-            duration: self.step * self.len() as f64,
             window,
             input,
-            mean_input: self.input.iter().sum::<f64>() / self.len().max(1) as f64,
             speed: match self.kind {
                 Kind::Drive => rms(&self.speed),
                 Kind::Process => deviation(&self.speed),

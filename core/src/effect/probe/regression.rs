@@ -12,7 +12,7 @@ use crate::sums::dot;
 const SCANNED: usize = 6_000;
 
 /// Waves of force that are followed.
-const WAVES: usize = 3;
+pub(super) const WAVES: usize = 3;
 
 /// Outcome of a regression on force signatures.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::equations::{solved, spans_stride};
+use super::regression::WAVES;
 use super::{BASE, Probe};
 use crate::effect::spec::SEEN_TURN;
 use crate::fourier::transform;
@@ -38,9 +39,9 @@ pub(super) const FASTEST_SPATIAL: f64 = 0.8;
 pub(super) const APART: f64 = 1.2;
 
 impl Probe {
-    /// The `count` spatial frequencies (radians per unit of position) at which the unexplained force
+    /// The [`WAVES`] spatial frequencies (radians per unit of position) at which the unexplained force
     /// repeats most clearly and leaves less than this `share` of it, with the coefficients of sine and cosine.
-    pub fn spatial_frequencies(&self, count: usize, share: f64) -> Vec<(f64, f64, f64)> {
+    pub fn spatial_frequencies(&self, share: f64) -> Vec<(f64, f64, f64)> {
         let travel = self.scales.travel;
         let fastest = FASTEST_SPATIAL / (self.scales.speed * self.scales.step);
         let spacing = APART / travel;
@@ -72,7 +73,7 @@ impl Probe {
             .gather(promising.len(), |i| self.spatial(promising[i]));
         let mut peaks: Vec<Wave> = looked.into_iter().flatten().collect();
         peaks.sort_by(|a, b| a.left.total_cmp(&b.left));
-        peaks.truncate(count);
+        peaks.truncate(WAVES);
         // The peak lies between the scanned frequencies.
         let finer = self.crew.gather(peaks.len(), |i| {
             let near = (-4..=4).map(|k| peaks[i].n + 0.2 * f64::from(k) * spacing);
