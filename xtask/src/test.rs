@@ -36,14 +36,13 @@ const STAGES: [Stage; 9] = [
         cargo(&["test", "--workspace", "--no-fail-fast"], seed)
     }),
     // It says what frames take, and fails for none: what else runs here is not known. In the tests' build, which is
-    // there already, they take longer than in a release.
+    // there already, they take longer than in a release. Of the workspace, as one package would be built anew.
     ("frames while sliders are dragged", || {
         let bench = [
             "bench",
             "--profile",
             "dev",
-            "--package",
-            "hysteron",
+            "--workspace",
             "--bench",
             "frames",
         ];

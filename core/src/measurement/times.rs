@@ -94,10 +94,9 @@ fn out_of_order(before: f64, now: f64) -> Problem {
 fn said(out: usize, runs: usize) -> Vec<String> {
     let mut notes = Vec::new();
     if out == 1 {
-        notes.push(
-            "1 row has the time of the row below it and is left out: the clock had not started."
-                .to_owned(),
-        );
+        notes.push(format!(
+            "{out} row has the time of the row below it and is left out: the clock had not started."
+        ));
     } else if out > 1 {
         notes.push(format!(
             "{out} rows have the time of the row below them and are left out: the clock had not started."
