@@ -268,12 +268,6 @@ impl Data {
         self.outputs.iter().map(|o| o.telling(from, to)).sum()
     }
 
-    /// The same of the fitted part.
-    pub fn fitted_count(&self) -> usize {
-        let fitted = self.blocks.iter().filter(|b| !b.held_back);
-        fitted.map(|b| self.measured(b.from, b.to)).sum()
-    }
-
     /// Whether each block begins anew: of a process that runs through, what is wrong in one goes on in the next.
     pub fn has_blocks_apart(&self) -> bool {
         self.blocks.len() == self.windows.len()

@@ -24,10 +24,6 @@ const MAX_ITERATIONS: usize = 30;
 /// A relative fall of the cost below this ends a fit.
 const COST_TOLERANCE: f64 = 1e-6;
 
-/// The same of a model that leaves this many times the noise in mean square: no verdict hangs on more digits of it.
-const ROUGH_TOLERANCE: f64 = 1e-3;
-const FAR_FROM_NOISE: f64 = 16.0;
-
 /// The same where whole steps do not lower it: on rough ground short ones may go on to find a little for long.
 const CREEP: f64 = 1e-4;
 
@@ -147,7 +143,6 @@ impl Fit {
             matrix[(*j, *j)] += weight;
             gradient[*j] += weight * (value - self.values[*j]);
         }
-        let tolerance = self.tolerance(data);
         let began_with = self.damping;
         let (mut moved, mut lowered, mut shortened, mut growth) =
             (false, false, false, DAMPING_GROWTH);
@@ -161,7 +156,7 @@ impl Fit {
             let hope = fall / present.max(f64::MIN_POSITIVE);
             if !shortened {
                 self.hope = hope;
-            } else if hope < tolerance {
+            } else if hope < COST_TOLERANCE {
                 break;
             }
             let (starts, motion) = self.motion_from(data, &values, starts, scale, present, scales);
@@ -172,12 +167,7 @@ impl Fit {
                 (self.values, self.starts, self.motion) = (values, starts, motion);
                 self.damping = (self.damping * 0.2).max(1e-9);
                 moved = true;
-                lowered = fall
-                    > if shortened {
-                        tolerance.max(CREEP)
-                    } else {
-                        tolerance
-                    };
+                lowered = fall > if shortened { CREEP } else { COST_TOLERANCE };
                 break;
             }
             self.damping *= growth;
@@ -205,15 +195,6 @@ impl Fit {
             };
         }
         self.done = self.stalls >= MAX_STALLS || self.iterations >= MAX_ITERATIONS;
-    }
-
-    /// A relative fall of the cost below this ends the fit.
-    fn tolerance(&self, data: &Data) -> f64 {
-        if self.cost > FAR_FROM_NOISE * data.fitted_count() as f64 {
-            ROUGH_TOLERANCE
-        } else {
-            COST_TOLERANCE
-        }
     }
 
     /// Iterates until it is done.
