@@ -315,7 +315,6 @@ impl Session {
             .collect();
         Probe::new(&ProbeInput {
             kind: data.kind,
-            rotates: self.motion == Motion::Rotational,
             scales: self.scales,
             position: &data.position_estimate(),
             followed: data.excitation.followed(),
