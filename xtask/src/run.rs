@@ -25,6 +25,18 @@ pub fn run(program: &str, arguments: &[&str]) -> Result<(), String> {
     )
 }
 
+/// Runs cargo in the project's folder, with a variable of the environment. Without what would make building again
+/// after a change faster: that takes gigabytes, and all that the tests need is built once.
+pub fn cargo(arguments: &[&str], variable: Option<(&str, &str)>) -> Result<(), String> {
+    let mut command = Command::new("cargo");
+    command
+        .args(arguments)
+        .env("CARGO_INCREMENTAL", "0")
+        .envs(variable)
+        .current_dir(root());
+    check(&mut command, "cargo", arguments)
+}
+
 /// Runs a prepared command.
 pub fn check(command: &mut Command, program: &str, arguments: &[&str]) -> Result<(), String> {
     let shown = format!("{program} {}", arguments.join(" "));

@@ -1,9 +1,8 @@
 //! Every check and test, stage by stage.
 
-use std::process::Command;
 use std::time::Instant;
 
-use crate::run::{check, root, run};
+use crate::run::{cargo, run};
 use crate::{archives, browser, setup, web};
 
 type Stage = (&'static str, fn() -> Result<(), String>);
@@ -52,18 +51,6 @@ const STAGES: [Stage; 9] = [
     ("archives", archives::test),
     ("page in headless Chromium", browser::test),
 ];
-
-/// Runs cargo in the project's folder, with a variable of the environment. Without what would make building again
-/// after a change faster: that takes gigabytes, and all is built once here.
-fn cargo(arguments: &[&str], variable: Option<(&str, &str)>) -> Result<(), String> {
-    let mut command = Command::new("cargo");
-    command
-        .args(arguments)
-        .env("CARGO_INCREMENTAL", "0")
-        .envs(variable)
-        .current_dir(root());
-    check(&mut command, "cargo", arguments)
-}
 
 /// Runs all stages; a failure does not keep the later ones from running.
 pub fn test() -> Result<(), String> {
