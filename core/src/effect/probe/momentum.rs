@@ -47,7 +47,7 @@ const GRADUAL: f64 = 0.9;
 
 /// Waves along the way that are tried at most; parts of their distance in which the best of them is looked for, and how
 /// often among ever closer ones.
-const WAVES: usize = 500;
+const MOST_WAVES: usize = 500;
 const PARTS: i32 = 5;
 const FINER: usize = 2;
 
@@ -290,7 +290,7 @@ impl Probe {
             found.min_by(|a, b| a.1.left.total_cmp(&b.1.left))
         };
         let first = (SEEN_TURN / APART).ceil();
-        let count = ((fastest / spacing).floor() + 1.0 - first).min(WAVES as f64) as usize;
+        let count = ((fastest / spacing).floor() + 1.0 - first).min(MOST_WAVES as f64) as usize;
         let rows: Vec<Row> = rows((first - 1.0) * spacing, spacing, count).collect();
         let mut found = least(&rows)?;
         let mut apart = spacing;
