@@ -261,7 +261,7 @@ fn mycodos_log_gives_the_cycle_and_what_is_wrong_with_its_gains() {
         "{cycle:?}"
     );
     assert!(
-        result.text.contains("twice too large") && result.text.contains("20 times"),
+        result.text.contains("twice as large as it should be") && result.text.contains("20 times"),
         "{}",
         result.text
     );

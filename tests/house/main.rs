@@ -23,7 +23,7 @@ use imports::{Imports, circles, imports as imports_of};
 use tree::{Tree, crates_in};
 
 /// Rooms of core, lowest first, then those of the app: a file imports from its own room and from rooms before it.
-const ROOMS: [&str; 41] = [
+const ROOMS: [&str; 42] = [
     // small numerics, no physics
     "count",
     "order",
@@ -32,6 +32,7 @@ const ROOMS: [&str; 41] = [
     "root",
     "random",
     "curve",
+    "equation",
     "exponential",
     "fourier",
     "crew",

@@ -315,6 +315,7 @@ impl Session {
             .collect();
         Probe::new(&ProbeInput {
             kind: data.kind,
+            rotates: self.motion == Motion::Rotational,
             scales: self.scales,
             position: &data.position_estimate(),
             followed: data.excitation.followed(),

@@ -10,12 +10,13 @@ use super::one_way::OneWay;
 use super::ranking::{noise_floor, rank};
 use super::residual_test::residual_tests;
 use super::score::share_left;
-use super::select::{delta_bic, outweighs};
-use super::session::{Rest, Scored, Session};
+use super::select::{delta_bic, is_all_that_counters_show, is_noise, outweighs};
+use super::session::{Rest, Scored, Session, small_share};
 use super::verdict::{
-    Class, add_both_ways, add_dry_friction, add_experiments, add_glitches, add_held, add_hint,
-    add_idle, add_input_check, add_integrating, add_limited, add_overruled, add_part_of_the_way,
-    add_pauses, add_relay_loop, add_rest, verdict,
+    Class, PartOfTheWay, Refused, add_both_ways, add_dry_friction, add_experiments, add_glitches,
+    add_held, add_hint, add_idle, add_input_check, add_integrating, add_limited,
+    add_other_experiment, add_overruled, add_part_of_the_way, add_pauses, add_relay_loop, add_rest,
+    verdict,
 };
 use crate::diagnosis::{
     Candidate, Contradiction, Limits, NextExperiment, Step, StepReport, Verdict,
@@ -118,7 +119,7 @@ impl Tell {
                 add_hint(&mut verdict, hint(session, trial, &tried));
             }
             add_idle(&mut verdict, &present, &[]);
-            add_input_check(&mut verdict, &session.input_check);
+            add_input_check(&mut verdict, &session.input_check, &parameters);
             let whole = session.whole();
             add_glitches(&mut verdict, whole.glitches);
             add_pauses(&mut verdict, whole.pauses);
@@ -200,6 +201,7 @@ impl Tell {
         if is_joined {
             add_both_ways(&mut verdict);
         } else {
+            add_other_experiment(&mut verdict, &session.whole().input);
             add_experiments(&mut verdict, &self.experiments);
         }
         verdict
@@ -231,20 +233,57 @@ fn hint(
     is_promising(&difference).then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
 }
 
-/// The effects that lower the error most for certain though they leave more than they explain, and to what.
+/// The effects that lower the error most for certain and were not taken, why not, and the error with them.
 fn part_of_the_way(
     session: &Session,
     model: &Trial,
     tried: &[(&'static dyn Effect, &Trial)],
-) -> Option<(Vec<EffectId>, f64)> {
+) -> Option<PartOfTheWay> {
     let better = |t: &&(&'static dyn Effect, &Trial)| between(session, model, t.1).is_better();
-    let (best, trial) = tried.iter().find(better)?;
-    let same = |t: &&(&'static dyn Effect, &Trial)| {
-        t.0.id() == best.id() || between(session, trial, t.1).is_same()
+    let better: Vec<&(&'static dyn Effect, &Trial)> = tried.iter().filter(better).collect();
+    // Of what leaves noise, that which needs the fewest values.
+    let noise = better.iter().filter(|t| leaves_noise(session, t.1));
+    let plain = noise.min_by_key(|t| t.1.values());
+    let (best, trial) = plain.or(better.first())?;
+    let same = |t: &&&(&'static dyn Effect, &Trial)| {
+        let alike = t.1.values() <= trial.values() && between(session, trial, t.1).is_same();
+        t.0.id() == best.id() || alike
     };
-    let class = tried.iter().filter(better).filter(same);
-    let error = session.completed(&trial.scored).score.error;
-    Some((class.map(|t| t.0.id()).collect(), error))
+    let class = better.iter().filter(same);
+    Some(PartOfTheWay {
+        class: class.map(|t| t.0.id()).collect(),
+        error: session.completed(&trial.scored).score.error,
+        refused: refused(session, model, trial, best.id()),
+    })
+}
+
+/// Whether a model leaves noise of either half.
+fn leaves_noise(session: &Session, trial: &Trial) -> bool {
+    let small = small_share(&trial.scored.fit);
+    let mut halves = trial.halves();
+    halves.all(|half| {
+        is_all_that_counters_show(&half.score) || is_noise(&half.score, session.first(half), small)
+    })
+}
+
+/// Why an effect that lowers the error for certain is not named.
+fn refused(session: &Session, before: &Trial, after: &Trial, effect: EffectId) -> Refused {
+    let scored = &after.scored;
+    let effects = &scored.fit.structure.effects;
+    let Some(place) = effects.iter().position(|e| e.id() == effect) else {
+        return Refused::Other;
+    };
+    if !leaves_noise(session, after) && !outweighs(before.error(), after.error()) {
+        Refused::LeavesMore
+    } else if !scored.shows_marks_of(effects[place], &session.scales) {
+        Refused::WithoutMarks
+    } else if !scored.tells_of(place) {
+        Refused::MayBeNothing
+    } else if !session.is_sizeable(&scored.fit, place) {
+        Refused::Trifle
+    } else {
+        Refused::Other
+    }
 }
 
 /// Every effect of the library, the best first; the suggested one leads.

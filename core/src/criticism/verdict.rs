@@ -19,6 +19,9 @@ use crate::uncertain::{in_unit, with_error};
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
 
+/// Standard error, as a share of it, up to which an inertia, or the gain of a process, is told: its 95 % interval is half of it.
+const DETERMINED: f64 = 0.25;
+
 /// What a model leaves that explains all there is.
 const ALL_NOISE: &str = " is measurement noise.";
 
@@ -346,18 +349,58 @@ pub(super) fn add_limited(verdict: &mut Verdict, data: &Data) {
     }
 }
 
-/// Says what would explain a part for certain and leave more than that, and the error with it.
-pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<(Vec<EffectId>, f64)>) {
-    if let Some((class, error)) = part {
-        let class = in_registry_order(class);
-        let _ = write!(
-            verdict.text,
-            " Part of the way, and not named since it leaves more than it explains: {}, with which the error is {error:.2} \
-             times the noise.",
-            names(&class, " or ")
-        );
-        verdict.part_of_the_way = class;
-    }
+/// Effects that lower the error for certain and are not named, and the error with the best of them.
+pub(super) struct PartOfTheWay {
+    /// Which cannot be told apart.
+    pub class: Vec<EffectId>,
+    /// In times of the noise.
+    pub error: f64,
+    /// Why they are not named.
+    pub refused: Refused,
+}
+
+/// Why an effect that lowers the error for certain is not named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Refused {
+    /// It leaves more than it explains.
+    LeavesMore,
+    /// What makes it what it is does not stand out.
+    WithoutMarks,
+    /// Its size may be 0 by its error.
+    MayBeNothing,
+    /// It is a trifle of the input.
+    Trifle,
+    /// It was not the best when it was compared.
+    Other,
+}
+
+/// Says what would explain a part for certain, why it is not named, and the error with it.
+pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheWay>) {
+    let Some(part) = part else { return };
+    let class = in_registry_order(part.class);
+    let (listed, error) = (names(&class, " or "), part.error);
+    let reason = match part.refused {
+        Refused::LeavesMore => {
+            let _ = write!(
+                verdict.text,
+                " Part of the way, and not named since it leaves more than it explains: {listed}, with which the error is \
+                 {error:.2} times the noise."
+            );
+            verdict.part_of_the_way = class;
+            return;
+        }
+        Refused::WithoutMarks => {
+            " It is not named, since what sets it apart from others does not stand out in this record."
+        }
+        Refused::MayBeNothing => " It is not named, since by its error its size may be 0.",
+        Refused::Trifle => " It is not named, since it would be a trifle of the input.",
+        Refused::Other => "",
+    };
+    let _ = write!(
+        verdict.text,
+        " With {listed} the error would be {error:.2} times the noise.{reason}"
+    );
+    verdict.part_of_the_way = class;
 }
 
 /// Says which effect would lower the error much, and to what, though chance is not ruled out.
@@ -374,13 +417,14 @@ pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
 
 /// Says first where the input does not explain the motion: where its sign is turned or it follows the output, no physics is
 /// named, for that would be physics of another machine. A model that leaves noise alone has explained the motion.
-pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck) {
+/// That the inertia is not told is not said beside one that is.
+pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, parameters: &[Parameter]) {
+    let inertia = parameters.first();
+    let is_told = inertia.is_some_and(|p| p.std_error < DETERMINED * p.value.abs());
     let leads = match check.verdict {
         InputVerdict::Ok => false,
-        InputVerdict::DoesNotExplain
-        | InputVerdict::InertiaNotTold
-        | InputVerdict::Sign
-        | InputVerdict::ClosedLoop => true,
+        InputVerdict::InertiaNotTold => !is_told,
+        InputVerdict::DoesNotExplain | InputVerdict::Sign | InputVerdict::ClosedLoop => true,
     };
     if verdict.complete || !leads {
         return;
@@ -414,6 +458,16 @@ pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId], unsure: &[Effec
     }
 }
 
+/// Puts advice for an input that has more than two levels in the place of the general one.
+pub(super) fn add_other_experiment(verdict: &mut Verdict, input: &[f64]) {
+    let first = input.first();
+    let second = input.iter().find(|u| Some(*u) != first);
+    let has_more = input.iter().any(|u| Some(u) != first && Some(u) != second);
+    if let Some(advice) = verdict.next_experiment.as_mut().filter(|_| has_more) {
+        OTHER_EXPERIMENT.clone_into(advice);
+    }
+}
+
 /// Puts the experiments that were found in the place of the general advice.
 pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperiment]) {
     if !experiments.is_empty() && verdict.next_experiment.is_some() {
@@ -425,6 +479,10 @@ pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperime
 /// For effects that act alike in one experiment.
 const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than two levels, such as a \
     staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
+
+/// The same where the input has more levels than two already.
+const OTHER_EXPERIMENT: &str = "Repeat the measurement with another input, of other levels and other speeds of change: what \
+    acts alike in one motion differs in another.";
 
 /// For what is one constant while a drive turns one way.
 const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the motion, a \

@@ -1,6 +1,6 @@
 //! The header: which column is what, in which unit.
 
-pub(super) use super::column::{Role, role, shorten};
+pub(super) use super::column::{Role, begin_of, role, shorten};
 use super::error::Problem;
 use super::mapping::{ImportOptions, Mapping};
 use super::period::Period;
@@ -167,8 +167,9 @@ fn addressed(fields: &[Field], source: &str) -> Option<usize> {
     named.or_else(place).filter(|i| *i < fields.len())
 }
 
-/// Gives the columns that a mapping names their meaning; what it takes, no other column can be.
-pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem> {
+/// Gives the columns that a mapping names their meaning; what it takes, no other column can be. Says what is used besides
+/// by its name where the mapping names what was measured.
+pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<Vec<String>, Problem> {
     for field in fields.iter_mut() {
         if mapping.entries.iter().any(|e| field.role == Some(e.role)) {
             field.role = None;
@@ -195,7 +196,25 @@ pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem
             }
         }
     }
-    Ok(())
+    let output = |role: Role| {
+        use Quantity::{Output, Position, Velocity};
+        matches!(role, Role::Measured(Position | Velocity | Output))
+    };
+    let mut named = mapping.entries.iter().filter(|e| e.source.is_some());
+    if !named.any(|entry| output(entry.role)) {
+        return Ok(Vec::new());
+    }
+    let besides = fields.iter().filter_map(|field| {
+        let role = field
+            .role
+            .filter(|role| output(*role) && !mapping.speaks_of(*role))?;
+        Some(format!(
+            "The column '{}' is used as well, by its name: {}=- in the mapping leaves it out.",
+            shorten(&field.name),
+            role.name()
+        ))
+    });
+    Ok(besides.collect())
 }
 
 /// Understands the fields of a header.
@@ -204,7 +223,7 @@ pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<
     let roles: Vec<Option<Role>> = fields.iter().map(|f| f.role).collect();
     if roles.iter().all(Option::is_none) {
         let names: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
-        let found = shorten(&names.join(","));
+        let found = begin_of(&names.join(","));
         return Err((None, Problem::NoHeader { found }));
     }
     let has = |q: Quantity| roles.contains(&Some(Role::Measured(q)));

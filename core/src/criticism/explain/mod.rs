@@ -31,7 +31,7 @@ pub(super) use swap::may_replace;
 use task::Task;
 pub(super) use trial::Trial;
 use tuning::{
-    ALIKE, FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS,
+    FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS,
 };
 
 /// The model with these effects, to which others are added.
@@ -112,8 +112,11 @@ pub(super) struct Explain {
     stage: Stage,
     /// The subset of each size that leads; and of those with a hidden body.
     leads: [Vec<Option<usize>>; 2],
-    /// Leads of the present size that were looked at.
+    /// Leads that were looked at; and how many of them before the present level.
     looked_at: Vec<usize>,
+    looked_before: usize,
+    /// The best before the present level.
+    best_before: usize,
     pub best: usize,
     /// Sizes in a row that brought nothing; and of those with a hidden body.
     misses: [usize; 2],
@@ -138,6 +141,8 @@ impl Explain {
             stage: Stage::Base,
             leads: [Vec::new(), Vec::new()],
             looked_at: Vec::new(),
+            looked_before: 0,
+            best_before: 0,
             best: 0,
             misses: [0, 0],
             rivals: Vec::new(),
@@ -304,7 +309,8 @@ impl Explain {
     fn open_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let Level { size, hidden } = level;
         self.stage = Stage::Fit(level);
-        self.looked_at.clear();
+        self.looked_before = self.looked_at.len();
+        self.best_before = self.best;
         // Where the input is not what acted, an effect would be one of another machine.
         let other = matches!(
             session.input_check.verdict,
@@ -341,7 +347,7 @@ impl Explain {
         if let Some(from) = visible.or(with_hidden) {
             session.look_where_left(&self.trials[from].scored.fit);
         }
-        self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
+        self.limit = session.scouted(&self.trials[self.best].scored.fit);
         let held = self.held_ids();
         let starts = screened.starts(&held, held.len() + size);
         let of_level = |start: &Start| start.effects.iter().any(|e| is_hidden_body(*e)) == hidden;
@@ -392,7 +398,7 @@ impl Explain {
 
     fn judge_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let Level { size, hidden } = level;
-        if self.looked_at.is_empty() {
+        if self.looked_at.len() == self.looked_before {
             let of_level: Vec<usize> = (0..self.trials.len())
                 .filter(|t| self.is_of(*t, level))
                 .collect();
@@ -411,11 +417,14 @@ impl Explain {
         let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self
             .lead(session, &better)
-            .filter(|_| self.looked_at.len() < MOST_LEADS);
+            .filter(|_| self.looked_at.len() - self.looked_before < MOST_LEADS);
         let Some(lead) = lead else {
-            let taken = self.looked_at.contains(&self.best);
             let misses = &mut self.misses[usize::from(hidden)];
-            *misses = if taken { 0 } else { *misses + 1 };
+            *misses = if self.best == self.best_before {
+                *misses + 1
+            } else {
+                0
+            };
             self.open_level(session, screened, level.next());
             return;
         };

@@ -213,7 +213,7 @@ pub fn tune_readings(
             fatal: false,
             number: ratio,
             text: format!(
-                "The half periods of {} s and {} s differ: 4d/(pi a) does not hold for such a cycle, and its phase is \
+                "The half periods of {} s and {} s differ: 4d/(πa) does not hold for such a cycle, and its phase is \
                  not that of the describing function; give the record of the test instead.",
                 number(up),
                 number(down)

@@ -312,7 +312,7 @@ impl MeasuredTuning {
     fn of_formula(&self) -> Option<String> {
         let formula = self.conventional?;
         Some(format!(
-            "4d/(pi a), which is right for a symmetric cycle without hysteresis alone, would say {} at {} s.",
+            "4d/(πa), which holds only for a symmetric cycle without hysteresis, would give {} at {} s.",
             number(formula.gain),
             number(formula.period)
         ))

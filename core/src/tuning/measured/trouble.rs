@@ -87,7 +87,7 @@ fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
             false,
             ratio,
             format!(
-                "The {slower} takes {} times as long as the {faster} ({} s against {} s): 4d/(pi a) does not hold for \
+                "The {slower} takes {} times as long as the {faster} ({} s against {} s): 4d/(πa) does not hold for \
                  such a cycle; a mean input nearer to {} would make it symmetric.",
                 n(1.0 / ratio),
                 n(up.max(down)),

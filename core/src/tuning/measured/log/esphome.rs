@@ -16,7 +16,7 @@ const NOISEBAND: f64 = 0.25;
 const DOUBTS: [(&str, &str); 3] = [
     (
         "Frequency is not symmetrical",
-        "ESPHome found the half periods of different length: 4d/(pi a) does not hold there.",
+        "ESPHome found the half periods of different length: 4d/(πa) does not hold there.",
     ),
     (
         "oscillation amplitude",

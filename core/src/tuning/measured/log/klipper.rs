@@ -53,7 +53,7 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Settings), LogError>
         .ok_or(LogError::Garbled(Source::Klipper))?;
     let note = "Klipper switches 5 degrees below the target and at it: with this hysteresis its cycle is not at the \
                 ultimate point. Its formula leaves that out and takes the full power for half of the relay's swing, so that \
-                its ultimate gain is twice 4d/(pi a). PID_CALIBRATE with WRITE_FILE=1 leaves /tmp/heattest.txt, which tells \
+                its ultimate gain is twice 4d/(πa). PID_CALIBRATE with WRITE_FILE=1 leaves /tmp/heattest.txt, which tells \
                 more.";
     Ok((
         Held::Readings(readings),

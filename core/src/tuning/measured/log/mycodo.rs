@@ -28,7 +28,7 @@ pub(super) fn read(text: &str) -> Result<(Held, Settings), LogError> {
     let readings = readings(text).ok_or(LogError::Garbled(Source::Mycodo))?;
     let notes = vec![
         "The tuner takes its output step for half the relay's swing; where the output cannot go below 0 it switches \
-         between 0 and the step, and its ultimate gain is twice too large."
+         between 0 and the step, and its ultimate gain comes out twice as large as it should be."
             .to_owned(),
         "Its rules divide by twentieths (34, 40, 160 for 1.7, 2, 8): Kp comes out 20 times and Kd 400 times too small."
             .to_owned(),
