@@ -16,7 +16,7 @@ mod hook;
 mod jobs;
 mod layout;
 pub mod lessons;
-pub mod link;
+pub use hysteron_work::link;
 mod live;
 mod motion;
 mod notice;

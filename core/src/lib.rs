@@ -58,6 +58,7 @@ pub mod measurement;
 pub mod model;
 pub mod mystery;
 pub mod on_off;
+pub mod opening;
 mod order;
 mod packed;
 pub mod plant;

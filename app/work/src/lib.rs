@@ -6,6 +6,7 @@ pub mod content;
 pub mod cores;
 pub mod enclosed;
 pub mod language;
+pub mod link;
 mod loops;
 mod measured;
 pub mod packed;

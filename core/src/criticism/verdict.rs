@@ -2,9 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::data::Data;
 use super::dry_or_viscous::InsteadOfViscous;
-use super::locate::signal_name;
 use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
@@ -292,60 +290,6 @@ pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
         verdict
             .next_experiment
             .get_or_insert_with(|| NEXT_EXPERIMENT.to_owned());
-    }
-}
-
-/// Says how many values were left out.
-pub(super) fn add_glitches(verdict: &mut Verdict, glitches: usize) {
-    let _ = match glitches {
-        0 => return,
-        1 => write!(
-            verdict.text,
-            " One value stood alone, far off its neighbours, and was left out: a glitch of the sensor."
-        ),
-        many => write!(
-            verdict.text,
-            " {many} values stood alone, far off their neighbours, and were left out: glitches of the sensor."
-        ),
-    };
-}
-
-/// Says over how many gaps in the time the model does not run.
-pub(super) fn add_pauses(verdict: &mut Verdict, pauses: usize) {
-    let _ = match pauses {
-        0 => return,
-        1 => write!(
-            verdict.text,
-            " Rows are missing in one place, or two runs are joined there: the model begins anew after it."
-        ),
-        many => write!(
-            verdict.text,
-            " Rows are missing in {many} places, or runs are joined there: the model begins anew after each."
-        ),
-    };
-}
-
-/// Says of which outputs only the fresh readings were used.
-pub(super) fn add_held(verdict: &mut Verdict, data: &Data) {
-    for output in data.outputs.iter().filter(|o| o.is_held()) {
-        let _ = write!(
-            verdict.text,
-            " The {} stays as it is between {} readings: only these were used.",
-            signal_name(data.kind, output),
-            output.telling(0, data.len())
-        );
-    }
-}
-
-/// Says which sensors were at their limit for a while.
-pub(super) fn add_limited(verdict: &mut Verdict, data: &Data) {
-    for output in data.outputs.iter().filter(|o| o.limited > 0) {
-        let _ = write!(
-            verdict.text,
-            " The {} stays at its largest values for {} samples: its sensor was at its limit, and they were left out.",
-            signal_name(data.kind, output),
-            output.limited
-        );
     }
 }
 

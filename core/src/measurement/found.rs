@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::header::{Field, Role, addresses};
+use super::header::{Field, Role};
+use super::mapped::addresses;
 
 /// First values that are kept of a column, and stretches of which its course is kept, at most: an even number.
 const FIRST: usize = 3;

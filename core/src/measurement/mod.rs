@@ -21,6 +21,7 @@ mod header;
 mod json;
 mod kind;
 mod log;
+mod mapped;
 mod mapping;
 mod mat;
 mod period;
