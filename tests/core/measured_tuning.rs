@@ -347,6 +347,48 @@ fn a_record_that_tells_no_gain_gives_no_gains() {
     assert!(result.text.contains("No gains follow"), "{}", result.text);
 }
 
+#[test]
+fn a_plant_of_negative_gain_is_the_same_loop_with_the_input_turned() {
+    // A cooler: as the heater's record, but what was on is off.
+    let test = Test {
+        hysteresis: 0.2,
+        holds: 0.4,
+        ..tests()[0].clone()
+    };
+    let heater = relay_test(&plants()[3], &test, 5);
+    let mut cooler = heater.clone();
+    cooler.input.iter_mut().for_each(|u| *u = 1.0 - *u);
+    let [heats, cools] = [heater, cooler].map(|r| tune_record(&r, &Settings::default()).unwrap());
+    let (up, down) = (heats.ultimate.unwrap(), cools.ultimate.unwrap());
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}: {}", cools.text);
+    near(-down.gain, up.gain);
+    near(down.period, up.period);
+    let [gain, period] = plants()[3].ultimate();
+    assert!(
+        (down.gain / -gain - 1.0).abs() < 0.02 && (down.period / period - 1.0).abs() < 0.02,
+        "{}",
+        cools.text
+    );
+    near(
+        cools.cycle.as_ref().unwrap().hysteresis,
+        heats.cycle.as_ref().unwrap().hysteresis,
+    );
+    assert!(heats.cycle.unwrap().hysteresis > 0.0);
+    assert_eq!(heats.gains.len(), cools.gains.len());
+    for (h, c) in heats.gains.iter().zip(&cools.gains) {
+        assert_eq!((&h.rule, &h.controller), (&c.rule, &c.controller));
+        near(-c.kp, h.kp);
+        near(-c.ki, h.ki);
+        near(c.phase_margin_deg.unwrap(), h.phase_margin_deg.unwrap());
+    }
+    let turned = format!("the phase is {:.1}", heats.point.unwrap().phase_deg);
+    assert!(
+        cools.text.contains(&turned) && cools.text.contains("with the input turned"),
+        "{}",
+        cools.text
+    );
+}
+
 /// What a plant out of reach of its set point shows: a step that levels off.
 fn out_of_reach() -> Record {
     let time: Vec<f64> = (0..600).map(|i| 2.0 * f64::from(i)).collect();

@@ -223,20 +223,32 @@ pub(super) fn all(basis: &Basis<'_>, form: Form, full_scale: f64) -> Vec<TunedGa
     if reduced.is_none()
         && let Some(point) = basis.point.filter(|p| p.is_known())
     {
-        let from = identified(None, None, Some(point)).point;
+        // A plant of negative gain is moved with the input turned, and its gains are turned back.
+        let turned = basis.model.is_some_and(|m| m.gain.value < 0.0);
+        let seen = if turned { point.turned() } else { *point };
+        let back = |pid: Result<Pid, TuningError>| {
+            pid.map(|p| {
+                if turned {
+                    Pid { gain: -p.gain, ..p }
+                } else {
+                    p
+                }
+            })
+        };
+        let from = identified(None, None, Some(&seen)).point;
         let target = Target::PhaseMargin(Wish::default().phase_margin).point();
         add(
             "moving_point",
             "Moving point",
             "pi",
-            move_with_pi(&from, target),
+            back(move_with_pi(&from, target)),
         );
         let wish = Wish::default();
         add(
             "moving_point",
             "Moving point",
             "pid",
-            move_with_pid(&from, target, wish.time_ratio, wish.filter),
+            back(move_with_pid(&from, target, wish.time_ratio, wish.filter)),
         );
     }
     if let Some(reduced) = reduced {

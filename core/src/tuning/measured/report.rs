@@ -115,7 +115,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     let chatters = found
         .as_ref()
         .is_some_and(|c| trouble::is_chatter(record, c));
-    let (cycle, chatter) = if chatters {
+    let (mut cycle, chatter) = if chatters {
         (None, found)
     } else {
         (found, None)
@@ -123,6 +123,11 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
     let fits = compared.fit_all();
+    // A plant of negative gain is the same loop with the input turned: its relay goes up where the output is high.
+    let sign = fits.first().map_or(1.0, |f| f.model.gain.value.signum());
+    if let Some(cycle) = &mut cycle {
+        cycle.hysteresis *= sign;
+    }
     let point = cycle
         .as_ref()
         .and_then(|c| fourier::point(record, c, &compared, fits.first()));
@@ -152,7 +157,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         target: settings.target,
     });
     let conventional = cycle.as_ref().map(|c| Conventional {
-        gain: 2.0 * (c.levels[1] - c.levels[0]) / (PI * c.amplitude),
+        gain: sign * 2.0 * (c.levels[1] - c.levels[0]) / (PI * c.amplitude),
         period: c.period,
     });
     let static_gain = models
@@ -208,6 +213,12 @@ fn summary(cycle: &Cycle) -> Summary {
 }
 
 impl MeasuredTuning {
+    /// -1 where the output falls with a rising input, else 1.
+    fn sign(&self) -> f64 {
+        let falls = self.models.first().is_some_and(|m| m.gain.value < 0.0);
+        if falls { -1.0 } else { 1.0 }
+    }
+
     /// The first fatal cause, in words.
     pub fn stall(&self) -> Option<&str> {
         self.troubles
@@ -232,6 +243,7 @@ impl MeasuredTuning {
     /// The same, one by one: the point, the ultimate gain, the model, what went wrong, and notes.
     pub fn sentences(&self) -> Vec<String> {
         let mut sentences: Vec<String> = self.of_point().into_iter().collect();
+        sentences.extend(self.of_turned());
         sentences.extend(self.of_ultimate());
         sentences.extend(self.of_formula());
         if let Some(model) = self.models.first() {
@@ -272,6 +284,15 @@ impl MeasuredTuning {
         ))
     }
 
+    /// Where the point is for a controller of a plant of negative gain.
+    fn of_turned(&self) -> Option<String> {
+        let point = self.point.filter(|p| self.sign() < 0.0 && p.is_known())?;
+        Some(format!(
+            "Its gain is negative: with the input turned, as its controller turns it, the phase is {} degrees.",
+            number(point.turned().phase_deg),
+        ))
+    }
+
     /// Ultimate gain and period, or why they do not follow and what would help.
     fn of_ultimate(&self) -> Option<String> {
         if let Some(u) = &self.ultimate {
@@ -285,7 +306,7 @@ impl MeasuredTuning {
         if !point.is_known() {
             return Some("The ultimate gain does not follow.".to_owned());
         }
-        let off = point.phase_deg + 180.0;
+        let off = point.beyond(self.sign());
         let remedy = if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
             format!(
                 "less hysteresis (it is {}, the amplitude {}) brings the cycle nearer to it",
