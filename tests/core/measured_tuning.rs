@@ -489,6 +489,7 @@ fn readings() -> Readings {
         levels: [0.0, 255.0],
         hysteresis: 0.5,
         half_periods: None,
+        unequal: false,
     }
 }
 
@@ -527,6 +528,7 @@ fn numbers_without_hysteresis_give_an_ultimate_gain_with_an_honest_error() {
             levels: [0.0, 1.0],
             hysteresis: 0.0,
             half_periods: None,
+            unequal: false,
         };
         let told = tune_readings(&readings, &Settings::default())
             .unwrap()
@@ -539,6 +541,81 @@ fn numbers_without_hysteresis_give_an_ultimate_gain_with_an_honest_error() {
             plant.name
         );
     }
+}
+
+/// What is read off the cycle of a plant of the bench.
+fn read_off(plant: &Plant, holds: f64, hysteresis: f64) -> Readings {
+    let test = Test {
+        holds,
+        hysteresis,
+        samples: 400.0,
+        ..tests()[0].clone()
+    };
+    let record = relay_test(plant, &test, 3);
+    let cycle = tune_record(&record, &Settings::default())
+        .unwrap()
+        .cycle
+        .unwrap();
+    Readings {
+        amplitude: cycle.amplitude,
+        period: cycle.period,
+        levels: cycle.levels,
+        hysteresis: cycle.hysteresis.max(0.0),
+        half_periods: Some(cycle.half_periods),
+        ..readings()
+    }
+}
+
+#[test]
+fn numbers_of_an_asymmetric_cycle_hold_the_point_within_their_error() {
+    // What is uniform reaches the root of 3 of its standard error; the samples of the bench add a little.
+    let most = 1.1 * 3.0_f64.sqrt();
+    for plant in &plants()[..6] {
+        for (holds, hysteresis) in [(0.1, 0.05), (0.2, 0.2), (0.75, 0.4)] {
+            let readings = read_off(plant, holds, hysteresis);
+            let point = tune_readings(&readings, &Settings::default())
+                .unwrap()
+                .point
+                .unwrap();
+            let [magnitude, phase] = plant.response(point.omega);
+            let off = [
+                (point.magnitude - magnitude) / point.std_error_magnitude,
+                (point.phase_deg - phase.to_degrees()) / point.std_error_phase_deg,
+            ];
+            println!(
+                "{}, holds {holds}: {:.1} ± {:.1} degrees for {:.1}; {off:.2?}",
+                plant.name,
+                point.phase_deg,
+                point.std_error_phase_deg,
+                phase.to_degrees()
+            );
+            assert!(
+                off.iter().all(|o| o.abs() < most),
+                "{}, holds {holds}: {off:?} {point:?}",
+                plant.name
+            );
+            assert!(
+                point.std_error_phase_deg < 30.0
+                    && point.std_error_magnitude < 0.3 * point.magnitude
+            );
+        }
+    }
+}
+
+#[test]
+fn half_periods_that_differ_by_an_unknown_amount_give_no_point_and_no_gains() {
+    let unequal = Readings {
+        unequal: true,
+        half_periods: None,
+        ..readings()
+    };
+    let result = tune_readings(&unequal, &Settings::default()).unwrap();
+    has(&result, TroubleKind::Asymmetric);
+    assert!(
+        result.point.is_none() && result.gains.is_empty() && result.cycle.is_some(),
+        "{}",
+        result.text
+    );
 }
 
 #[test]

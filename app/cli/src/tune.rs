@@ -175,6 +175,7 @@ fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
         levels: levels.0,
         hysteresis: arguments.hysteresis.unwrap_or(0.0),
         half_periods: arguments.half_periods.map(|t| t.0),
+        unequal: false,
     }))
 }
 

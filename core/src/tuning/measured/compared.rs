@@ -13,7 +13,7 @@ const COMPARED: usize = 3000;
 const COARSE: usize = 2000;
 
 /// Weights of the single lags in the response of several in a row: `Ti^(n-1)/prod_(j != i) (Ti - Tj)`.
-fn partial_fractions(lags: &[f64]) -> Vec<f64> {
+pub(super) fn partial_fractions(lags: &[f64]) -> Vec<f64> {
     let others = |i: usize| {
         lags.iter()
             .enumerate()

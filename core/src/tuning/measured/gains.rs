@@ -16,6 +16,9 @@ use crate::tuning::{
 /// Full scale of the output of Klipper's and Marlin's controllers.
 const FIRMWARE_SCALE: f64 = 255.0;
 
+/// Largest standard error of the phase, degrees, with which a point is moved: twice of it is half of a phase margin.
+const MOVED: f64 = 15.0;
+
 /// The form in which a controller takes its gains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -221,7 +224,9 @@ pub(super) fn all(basis: &Basis<'_>, form: Form, full_scale: f64) -> Vec<TunedGa
     }
     // Without a model the point alone is moved.
     if reduced.is_none()
-        && let Some(point) = basis.point.filter(|p| p.is_known())
+        && let Some(point) = basis
+            .point
+            .filter(|p| p.is_known() && p.std_error_phase_deg <= MOVED)
     {
         // A plant of negative gain is moved with the input turned, and its gains are turned back.
         let turned = basis.model.is_some_and(|m| m.gain.value < 0.0);

@@ -22,6 +22,7 @@
 //! | `minimum_time` | whether a least time holds the relay |
 //! | `trouble` | why a test stalls or misleads |
 //! | `readings` | from a few numbers, without a record |
+//! | `family` | the plants whose cycle shows the same numbers |
 //! | `log` | logs of firmwares |
 //! | `opened` | what is in a file |
 //! | `wishes` | what the user wants besides |
@@ -32,6 +33,7 @@
 mod compared;
 mod cycle;
 mod evidence;
+mod family;
 mod fit;
 mod fourier;
 mod gains;

@@ -78,6 +78,7 @@ impl Default for Measured {
                 levels: [0.0, 100.0],
                 hysteresis: 0.5,
                 half_periods: None,
+                unequal: false,
             },
             wishes: Wishes::default(),
             pasted: String::new(),

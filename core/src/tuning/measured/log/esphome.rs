@@ -12,10 +12,13 @@ use crate::tuning::measured::report::Settings;
 /// Its noise band where the configuration does not set one.
 const NOISEBAND: f64 = 0.25;
 
+/// What it says of half periods of which the shorter lasts less than 0.66 of the longer.
+const NOT_SYMMETRICAL: &str = "Frequency is not symmetrical";
+
 /// What it says of a doubtful test, and what that means.
 const DOUBTS: [(&str, &str); 3] = [
     (
-        "Frequency is not symmetrical",
+        NOT_SYMMETRICAL,
         "ESPHome found the half periods of different length: 4d/(πa) does not hold there.",
     ),
     (
@@ -60,6 +63,11 @@ pub(super) fn read(text: &str) -> Result<(Held, Settings), LogError> {
     Ok((Held::Readings(readings), settings))
 }
 
+/// Whether it found the half periods of different length.
+fn unequal(lines: &[&str]) -> bool {
+    lines.iter().any(|l| l.contains(NOT_SYMMETRICAL))
+}
+
 /// Outputs of the relay, 0 and 1 where the log does not say them.
 fn levels(lines: &[&str]) -> [f64; 2] {
     let outputs: Vec<f64> = lines
@@ -83,6 +91,7 @@ fn oscillation(lines: &[&str]) -> Option<Readings> {
         levels: levels(lines),
         hysteresis: NOISEBAND.min(0.99 * amplitude),
         half_periods: half_periods(lines, period),
+        unequal: unequal(lines),
     })
 }
 
@@ -133,5 +142,6 @@ fn of_gains(lines: &[&str]) -> Option<Readings> {
         levels: [low, high],
         hysteresis: NOISEBAND.min(0.99 * amplitude),
         half_periods: None,
+        unequal: unequal(lines),
     })
 }

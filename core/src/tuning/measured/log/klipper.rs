@@ -177,6 +177,7 @@ fn raw(text: &str) -> Option<Readings> {
         levels: [0.0, median(&mut powers)],
         hysteresis: HYSTERESIS,
         half_periods: None,
+        unequal: false,
     })
 }
 
@@ -193,5 +194,6 @@ fn of_gains(text: &str) -> Option<Readings> {
         levels: [0.0, 1.0],
         hysteresis: HYSTERESIS,
         half_periods: None,
+        unequal: false,
     })
 }

@@ -78,6 +78,7 @@ fn cycle(lines: &[&str]) -> Option<Readings> {
         levels: [bias - d, bias + d],
         hysteresis: 0.0,
         half_periods: None,
+        unequal: false,
     })
 }
 

@@ -81,6 +81,7 @@ fn readings(text: &str) -> Option<Readings> {
         levels: [0.0, step],
         hysteresis: hysteresis.min(0.49 * swing),
         half_periods: Some(half_periods),
+        unequal: false,
     })
 }
 
