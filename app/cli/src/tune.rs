@@ -36,13 +36,8 @@ pub struct Arguments {
     /// Period of the oscillation, s; of a file without a time column its sampling period, such as 4s or 250Hz
     #[arg(long, value_name = "PERIOD")]
     period: Option<String>,
-    /// Input while the relay is down and up
-    #[arg(
-        long,
-        value_name = "LOW,HIGH",
-        conflicts_with = "file",
-        allow_hyphen_values = true
-    )]
+    /// Input while the relay is down and up; of a log only where it does not say it
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     levels: Option<Two>,
     /// Half the distance between the outputs at which the relay switches
     #[arg(long, value_name = "H")]
@@ -129,7 +124,16 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         full_scale: arguments.full_scale,
         target: arguments.target,
         hysteresis: arguments.hysteresis,
+        levels: arguments
+            .levels
+            .map(|l| l.0)
+            .filter(|_| arguments.file.is_some()),
     };
+    if let Some(levels) = wishes.levels
+        && !(levels.iter().all(|l| l.is_finite()) && levels[0] != levels[1] && levels[1] != 0.0)
+    {
+        return Err("--levels must be two different numbers, the second not 0".to_owned());
+    }
     if let Some(scale) = arguments.full_scale
         && !(scale.is_finite() && scale > 0.0)
     {

@@ -15,6 +15,8 @@ pub struct Wishes {
     pub target: Option<f64>,
     /// Half the distance between the outputs at which the relay switches, where a log does not tell it.
     pub hysteresis: Option<f64>,
+    /// Input while the relay is down and up, where a log does not tell it.
+    pub levels: Option<[f64; 2]>,
 }
 
 impl Wishes {
