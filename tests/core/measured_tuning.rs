@@ -431,6 +431,17 @@ fn a_controller_is_not_taken_for_the_plant() {
     let result = tune_record(&record, &Settings::default()).unwrap();
     let slope = has(&result, TroubleKind::Controller);
     assert!((slope + 0.9).abs() < 1e-9, "{slope}");
+    // What is no model of the plant gives no gains for it.
+    assert!(
+        result.gains.is_empty() && result.static_gain.is_none() && result.ultimate.is_none(),
+        "{:?}",
+        result.gains
+    );
+    assert!(
+        result.text.contains("a controller made the input"),
+        "{}",
+        result.text
+    );
 }
 
 /// An input that changes at every sample, on a gain of 0.5 with lags of 20 s and 5 s and noise.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::compared::Compared;
 use super::cycle::{self, Cycle};
-use super::evidence::{Evidence, Trouble};
+use super::evidence::{Evidence, Trouble, TroubleKind};
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
 use super::number::{full_scale, number};
@@ -32,6 +32,9 @@ const FOLLOWED: f64 = 0.5;
 /// Where no rule has what it needs.
 const NO_GAINS: &str =
     "No gains follow: neither the gain of a model nor a point of the curve is known well enough.";
+
+const DENIED: &str = "No gains follow: a controller made the input, so that none of the models is that of the plant alone.";
+const UNDETERMINED: &str = "No gains follow: a rule needs gain, time constant and dead time, and this record does not determine all of them.";
 
 /// What the user wants besides.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -133,21 +136,6 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         .and_then(|c| fourier::point(record, c, &compared, fits.first()));
     let omega = point.map_or(2.0 * PI / scale, |p| p.omega);
     let ultimate = ultimate::ultimate(&fits, point.as_ref(), omega);
-    let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
-    let followed = models.first().is_some_and(follows);
-    let basis = Basis {
-        model: models.first(),
-        models: if followed { &models } else { &[] },
-        ultimate: ultimate.as_ref(),
-        point: point.as_ref(),
-        sampling: record.sampling(),
-    };
-    let (_, high) = range(&record.input);
-    let gains = gains::all(
-        &basis,
-        settings.form,
-        settings.full_scale.unwrap_or_else(|| full_scale(high)),
-    );
     let troubles = trouble::find(&Evidence {
         record,
         cycle: cycle.as_ref(),
@@ -156,6 +144,24 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         noise: fits.first().map_or(0.0, |f| f.noise),
         target: settings.target,
     });
+    // What a controller made is as much of it as of the plant.
+    let denied = troubles.iter().any(|t| t.kind == TroubleKind::Controller);
+    let ultimate = ultimate.filter(|_| !denied);
+    let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
+    let followed = !denied && models.first().is_some_and(follows);
+    let basis = Basis {
+        model: models.first(),
+        models: if followed { &models } else { &[] },
+        ultimate: ultimate.as_ref(),
+        point: point.as_ref().filter(|_| !denied),
+        sampling: record.sampling(),
+    };
+    let (_, high) = range(&record.input);
+    let gains = gains::all(
+        &basis,
+        settings.form,
+        settings.full_scale.unwrap_or_else(|| full_scale(high)),
+    );
     let conventional = cycle.as_ref().map(|c| Conventional {
         gain: sign * 2.0 * (c.levels[1] - c.levels[0]) / (PI * c.amplitude),
         period: c.period,
@@ -164,7 +170,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         .first()
         .filter(|m| !m.structure.integrates())
         .map(|m| m.gain)
-        .filter(is_told);
+        .filter(|k| !denied && is_told(k));
     let mut result = MeasuredTuning {
         name: record.name.clone(),
         cycle: cycle.as_ref().map(summary),
@@ -250,7 +256,7 @@ impl MeasuredTuning {
             sentences.push(self.of_model(model));
         }
         if self.gains.is_empty() {
-            sentences.push(NO_GAINS.to_owned());
+            sentences.push(self.no_gains().to_owned());
         }
         sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
         sentences.extend(self.notes.iter().cloned());
@@ -282,6 +288,22 @@ impl MeasuredTuning {
             with_uncertainty(point.phase_deg, point.std_error_phase_deg)
                 .unwrap_or_else(|| number(point.phase_deg)),
         ))
+    }
+
+    /// Why there are none.
+    fn no_gains(&self) -> &'static str {
+        let known = |m: &FittedModel| follows(m) && m.gain.is_known();
+        if self
+            .troubles
+            .iter()
+            .any(|t| t.kind == TroubleKind::Controller)
+        {
+            DENIED
+        } else if self.models.first().is_some_and(known) {
+            UNDETERMINED
+        } else {
+            NO_GAINS
+        }
     }
 
     /// Where the point is for a controller of a plant of negative gain.
