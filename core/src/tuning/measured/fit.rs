@@ -12,6 +12,7 @@ use num_complex::Complex;
 use super::compared::Compared;
 use super::least_squares::{coherence, damped, inverse_gram};
 use super::structure::{FittedModel, LARGEST_SHARE, Structure, Value, physical, response, times};
+use super::ultimate::MISSED;
 use super::wander;
 use crate::simplex::minimise;
 use crate::sums::dot;
@@ -58,6 +59,8 @@ pub(super) struct Fit {
     /// Output of the model at the compared samples, and the record's there.
     pub simulated: Vec<f64>,
     pub score: f64,
+    /// Where the output goes with the last input; none where it goes on for ever.
+    pub settles: Option<Value>,
     /// Noise of the output: what changes from sample to sample of what the model leaves.
     pub noise: f64,
     motion: f64,
@@ -252,6 +255,17 @@ impl Compared {
                 DVector::from_iterator(theta.len(), (theta.iter().zip(&other)).map(|(a, b)| b - a));
             covariance += &moved * moved.transpose();
         }
+        let last = self.last_input();
+        let settles = (!structure.integrates()).then(|| {
+            // Each forced column goes to the input, and the next one stays.
+            let by = |i: usize| if i < forced { last } else { 1.0 };
+            let pairs = || (0..=forced).flat_map(|i| (0..=forced).map(move |j| (i, j)));
+            let variance: f64 = pairs().map(|(i, j)| by(i) * by(j) * full[(i, j)]).sum();
+            Value {
+                value: (0..=forced).map(|i| by(i) * coefficients[i]).sum(),
+                std_error: variance.max(0.0).sqrt(),
+            }
+        });
         let values = physical(structure, &theta, self.scale);
         let errors = errors(structure, &theta, self.scale, &covariance);
         let value = |i: usize| Value {
@@ -284,6 +298,7 @@ impl Compared {
             covariance,
             simulated,
             score: f64::INFINITY,
+            settles,
             noise: (0.5
                 * residuals
                     .windows(2)
@@ -321,6 +336,35 @@ impl Compared {
     /// Fits all structures, the one that the data prefer first: by Schwarz's criterion, where residuals that hang together
     /// count as fewer samples. A drift is allowed where the data ask for it.
     pub fn fit_all(&mut self) -> Vec<Fit> {
+        self.fit_moving()
+    }
+
+    /// The same for a record without a cycle. A single step tells only where it begins and ends, as long as any motion may
+    /// have been under way before it: rest is taken where the data do not speak against it. What remains is known no better
+    /// than the models agree that follow the record alike.
+    pub fn fit_all_without_cycle(&mut self) -> Vec<Fit> {
+        let moving = self.fit_moving();
+        let drifted = std::mem::replace(&mut self.drifts, false);
+        self.rests = true;
+        let resting = self.fit_each(&Structure::ALL);
+        let rests = match (moving.first(), resting.first()) {
+            (Some(free), Some(rest)) => {
+                let independent = self.independent(free);
+                let saved = free.parameters as f64 - rest.parameters as f64;
+                let floor = self.output.len() as f64 * (ROUND_OFF * self.motion).powi(2);
+                independent * libm::log((rest.rss + floor) / (free.rss + floor))
+                    < saved * libm::log(independent.max(2.0))
+            }
+            (None, rest) => rest.is_some(),
+            _ => false,
+        };
+        if !rests {
+            (self.rests, self.drifts) = (false, drifted);
+        }
+        with_disagreement(if rests { resting } else { moving })
+    }
+
+    fn fit_moving(&mut self) -> Vec<Fit> {
         let steady = self.fit_each(&Structure::ALL);
         let Some(best) = steady.first() else {
             return steady;
@@ -370,6 +414,37 @@ impl Compared {
         }
         fits
     }
+}
+
+/// Adds to the errors of gain and final level how far the models disagree that follow the record alike, beyond what their
+/// own errors explain.
+fn with_disagreement(mut fits: Vec<Fit>) -> Vec<Fit> {
+    let beyond = |own: Value, other: Value| {
+        ((other.value - own.value).powi(2) - other.std_error.powi(2)).max(0.0)
+    };
+    let widened = |own: Value, others: &mut dyn Iterator<Item = Value>| Value {
+        std_error: (own.std_error.powi(2) + others.map(|o| beyond(own, o)).fold(0.0, f64::max))
+            .sqrt(),
+        ..own
+    };
+    let Some(least) = (fits.iter().map(|f| f.model.left)).min_by(f64::total_cmp) else {
+        return fits;
+    };
+    let alike: Vec<(Value, Value)> = (fits.iter())
+        .filter(|f| f.model.left <= MISSED * least)
+        .filter_map(|f| Some((f.model.gain, f.settles?)))
+        .collect();
+    for fit in fits.iter_mut().filter(|f| f.settles.is_some()) {
+        fit.model.gain = widened(fit.model.gain, &mut alike.iter().map(|a| a.0));
+        fit.settles = (fit.settles).map(|s| widened(s, &mut alike.iter().map(|a| a.1)));
+    }
+    let vague = |f: &Fit| !f.model.gain.is_known();
+    // A stable sort: by score among those that are known.
+    fits.sort_by_key(vague);
+    for (i, fit) in fits.iter_mut().enumerate() {
+        fit.model.preferred = i == 0;
+    }
+    fits
 }
 
 /// Starts of the search.

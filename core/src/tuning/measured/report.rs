@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::compared::Compared;
 use super::cycle::{self, Cycle};
+use super::ending;
 use super::evidence::{Evidence, Trouble, TroubleKind};
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
@@ -15,7 +16,7 @@ use super::structure::{FittedModel, Value};
 use super::trouble;
 use super::ultimate::{self, MeasuredUltimate};
 use crate::order::range;
-use crate::uncertain::{with_error, with_uncertainty};
+use crate::uncertain::{NOT_TOLD, with_error, with_uncertainty};
 
 /// Part of the record that is taken for the plant's time where there is no cycle.
 const PART: f64 = 0.1;
@@ -45,6 +46,8 @@ pub struct Settings {
     pub full_scale: Option<f64>,
     /// Set point of the test, in the unit of the output.
     pub target: Option<f64>,
+    /// Half the distance of the thresholds of the test, in the unit of the output.
+    pub hysteresis: Option<f64>,
     /// What else is to be said of it, as by the reader of a log.
     pub notes: Vec<String>,
 }
@@ -113,6 +116,12 @@ pub struct MeasuredTuning {
 /// A record that cannot be used.
 pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
     record.validate()?;
+    // A relay that stops switching is told; the cycle is that before.
+    let stop = cycle::find(record).and_then(|c| ending::stop(record, &c));
+    let kept = stop.map(|s| record.first(s.before));
+    let kept = kept.filter(|before| before.validate().is_ok());
+    let whole = record;
+    let record = kept.as_ref().unwrap_or(record);
     let found = cycle::find(record);
     // Where noise makes the switches, output and input of the cycle are that of the noise: it shows nothing of the plant.
     let chatters = found
@@ -125,7 +134,11 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     };
     let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
-    let fits = compared.fit_all();
+    let fits = if cycle.is_some() {
+        compared.fit_all()
+    } else {
+        compared.fit_all_without_cycle()
+    };
     // A plant of negative gain is the same loop with the input turned: its relay goes up where the output is high.
     let sign = fits.first().map_or(1.0, |f| f.model.gain.value.signum());
     if let Some(cycle) = &mut cycle {
@@ -136,18 +149,33 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         .and_then(|c| fourier::point(record, c, &compared, fits.first()));
     let omega = point.map_or(2.0 * PI / scale, |p| p.omega);
     let ultimate = ultimate::ultimate(&fits, point.as_ref(), omega);
-    let troubles = trouble::find(&Evidence {
+    let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
+    let static_gain = models
+        .first()
+        .filter(|m| !m.structure.integrates())
+        .map(|m| m.gain)
+        .filter(is_told);
+    let mut troubles = trouble::find(&Evidence {
         record,
         cycle: cycle.as_ref(),
         chatter: chatter.as_ref(),
         fit: fits.first(),
         noise: fits.first().map_or(0.0, |f| f.noise),
         target: settings.target,
+        hysteresis: settings.hysteresis,
+        told: ultimate.is_some() || static_gain.is_some(),
     });
+    if let Some(stop) = stop.filter(|_| kept.is_some()) {
+        troubles.insert(0, ending::stopped(whole, &stop));
+        troubles.sort_by_key(|t| !t.fatal);
+    }
     // What a controller made is as much of it as of the plant.
     let denied = troubles.iter().any(|t| t.kind == TroubleKind::Controller);
-    let ultimate = ultimate.filter(|_| !denied);
-    let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
+    let (ultimate, static_gain) = if denied {
+        (None, None)
+    } else {
+        (ultimate, static_gain)
+    };
     let followed = !denied && models.first().is_some_and(follows);
     let basis = Basis {
         model: models.first(),
@@ -166,11 +194,6 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         gain: sign * 2.0 * (c.levels[1] - c.levels[0]) / (PI * c.amplitude),
         period: c.period,
     });
-    let static_gain = models
-        .first()
-        .filter(|m| !m.structure.integrates())
-        .map(|m| m.gain)
-        .filter(|k| !denied && is_told(k));
     let mut result = MeasuredTuning {
         name: record.name.clone(),
         cycle: cycle.as_ref().map(summary),
@@ -329,7 +352,10 @@ impl MeasuredTuning {
             return Some("The ultimate gain does not follow.".to_owned());
         }
         let off = point.beyond(self.sign());
-        let remedy = if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
+        let held = (self.troubles.iter()).any(|t| t.kind == TroubleKind::MinimumTime);
+        let remedy = if held {
+            "a relay without a minimum time brings the cycle nearer to it".to_owned()
+        } else if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
             format!(
                 "less hysteresis (it is {}, the amplitude {}) brings the cycle nearer to it",
                 number(cycle.hysteresis),
@@ -362,13 +388,18 @@ impl MeasuredTuning {
     }
 
     fn of_model(&self, model: &FittedModel) -> String {
-        let seconds = |v: &Value| with_error(v.value, v.std_error, "s");
-        let gain = with_error(model.gain.value, model.gain.std_error, &self.gain_unit());
-        let mut parts = vec![format!("gain {gain}")];
+        let unit = self.gain_unit();
         let lags = model.time_constants.iter();
-        parts.extend(lags.map(|t| format!("time constant {}", seconds(t))));
-        parts.extend(model.zero.iter().map(|z| format!("zero {}", seconds(z))));
-        parts.push(format!("dead time {}", seconds(&model.dead_time)));
+        let all = std::iter::once(("gain", model.gain, unit.as_str()))
+            .chain(lags.map(|t| ("time constant", *t, "s")))
+            .chain(model.zero.iter().map(|z| ("zero", *z, "s")))
+            .chain([("dead time", model.dead_time, "s")]);
+        let (told, untold): (Vec<_>, Vec<_>) =
+            all.partition(|(_, v, _)| with_error(v.value, v.std_error, "1") != NOT_TOLD);
+        let parts: Vec<String> = told
+            .iter()
+            .map(|(name, v, unit)| format!("{name} {}", with_error(v.value, v.std_error, unit)))
+            .collect();
         if !follows(model) {
             return format!(
                 "No model follows the record: the one that comes nearest, {}, misses {} % of the motion of the output.",
@@ -376,11 +407,27 @@ impl MeasuredTuning {
                 number(100.0 * model.left),
             );
         }
+        let (name, left) = (model.structure.name(), number(100.0 * model.left));
+        if told.is_empty() {
+            return format!(
+                "The record prefers {name}, but determines none of its numbers. It misses {left} % of the motion of the \
+                 output."
+            );
+        }
+        if untold.is_empty() {
+            return format!(
+                "The record prefers {name}: {}. It misses {left} % of the motion of the output.",
+                parts.join(", ")
+            );
+        }
+        // Each name once, however many time constants there are.
+        let mut names: Vec<&str> = untold.iter().map(|u| u.0).collect();
+        names.dedup();
         format!(
-            "The record prefers {}: {}. It misses {} % of the motion of the output.",
-            model.structure.name(),
+            "The record prefers {name}: {}; not determined by this record: {}. It misses {left} % of the motion of the \
+             output.",
             parts.join(", "),
-            number(100.0 * model.left),
+            names.join(", ")
         )
     }
 }

@@ -18,7 +18,7 @@ const TOLD: f64 = 0.025;
 /// A model is not ruled out while its score is worse than the best by no more than this, or it misses no more than this
 /// multiple of what the best one misses.
 const SCORE: f64 = 10.0;
-const MISSED: f64 = 1.15;
+pub(super) const MISSED: f64 = 1.15;
 
 /// How far from the cycle's frequency the ultimate one is looked for, as a factor either way.
 const FAR: f64 = 30.0;

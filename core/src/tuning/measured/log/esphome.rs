@@ -63,6 +63,7 @@ pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
         form: Form::Esphome,
         full_scale: Some(1.0),
         target: None,
+        hysteresis: None,
         notes,
     };
     Ok((Held::Readings(readings), told, settings))

@@ -40,6 +40,7 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), L
         form: Form::Klipper,
         full_scale: Some(1.0),
         target,
+        hysteresis: None,
         notes,
     };
     if let Some(record) = written(name, text) {

@@ -44,6 +44,7 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), L
         form: Form::Marlin,
         full_scale: Some(SCALE),
         target: None,
+        hysteresis: None,
         notes,
     };
     // The heater that is tuned is the one whose power changes.

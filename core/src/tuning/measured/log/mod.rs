@@ -101,6 +101,7 @@ impl Log {
         if let (Held::Readings(readings), Some(hysteresis)) = (&mut self.held, wishes.hysteresis) {
             readings.hysteresis = hysteresis;
         }
+        self.settings.hysteresis = wishes.hysteresis.or(self.settings.hysteresis);
         self.settings.full_scale = wishes.full_scale.or(self.settings.full_scale);
         self.settings.target = wishes.target.or(self.settings.target);
         Ok(self)

@@ -54,6 +54,7 @@ pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
         form: Form::Parallel,
         full_scale: None,
         target: None,
+        hysteresis: None,
         notes,
     };
     Ok((Held::Readings(readings), levels, settings))
