@@ -24,7 +24,7 @@ const DRIFT: f64 = 0.1;
 /// Noise, as a share of the hysteresis, from which the relay switches on noise.
 const NOISY: f64 = 0.5;
 
-/// Flicker pulses for each half period that show that noise switches the relay.
+/// Flicker pulses for each half period from which they are told by the half period.
 const FLICKERS: f64 = 0.25;
 
 /// Scatter of the periods, as a share of their mean, from which they come at random.
@@ -112,19 +112,27 @@ fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     let level = e.noise;
     let half_periods = 2.0 * cycle.periods as f64;
     let flickers = cycle.flicker as f64 / half_periods;
-    (flickers > FLICKERS && level > NOISY * cycle.hysteresis.max(0.0)).then(|| {
-        trouble(
-            TroubleKind::NoiseLargerThanHysteresis,
-            false,
-            level,
+    let shown = cycle.flicker > 0 && level > NOISY * cycle.hysteresis.max(0.0);
+    shown.then(|| {
+        let (noise, hysteresis) = (
+            of_unit(level, &e.record.output_unit),
+            n(cycle.hysteresis.max(0.0)),
+        );
+        let text = if flickers > FLICKERS {
             format!(
-                "The relay flickers {} times at each switch: the noise ({}) is of the size of the hysteresis ({}). \
-                 Three times the noise as hysteresis, or a filter, ends it.",
+                "The relay flickers {} times at each switch: the noise ({noise}) is of the size of the hysteresis \
+                 ({hysteresis}). Three times the noise as hysteresis, or a filter, ends it.",
                 n(flickers),
-                of_unit(level, &e.record.output_unit),
-                n(cycle.hysteresis.max(0.0)),
-            ),
-        )
+            )
+        } else {
+            format!(
+                "The relay flickers {} in {} half periods: the noise ({noise}) is of the size of the hysteresis \
+                 ({hysteresis}). Three times the noise as hysteresis, or a filter, ends it.",
+                counted(cycle.flicker, "time"),
+                n(half_periods),
+            )
+        };
+        trouble(TroubleKind::NoiseLargerThanHysteresis, false, level, text)
     })
 }
 
