@@ -39,16 +39,14 @@ pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
         "Its rules divide by twentieths (34, 40, 160 for 1.7, 2, 8): Kp comes out 20 times and Kd 400 times too small."
             .to_owned(),
     ];
-    let (readings, levels) = match found(text) {
-        Some(found) => found,
-        None => {
-            let found = of_gains(text).ok_or(LogError::Garbled(Source::Mycodo))?;
-            notes.push(format!(
-                "The amplitude was computed from the gains in the log, and the noise band taken as {NOISEBAND}, the tuner's \
-                 default; give --hysteresis where another was set. At log level DEBUG the log has the peaks and the times."
-            ));
-            found
-        }
+    let (readings, levels) = if let Some(found) = found(text) {
+        found
+    } else {
+        notes.push(format!(
+            "The amplitude was computed from the gains in the log, and the noise band taken as {NOISEBAND}, the tuner's \
+             default; give --hysteresis where another was set. At log level DEBUG the log has the peaks and the times."
+        ));
+        of_gains(text).ok_or(LogError::Garbled(Source::Mycodo))?
     };
     let settings = Settings {
         form: Form::Parallel,
@@ -121,8 +119,11 @@ fn own_gains(text: &str) -> [Option<f64>; 2] {
     found
 }
 
+/// When an output changes, s, and whether to the higher one.
+type Switch = (f64, bool);
+
 /// The two outputs that Mycodo writes at every sample, and when they change.
-fn outputs(text: &str) -> Option<([f64; 2], Vec<(f64, bool)>)> {
+fn outputs(text: &str) -> Option<([f64; 2], Vec<Switch>)> {
     let rows: Vec<(f64, f64)> = text
         .lines()
         .filter_map(|l| Some((time(l)?, after(l, "output:")?)))
@@ -164,7 +165,7 @@ fn of_gains(text: &str) -> Option<(Readings, Levels)> {
 }
 
 /// Times up and down, and the period.
-fn half_periods(switches: &[(f64, bool)]) -> Option<([f64; 2], f64)> {
+fn half_periods(switches: &[Switch]) -> Option<([f64; 2], f64)> {
     let mut times: Vec<f64> = switches.iter().map(|s| s.0).collect();
     unwrapped(&mut times);
     let (mut up, mut down) = (Vec::new(), Vec::new());
