@@ -225,20 +225,7 @@ impl Compared {
         let rss = dot(&residuals, &residuals);
         let n = residuals.len();
         let parameters = columns.len() + p.len();
-        // Full Jacobian: linear columns, and how the model moves with the searched parameters.
-        let mut jacobian = columns.clone();
-        for i in 0..p.len() {
-            let mut moved = p.to_vec();
-            moved[i] += DERIVATIVE;
-            let others = self.columns(structure, &moved);
-            let mut change = vec![0.0; n];
-            for ((c, a), b) in coefficients.iter().zip(&others).zip(&columns) {
-                for (d, (a, b)) in change.iter_mut().zip(a.iter().zip(b)) {
-                    *d += c * (a - b) / DERIVATIVE;
-                }
-            }
-            jacobian.push(change);
-        }
+        let jacobian = self.jacobian(structure, p, &columns, &coefficients);
         // Residuals that hang together are few samples, and every parameter uses one of them up.
         let free = n as f64 / coherence(&residuals) - parameters as f64;
         let variance = rss / free.max(1.0);
@@ -299,18 +286,36 @@ impl Compared {
             simulated,
             score: f64::INFINITY,
             settles,
-            noise: (0.5
-                * residuals
-                    .windows(2)
-                    .map(|r| (r[1] - r[0]).powi(2))
-                    .sum::<f64>()
-                / n as f64)
-                .sqrt(),
+            noise: noise(&residuals),
             motion: self.motion,
             rss,
             scale: self.scale,
             parameters,
         })
+    }
+
+    /// The linear columns, and how the model moves with the searched parameters.
+    fn jacobian(
+        &self,
+        structure: Structure,
+        p: &[f64],
+        columns: &[Vec<f64>],
+        coefficients: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut jacobian = columns.to_vec();
+        for i in 0..p.len() {
+            let mut moved = p.to_vec();
+            moved[i] += DERIVATIVE;
+            let others = self.columns(structure, &moved);
+            let mut change = vec![0.0; self.output.len()];
+            for ((c, a), b) in coefficients.iter().zip(&others).zip(columns) {
+                for (d, (a, b)) in change.iter_mut().zip(a.iter().zip(b)) {
+                    *d += c * (a - b) / DERIVATIVE;
+                }
+            }
+            jacobian.push(change);
+        }
+        jacobian
     }
 
     /// Forced coefficients and searched parameters where the residuals' wandering is taken off first. A model that is right
@@ -486,4 +491,10 @@ fn errors(structure: Structure, theta: &[f64], scale: f64, covariance: &DMatrix<
         let g = DVector::from_iterator(theta.len(), gradients.iter().map(|g| g[k]));
         (covariance * &g).dot(&g).max(0.0).sqrt()
     })
+}
+
+/// Standard deviation of what changes from one sample to the next, from the differences of neighbours.
+fn noise(residuals: &[f64]) -> f64 {
+    let squares: f64 = residuals.windows(2).map(|r| (r[1] - r[0]).powi(2)).sum();
+    (0.5 * squares / residuals.len() as f64).sqrt()
 }

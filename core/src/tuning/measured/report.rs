@@ -122,16 +122,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     let kept = kept.filter(|before| before.validate().is_ok());
     let whole = record;
     let record = kept.as_ref().unwrap_or(record);
-    let found = cycle::find(record);
-    // Where noise makes the switches, output and input of the cycle are that of the noise: it shows nothing of the plant.
-    let chatters = found
-        .as_ref()
-        .is_some_and(|c| trouble::is_chatter(record, c));
-    let (mut cycle, chatter) = if chatters {
-        (None, found)
-    } else {
-        (found, None)
-    };
+    let [mut cycle, chatter] = cycle_and_chatter(record);
     let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
     let fits = if cycle.is_some() {
@@ -150,11 +141,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     let omega = point.map_or(2.0 * PI / scale, |p| p.omega);
     let ultimate = ultimate::ultimate(&fits, point.as_ref(), omega);
     let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
-    let static_gain = models
-        .first()
-        .filter(|m| !m.structure.integrates())
-        .map(|m| m.gain)
-        .filter(is_told);
+    let static_gain = models.first().and_then(static_gain);
     let mut troubles = trouble::find(&Evidence {
         record,
         cycle: cycle.as_ref(),
@@ -211,6 +198,22 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     };
     result.tell();
     Ok(result)
+}
+
+/// The cycle of a record, or in its place that which noise makes: its output and input show nothing of the plant.
+fn cycle_and_chatter(record: &Record) -> [Option<Cycle>; 2] {
+    let found = cycle::find(record);
+    let chatters = (found.as_ref()).is_some_and(|c| trouble::is_chatter(record, c));
+    if chatters {
+        [None, found]
+    } else {
+        [found, None]
+    }
+}
+
+/// The static gain of a model, where it has one and the record tells it.
+fn static_gain(model: &FittedModel) -> Option<Value> {
+    Some(model.gain).filter(|gain| !model.structure.integrates() && is_told(gain))
 }
 
 fn is_told(gain: &Value) -> bool {
