@@ -136,6 +136,8 @@ fn times_up_and_down_that_differ_are_part_of_the_numbers() {
     finish(&mut harness);
     assert_eq!(answer(&harness), symmetric);
     type_over(&mut harness, "time up [s]", "9");
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(2);
     finish(&mut harness);
     let said = texts(&harness).join("\n");
     assert!(said.contains("32.5 s") && said.contains("9 s"), "{said}");

@@ -384,6 +384,16 @@ impl<'a> Settler<'a> {
         signals.find(|i| resembles(role, &self.columns[*i].name))
     }
 
+    /// What is called so and does not move in what was read: the name of an output says more than its values.
+    fn named_though_still(&self, role: Role) -> Option<usize> {
+        let still = |i: &usize| {
+            let column = &self.columns[*i];
+            let of_role = fits(role, self.kind, column) && resembles(role, &column.name);
+            of_role && !column.numbers.vary() && !column.numbers.dates && !is_wanted(column)
+        };
+        self.free().find(|i| role != INPUT && still(i))
+    }
+
     /// Finds a column for a role; `None` where the file has none.
     fn settle(&mut self, role: Role) -> Option<()> {
         let moves = matches!(role, POSITION | VELOCITY);
@@ -400,6 +410,10 @@ impl<'a> Settler<'a> {
         }
         // What moves has one column of two; the last that is asked for is the velocity.
         if role == POSITION && (self.named(VELOCITY).is_some() || speeds(self.columns)) {
+            return Some(());
+        }
+        if let Some(still) = self.named_though_still(role) {
+            self.put(role, still);
             return Some(());
         }
         let signals = self.fitting(role);
@@ -475,10 +489,14 @@ fn is_held(column: &FoundColumn) -> bool {
 
 /// Whether a column may be a signal by its values, and was not only wanted.
 fn is_signal(column: &FoundColumn) -> bool {
-    let name = column.name.to_lowercase();
-    let wanted = WANTED.iter().any(|part| name.contains(part));
     let time = column.numbers.increase() && resembles(Role::Time, &column.name);
-    column.numbers.vary() && !column.numbers.dates && !wanted && !time
+    column.numbers.vary() && !column.numbers.dates && !is_wanted(column) && !time
+}
+
+/// Whether a column is called as what was wanted is.
+fn is_wanted(column: &FoundColumn) -> bool {
+    let name = column.name.to_lowercase();
+    WANTED.iter().any(|part| name.contains(part))
 }
 
 /// Whether a column is called as velocities are.
