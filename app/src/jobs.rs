@@ -194,10 +194,13 @@ mod platform {
         }
     }
 
+    /// Starts a worker on the page's own module: nothing more is loaded or compiled.
     fn start_worker() -> Option<Worker> {
         let options = WorkerOptions::new();
         options.set_type(WorkerType::Module);
-        Worker::new_with_options("./worker.js", &options).ok()
+        let worker = Worker::new_with_options("./worker.js", &options).ok()?;
+        worker.post_message(&wasm_bindgen::module()).ok()?;
+        Some(worker)
     }
 
     /// Hands a task to a worker that listens.

@@ -7,5 +7,10 @@ fn main() -> std::process::ExitCode {
 
 #[cfg(target_arch = "wasm32")]
 fn main() {
-    hysteron::run_web();
+    // One module for the page and for its workers: they have no window.
+    if web_sys::window().is_some() {
+        hysteron::run_web();
+    } else {
+        hysteron_work::worker::listen();
+    }
 }

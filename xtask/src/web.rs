@@ -13,27 +13,27 @@ use crate::size;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The binaries and the names that they have in `dist/`.
-const BINARIES: [(&str, &str); 2] = [
-    ("hysteron", "hysteron"),
-    ("hysteron-worker", "worker_bindings"),
-];
+/// A worker's script: the page sends it its own module.
+const WORKER: &str = "import init from \"./hysteron.js\";
+onmessage = ({ data }) => {
+  onmessage = null;
+  // An error that no one awaits reaches the page.
+  init({ module_or_path: data }).catch((error) => setTimeout(() => { throw error; }));
+};
+";
 
-/// Builds the wasm modules, their bindings and the page around them.
+/// Builds the wasm module, its bindings and the page around them.
 pub fn build() -> Result<(), String> {
-    let modules = compile()?;
+    let module = compile()?;
     let dist = root().join("dist");
     if dist.exists() {
         fs::remove_dir_all(&dist).map_err(|e| format!("{}: {e}", dist.display()))?;
     }
     fs::create_dir_all(&dist).map_err(|e| format!("{}: {e}", dist.display()))?;
-    for (binary, name) in BINARIES {
-        bind(&modules.join(format!("{binary}.wasm")), name, &dist)?;
-    }
+    bind(&module, &dist)?;
     let page = root().join("index.html");
     fs::copy(&page, dist.join("index.html")).map_err(|e| format!("{}: {e}", page.display()))?;
-    let worker = "import init from \"./worker_bindings.js\";\nawait init();\n";
-    fs::write(dist.join("worker.js"), worker).map_err(|e| format!("worker.js: {e}"))?;
+    fs::write(dist.join("worker.js"), WORKER).map_err(|e| format!("worker.js: {e}"))?;
     offline::write(&dist)?;
     println!(
         "The page is in {}; see it with cargo xtask serve.",
@@ -42,19 +42,19 @@ pub fn build() -> Result<(), String> {
     size::report(&dist)
 }
 
-/// Makes the JavaScript bindings of one module.
-fn bind(wasm: &Path, name: &str, dist: &Path) -> Result<(), String> {
+/// Makes the JavaScript bindings of the module.
+fn bind(wasm: &Path, dist: &Path) -> Result<(), String> {
     let mut bindgen = Bindgen::new();
     bindgen
         .input_path(wasm)
-        .out_name(name)
+        .out_name("hysteron")
         .omit_default_module_path(false)
         .web(true)
         .and_then(|b| b.typescript(false).generate(dist))
         .map_err(|e| format!("{}: {e:#}", wasm.display()))
 }
 
-/// Compiles both binaries; returns the folder they are in.
+/// Compiles the app; returns its module.
 fn compile() -> Result<PathBuf, String> {
     let folder = root().join("target/wasm");
     let mut command = Command::new("cargo");
@@ -62,8 +62,6 @@ fn compile() -> Result<PathBuf, String> {
         "build",
         "--package",
         "hysteron",
-        "--package",
-        "hysteron-work",
         "--bins",
         "--profile",
         "web",
@@ -88,7 +86,7 @@ fn compile() -> Result<PathBuf, String> {
             );
     }
     check(&mut command, "cargo", &arguments)?;
-    Ok(folder.join(TARGET).join("web"))
+    Ok(folder.join(TARGET).join("web/hysteron.wasm"))
 }
 
 fn target_installed() -> bool {

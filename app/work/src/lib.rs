@@ -13,3 +13,5 @@ pub mod tasks;
 #[cfg(any(test, target_arch = "wasm32"))]
 pub mod wire;
 pub mod work;
+#[cfg(target_arch = "wasm32")]
+pub mod worker;

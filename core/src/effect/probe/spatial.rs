@@ -39,7 +39,7 @@ pub(super) const FASTEST_SPATIAL: f64 = 0.8;
 pub(super) const APART: f64 = 1.2;
 
 impl Probe {
-    /// The [`WAVES`] spatial frequencies (radians per unit of position) at which the unexplained force
+    /// The few spatial frequencies (radians per unit of position) at which the unexplained force
     /// repeats most clearly and leaves less than this `share` of it, with the coefficients of sine and cosine.
     pub fn spatial_frequencies(&self, share: f64) -> Vec<(f64, f64, f64)> {
         let travel = self.scales.travel;
