@@ -6,8 +6,7 @@ use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
 use crate::tasks::{
     DiscoveryTask, ExperimentTask, GapTask, HandTask, MapTask, MeasuredTask, MysteryTask, News,
-    OnOffTask, READY, ReadTask, RevealTask, ScenarioTask, ServoTask, StepTask, Task as _,
-    TuneTask,
+    OnOffTask, READY, ReadTask, RevealTask, ScenarioTask, ServoTask, StepTask, Task as _, TuneTask,
 };
 use crate::wire::{pack, unpack};
 use crate::work::Work;
