@@ -24,6 +24,9 @@ use watch::Busy;
 /// How long to wait for any one thing; software rendering on a small machine is slow.
 const PATIENCE: Duration = Duration::from_mins(3);
 
+/// A wait that is said: from these one sees how far the patience is.
+const WORTH_SAYING: Duration = Duration::from_secs(5);
+
 /// Different colours that a drawn page has at least; a blank one has one or two.
 const LEAST_COLOURS: usize = 24;
 
@@ -160,6 +163,9 @@ fn wait_and(
     loop {
         let state = session.state()?;
         if done(&state) {
+            if started.elapsed() > WORTH_SAYING {
+                println!("waited {} s for {what}", started.elapsed().as_secs());
+            }
             return Ok(state);
         }
         if started.elapsed() > PATIENCE {
