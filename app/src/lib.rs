@@ -14,9 +14,10 @@ mod files;
 mod fonts;
 mod hook;
 mod jobs;
+pub mod language;
 mod layout;
 pub mod lessons;
-pub use hysteron_work::link;
+pub mod link;
 mod live;
 mod motion;
 mod notice;
@@ -36,5 +37,4 @@ pub use app::HysteronApp;
 pub use app::program::run;
 #[cfg(target_arch = "wasm32")]
 pub use app::start::run_web;
-pub use hysteron_work::language;
 pub use save::GivenFile;

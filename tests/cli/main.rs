@@ -2,7 +2,6 @@
 
 mod batch;
 mod commands;
-mod german;
 mod scenarios;
 #[path = "../support/shared.rs"]
 mod shared;

@@ -25,7 +25,6 @@ mod hidden_effects;
 mod hunting;
 mod import;
 mod import_mat;
-mod input_check;
 mod limit_cycles;
 mod lost_rows;
 

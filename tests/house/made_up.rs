@@ -238,12 +238,17 @@ fn an_effect_named_elsewhere_is_found() {
         ("app/src/pages/mod.rs", "mod tune;"),
         ("app/src/pages/tune.rs", ""),
     ]);
-    let found = effects_named(&tree, &["cogging", "tune"]);
+    let found: Vec<_> = effects_named(&tree, &["cogging", "tune"])
+        .into_iter()
+        .collect();
     let wanted = [
-        ("app/src/lib.rs", "cogging"),
-        ("core/src/effect/load.rs", "cogging"),
+        ("app/src/lib.rs", vec!["app/src/lib.rs: cogging".to_owned()]),
+        (
+            "effect",
+            vec!["core/src/effect/load.rs: cogging".to_owned()],
+        ),
     ];
-    assert!(found.keys().eq(&wanted), "{found:?}");
+    assert_eq!(found, wanted);
 }
 
 #[test]

@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError, mpsc};
 
-use hysteron_work::language::say;
 use serde::Serialize;
 
 use crate::arguments::Arguments;
@@ -89,7 +88,7 @@ impl Batch {
         if self.skipped > 0 {
             let skipped = self.skipped;
             self.progress
-                .line(&say(&format!("{skipped} skipped: their results are there")));
+                .line(&format!("{skipped} skipped: their results are there"));
         }
         let workers = arguments
             .jobs
@@ -162,7 +161,7 @@ impl Batch {
             Ok(report) => self
                 .progress
                 .finished(&format!("{name}: {}", report.summary())),
-            Err(line) => self.progress.failed(&say(&line)),
+            Err(line) => self.progress.failed(&line),
         }
         Ok(())
     }
@@ -271,7 +270,7 @@ impl Progress {
 
     fn finished(&mut self, text: &str) {
         self.done += 1;
-        let text = format!("{}: {text}", self.count());
+        let text = format!("{} of {}: {text}", self.done, self.of);
         if self.terminal {
             let line: String = text.chars().filter(|c| !c.is_control()).take(79).collect();
             // Progress that cannot be shown is no reason to stop.
@@ -281,14 +280,10 @@ impl Progress {
         }
     }
 
-    fn count(&self) -> String {
-        format!("{} {} {}", self.done, say("of"), self.of)
-    }
-
     /// A failure stays on the screen.
     fn failed(&mut self, text: &str) {
         self.done += 1;
-        self.line(&format!("{}: {text}", self.count()));
+        self.line(&format!("{} of {}: {text}", self.done, self.of));
     }
 
     fn line(&self, text: &str) {

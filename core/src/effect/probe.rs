@@ -63,8 +63,6 @@ const FOUND: f64 = 0.99;
 pub struct Probe {
     /// Drive or process.
     pub kind: Kind,
-    /// Whether it is a drive that turns.
-    pub rotates: bool,
     /// Typical sizes.
     pub scales: Scales,
     position: Vec<f64>,
@@ -162,8 +160,6 @@ pub struct GapLoad {
 pub struct ProbeInput<'a> {
     /// Drive or process.
     pub kind: Kind,
-    /// Whether it is a drive that turns.
-    pub rotates: bool,
     /// Typical sizes.
     pub scales: Scales,
     /// Measured position, or an estimate.
@@ -209,7 +205,6 @@ impl Probe {
             .collect();
         let mut probe = Self {
             kind: input.kind,
-            rotates: input.rotates,
             scales: input.scales,
             position: input.position[..n].to_vec(),
             followed: input.followed.iter().take(n).copied().collect(),

@@ -2,10 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::escape::escape;
-use super::html::{Cell, figure, legend, table};
-use super::input::{Tongue, shell_word};
-use super::math::sentence;
+use super::html::{Cell, escape, figure, legend, table};
+use super::input::shell_word;
 use super::model::experiments;
 use super::svg::{Axis, Chart, Mark, range};
 use crate::diagnosis::{Discovery, FoundFormula};
@@ -16,14 +14,8 @@ const WIDE: f64 = 920.0;
 const TALL: f64 = 230.0;
 
 /// What was found, and what it was chosen from.
-pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
-    let known: Vec<&str> = discovery
-        .formulas
-        .iter()
-        .map(|f| f.formula.as_str())
-        .collect();
-    let said = sentence(&(tongue.say)(&discovery.text), &known);
-    let mut out = format!("<p>{said}</p>\n");
+pub(super) fn section(discovery: &Discovery) -> String {
+    let mut out = format!("<p>{}</p>\n", escape(&discovery.text));
     if discovery.formulas.is_empty() {
         return out;
     }
@@ -36,7 +28,6 @@ pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
     };
     legend(
         &mut out,
-        tongue,
         &[
             ("model", "least error for its length"),
             ("measured", class),
@@ -46,8 +37,7 @@ pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
     );
     figure(
         &mut out,
-        tongue,
-        &picture(tongue, discovery, &fronts),
+        &picture(discovery, &fronts),
         "Every formula that was simulated: its length in names, numbers and signs, and what it leaves of blocks that its fit \
          did not see, in units of the noise.",
     );
@@ -59,24 +49,21 @@ pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
         .collect();
     table(
         &mut out,
-        tongue,
         &["Formula", "Length", "Error (× noise)", "Parameters", ""],
         &rows,
     );
     if let Some(experiment) = &discovery.experiment {
         let _ = writeln!(
             out,
-            "<p class=\"next\"><strong>{}</strong> {}</p>",
-            tongue.page("What would tell them apart:"),
-            tongue.page(&experiment.text)
+            "<p class=\"next\"><strong>What would tell them apart:</strong> {}</p>",
+            escape(&experiment.text)
         );
-        out.push_str(&experiments(tongue, experiment));
+        out.push_str(&experiments(experiment));
     }
     if let Some(found) = discovery.found() {
         let _ = writeln!(
             out,
-            "<p class=\"small\">{}</p>\n<pre><code>--effect {}</code></pre>",
-            tongue.page("The same formula again:"),
+            "<p class=\"small\">The same formula again:</p>\n<pre><code>--effect {}</code></pre>",
             escape(&shell_word(&found.typed))
         );
     }
@@ -96,7 +83,7 @@ fn row(formula: &FoundFormula, class: &str) -> Vec<Cell> {
     let parameters: Vec<String> = parameters.collect();
     let class = if formula.in_class { class } else { "" };
     vec![
-        Cell::Math(formula.formula.clone()),
+        Cell::Code(formula.formula.clone()),
         Cell::Number(formula.length.to_string()),
         Cell::Number(brief(formula.error)),
         Cell::Text(parameters.join("; ")),
@@ -105,7 +92,7 @@ fn row(formula: &FoundFormula, class: &str) -> Vec<Cell> {
 }
 
 /// Error against length, and the front.
-fn picture(tongue: Tongue, discovery: &Discovery, front: &[&FoundFormula]) -> String {
+fn picture(discovery: &Discovery, front: &[&FoundFormula]) -> String {
     let at = |f: &FoundFormula| [f.length as f64, f.error];
     let mut line = vec![[0.0, discovery.before]];
     line.extend(front.iter().map(|f| at(f)));
@@ -119,7 +106,6 @@ fn picture(tongue: Tongue, discovery: &Discovery, front: &[&FoundFormula]) -> St
             .chain(all.iter().chain(&line).map(|p| p[1])),
     );
     let mut chart = Chart::new(
-        tongue,
         WIDE,
         TALL,
         Axis::new("length of the formula", "1", (0.0, lengths.1 + 1.0)),

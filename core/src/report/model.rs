@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::html::{Cell, table};
-use super::input::{ReportInput, Tongue};
-use super::math::{display, math};
+use super::html::{Cell, escape, table};
+use super::input::ReportInput;
 use crate::diagnosis::{NextExperiment, Parameter, Step};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
@@ -21,43 +20,38 @@ pub fn baseline(kind: Kind) -> [&'static str; 2] {
 
 /// The baseline, and one block for each effect on top of it.
 pub(super) fn equations(input: &ReportInput) -> String {
-    let mut out = display(baseline(input.measurement.kind));
-    let tongue = input.tongue;
-    let symbols = "the input that reaches the body (u, unless an effect changes it)";
-    let _ = writeln!(
-        out,
-        "<p class=\"small\">{}: {}; {}: {}</p>",
-        math("u_acting"),
-        tongue.page(symbols),
-        math("F"),
-        tongue.page("the forces of the effects")
-    );
+    let mut out = String::from("<pre><code>");
+    for line in baseline(input.measurement.kind) {
+        if !line.is_empty() {
+            let _ = writeln!(out, "{}", escape(line));
+        }
+    }
+    out.push_str("</code></pre>\n<p class=\"small\">u_acting is the input that reaches the body (u, unless an effect changes it); F the forces of the effects.</p>\n");
     for id in added(&input.last.step) {
-        let _ = writeln!(out, "<h3>{}</h3>", tongue.page(name_of(id)));
+        let _ = writeln!(out, "<h3>{}</h3>", escape(name_of(id)));
         let Some(effect) = effect::find(id) else {
             if let Some(formula) = input.model.and_then(|m| m.formula(id)) {
                 let _ = writeln!(
                     out,
-                    "<p>{}</p>\n{}",
-                    tongue.page("An effect of your own."),
-                    display([format!("F = {formula}").as_str()])
+                    "<p>An effect of your own.</p>\n<pre><code>F = {}</code></pre>",
+                    escape(formula)
                 );
             }
             continue;
         };
         let _ = writeln!(
             out,
-            "<p>{}</p>\n{}<p class=\"small\">{}</p>",
-            tongue.page(effect.sentence()),
-            display(effect.equation().lines()),
-            tongue.page(effect.source())
+            "<p>{}</p>\n<pre><code>{}</code></pre>\n<p class=\"small\">{}</p>",
+            escape(effect.sentence()),
+            escape(effect.equation()),
+            escape(effect.source())
         );
     }
     out
 }
 
 /// What each kind of experiment would tell of a class, the proposed one first.
-pub(super) fn experiments(tongue: Tongue, proposal: &NextExperiment) -> String {
+pub(super) fn experiments(proposal: &NextExperiment) -> String {
     let trials = std::iter::once(proposal.trial()).chain(proposal.others.iter().cloned());
     let rows: Vec<Vec<Cell>> = trials
         .map(|t| vec![Cell::Text(t.text.clone()), Cell::Number(t.times_noise())])
@@ -65,7 +59,6 @@ pub(super) fn experiments(tongue: Tongue, proposal: &NextExperiment) -> String {
     let mut out = String::new();
     table(
         &mut out,
-        tongue,
         &["Experiment", "The models differ by (× noise)"],
         &rows,
     );
@@ -81,13 +74,13 @@ fn added(step: &Step) -> Vec<EffectId> {
         .collect()
 }
 
-pub(super) fn parameters(tongue: Tongue, parameters: &[Parameter]) -> String {
+pub(super) fn parameters(parameters: &[Parameter]) -> String {
     let mut out = String::new();
     let rows: Vec<Vec<Cell>> = parameters
         .iter()
         .map(|p| {
             vec![
-                Cell::Math(p.name.clone()),
+                Cell::Code(p.name.clone()),
                 Cell::Text(p.label.clone()),
                 Cell::Number(with_error(p.value, p.std_error, &p.unit)),
                 Cell::Text(
@@ -109,7 +102,6 @@ pub(super) fn parameters(tongue: Tongue, parameters: &[Parameter]) -> String {
         .collect();
     table(
         &mut out,
-        tongue,
         &[
             "symbol",
             "meaning",
@@ -119,13 +111,14 @@ pub(super) fn parameters(tongue: Tongue, parameters: &[Parameter]) -> String {
         ],
         &rows,
     );
-    let widened = tongue.page("Standard errors are widened where the residuals are correlated.");
-    let _ = writeln!(out, "<p class=\"small\">{widened}</p>");
+    out.push_str(
+        "<p class=\"small\">Standard errors are widened where the residuals are correlated.</p>\n",
+    );
     out
 }
 
 /// A table for each step that had candidates.
-pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
+pub(super) fn candidates(steps: &[Step]) -> String {
     let mut out = String::new();
     for step in steps.iter().filter(|s| !s.candidates.is_empty()) {
         let names: Vec<&str> = added(step).into_iter().map(name_of).collect();
@@ -134,8 +127,12 @@ pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
         } else {
             format!("On top of {}", names.join(" + "))
         };
-        let title = format!("{on} (error {})", brief(step.error));
-        let _ = writeln!(out, "<h3>{}</h3>", tongue.page(&title));
+        let _ = writeln!(
+            out,
+            "<h3>{} (error {})</h3>",
+            escape(&on),
+            brief(step.error)
+        );
         let rows: Vec<Vec<Cell>> = step
             .candidates
             .iter()
@@ -165,13 +162,13 @@ pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
             .collect();
         table(
             &mut out,
-            tongue,
             &["effect", "error", "evidence", "", "its parameters"],
             &rows,
         );
     }
-    let explained = "Error: after a refit, on the part of the record that the model was not fitted to, in units of the noise. \
-                     Evidence: change of the Bayesian information criterion on the fitted data, negative is better.";
-    let _ = writeln!(out, "<p class=\"small\">{}</p>", tongue.page(explained));
+    out.push_str(
+        "<p class=\"small\">Error: after a refit, on the part of the record that the model was not fitted to, in units of the noise. Evidence: change of the \
+         Bayesian information criterion on the fitted data, negative is better.</p>\n",
+    );
     out
 }
