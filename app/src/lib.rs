@@ -14,10 +14,9 @@ mod files;
 mod fonts;
 mod hook;
 mod jobs;
-pub mod language;
 mod layout;
 pub mod lessons;
-pub mod link;
+pub use hysteron_work::link;
 mod live;
 mod motion;
 mod notice;
@@ -37,4 +36,5 @@ pub use app::HysteronApp;
 pub use app::program::run;
 #[cfg(target_arch = "wasm32")]
 pub use app::start::run_web;
+pub use hysteron_work::language;
 pub use save::GivenFile;

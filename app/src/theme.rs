@@ -237,9 +237,12 @@ pub fn grid(visuals: &egui::Visuals) -> Color32 {
     visuals.text_color().gamma_multiply(GRID)
 }
 
+/// Size of the letters of a page's answer, points.
+pub const ANSWER: f32 = 24.0;
+
 /// The large answer of a page.
 pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
-    let text = egui::RichText::new(tr(text)).size(24.0).strong();
+    let text = egui::RichText::new(tr(text)).size(ANSWER).strong();
     let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
 }
@@ -247,7 +250,7 @@ pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
 /// The same while the next one is computed for what is set now: it is fainter, and says so.
 pub fn answer_of_before_ui(ui: &mut egui::Ui, text: &str) {
     let color = ui.visuals().weak_text_color();
-    let text = egui::RichText::new(tr(text)).size(24.0).color(color);
+    let text = egui::RichText::new(tr(text)).size(ANSWER).color(color);
     let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
     // Beside the next line, so that nothing moves while a slider is dragged.

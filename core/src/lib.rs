@@ -10,6 +10,7 @@
 //! | [`progress`] | how far has a computation come? |
 //! | [`count`] | how many are there, in words? |
 //! | [`uncertain`] | how sure is a value, in words? |
+//! | [`equation`] | what does an equation in a file look like in a book? |
 //! | [`curve`] | which points of a curve does a picture need? |
 //! | [`measurement`] | what was measured? |
 //! | [`relay`] | what does the relay do? |
@@ -45,6 +46,7 @@ pub mod curve;
 pub mod diagnosis;
 pub mod drive;
 pub mod effect;
+pub mod equation;
 pub mod explore;
 mod exponential;
 pub mod figures;
@@ -56,6 +58,7 @@ pub mod measurement;
 pub mod model;
 pub mod mystery;
 pub mod on_off;
+pub mod opening;
 mod order;
 mod packed;
 pub mod plant;

@@ -182,7 +182,12 @@ fn what_no_effect_explains_comes_out_as_a_formula_that_one_click_adds() {
     // It was looked for without being asked.
     let formula = state(&harness)["formula"].clone();
     assert_eq!(formula["text"], "-a*exp(-((x-c)/w)^2)");
-    harness.get_by_label_contains("but a formula does: F\u{a0}= -a*exp(-((x-c)/w)^2)");
+    harness.get_by_label_contains("but a formula does:");
+    let set = harness.query_all_by_label("F = -a*exp(-((x-c)/w)^2)");
+    assert!(
+        set.count() > 1,
+        "typeset in the answer and beside its button"
+    );
     let said = texts(&harness);
     assert!(said.iter().any(|t| t.starts_with("95 %: 0.79")), "{said:?}");
     says(&harness, "A formula explains what is left: add it");
@@ -256,6 +261,35 @@ fn a_narrow_window_shows_the_next_experiment_too() {
 }
 
 /// What the page says to try next: short, and about this.
+fn left_ends(harness: &App, names: &[&str]) -> Vec<f32> {
+    let at = |name: &&str| harness.get_by_label(name).rect().left();
+    names.iter().map(at).collect()
+}
+
+#[test]
+fn the_plots_over_time_line_up_however_wide_their_labels_are() {
+    for (file, size) in [
+        ("drive-02", WIDE),
+        ("drive-05", [1100.0, 720.0]),
+        ("drive-02", NARROW),
+    ] {
+        let mut harness = opened(file, size);
+        finish(&mut harness);
+        let names = [
+            "Plot: x1 [rad] over time [s]",
+            "Plot: x1 - model [rad] over time [s]",
+            "Plot: v1 [rad/s] over time [s]",
+            "Plot: v1 - model [rad/s] over time [s]",
+        ];
+        let lefts = left_ends(&harness, &names);
+        let apart = lefts.iter().map(|left| (left - lefts[0]).abs());
+        assert!(
+            apart.fold(0.0, f32::max) < 1.0,
+            "{file} {size:?}: {lefts:?}"
+        );
+    }
+}
+
 fn says(harness: &App, part: &str) {
     let state = state(harness);
     let hint = state["hint"].as_str().expect("a hint");

@@ -164,6 +164,49 @@ fn swipe(harness: &mut App, from: Pos2, way: Vec2) {
 }
 
 #[test]
+fn on_a_phone_one_plot_stays_in_view_while_the_sliders_scroll() {
+    for place in [
+        "v1;explore;explore.paused=20",
+        "v1;backlash;backlash.paused=1",
+        "v1;maps",
+        "v1;tune",
+        "v1;tune;tune.step=ultimate",
+        "v1;tune;tune.step=adaptation",
+        "v1;tune;tune.step=model",
+        "v1;tune;tune.step=rules",
+        "v1;tune;tune.step=loops",
+        "v1;tune;tune.measured.from=record;tune.measured.file=process-02",
+        "v1;tune;tune.measured.from=numbers",
+    ] {
+        let mut harness = app("start", PHONE);
+        show(&mut harness, place);
+        let plots = |harness: &App| -> Vec<(String, egui::Rect)> {
+            let all = controls(harness, &[Role::Button]).into_iter();
+            all.filter(|(name, _)| name.starts_with("Menu of the plot: "))
+                .collect()
+        };
+        let sliders = |harness: &App| controls(harness, &[Role::Slider]);
+        let before = plots(&harness);
+        // By the margin, where no slider is dragged.
+        swipe(
+            &mut harness,
+            Pos2::new(4.0, PHONE[1] - 130.0),
+            Vec2::new(0.0, -160.0),
+        );
+        finish(&mut harness);
+        let after = plots(&harness);
+        let stays = before.iter().find(|plot| after.contains(plot));
+        let (name, at) = stays.unwrap_or_else(|| panic!("{place}: {before:?} {after:?}"));
+        assert!(at.bottom() < 0.75 * PHONE[1], "{place}: {name} at {at:?}");
+        let twice = after.iter().filter(|plot| plot.0 == *name).count();
+        assert_eq!(twice, 1, "{place}: {name}");
+        if !place.contains("measured") {
+            assert!(!sliders(&harness).is_empty(), "{place}: a slider beside it");
+        }
+    }
+}
+
+#[test]
 fn on_a_phone_a_finger_on_a_plot_scrolls_the_page() {
     for (place, name) in [
         (

@@ -1,7 +1,7 @@
 //! The tuning page, as a user works it: from the relay to the tuned loop.
 
 use crate::support::ui::{
-    App, NARROW, WIDE, answer, app, click, finish, picture, show, state, texts,
+    App, NARROW, WIDE, answer, app, click, finish, picture, show, state, texts, type_over,
 };
 use egui_kittest::kittest::Queryable as _;
 use hysteron::language::Language;
@@ -124,6 +124,24 @@ fn only_numbers_give_a_point_and_what_would_help() {
         "{said}"
     );
     picture(&mut harness, "tune_numbers");
+}
+
+#[test]
+fn times_up_and_down_that_differ_are_part_of_the_numbers() {
+    let mut harness = app("tune", WIDE);
+    click(&mut harness, "Only numbers");
+    finish(&mut harness);
+    let symmetric = answer(&harness);
+    click(&mut harness, "it is up longer than down, or shorter");
+    finish(&mut harness);
+    assert_eq!(answer(&harness), symmetric);
+    type_over(&mut harness, "time up [s]", "9");
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(2);
+    finish(&mut harness);
+    let said = texts(&harness).join("\n");
+    assert!(said.contains("32.5 s") && said.contains("9 s"), "{said}");
+    assert_ne!(answer(&harness), symmetric);
 }
 
 #[test]

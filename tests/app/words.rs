@@ -6,7 +6,7 @@ use crate::support::ui::{App, PLACES, TALL, app, finish, show, texts};
 use egui_kittest::kittest::Queryable as _;
 
 /// Names that files have for Greek letters.
-const NAMES: [&str; 6] = ["tau", "phi", "beta", "omega", "sigma", "eps"];
+const NAMES: [&str; 7] = ["tau", "phi", "pi", "beta", "omega", "sigma", "eps"];
 
 /// Units that a label may have in the name of a column, beside the one in its brackets.
 const UNITS: [&str; 8] = ["deg", "rad", "rpm", "ms", "mm", "mA", "mV", "counts"];

@@ -2,6 +2,7 @@
 
 mod batch;
 mod commands;
+mod german;
 mod scenarios;
 #[path = "../support/shared.rs"]
 mod shared;

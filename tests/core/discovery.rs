@@ -154,7 +154,7 @@ fn what_was_found_stays_in_the_model() {
     assert_eq!(discovery.end, DiscoveryEnd::Explained);
 }
 
-/// `HYSTERON_HIDDEN_SEEDS=5201,5300 cargo test --release --test core hidden_forces_by_kind -- --ignored --nocapture`
+/// `HYSTERON_HIDDEN_SEEDS=FROM,TO cargo test --release --test core hidden_forces_by_kind -- --ignored --nocapture`
 #[test]
 #[ignore = "a bench of many minutes"]
 fn hidden_forces_by_kind() {

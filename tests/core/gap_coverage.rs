@@ -8,7 +8,7 @@
 //! HYSTERON_BENCH=full cargo test -p hysteron-core --test core gap_coverage -- --nocapture
 //! ```
 //!
-//! `HYSTERON_BENCH_SEEDS=5001` runs another seed: what is claimed comes from one above 5000, run once.
+//! `HYSTERON_BENCH_SEEDS=N` runs another seed: what is claimed comes from one above 5000, run once.
 
 #![allow(
     clippy::disallowed_methods,

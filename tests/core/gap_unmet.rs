@@ -1,8 +1,8 @@
 //! Drifting tests in which the load is never met, or hangs on a shaft: no switch of the relay, no round-off and no spring is
 //! taken for the end of a gap, however the torque was sampled.
 //!
-//! `cargo test` runs some of the development seeds; `HYSTERON_BENCH=full` runs fifty, and `HYSTERON_BENCH_SEEDS=5001` fifty
-//! from another seed on.
+//! `cargo test` runs some of the development seeds; `HYSTERON_BENCH=full` runs fifty, and `HYSTERON_BENCH_SEEDS=N` fifty
+//! from seed N on.
 
 #![allow(
     clippy::disallowed_methods,

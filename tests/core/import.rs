@@ -348,7 +348,7 @@ fn blanks_divide_columns_where_nothing_else_does() {
         assert!(m.warnings[0].contains("'motor pos'"));
     }
     // Without a header the first line is missed.
-    let first = "'0.000e0  0.000e0  0.000e0  1.5' is not a header";
+    let first = "'0.000e0  0.000e0  0.000e0  1.500e0' is not a header";
     refused(&rows("  "), &["line 1", first, "the first line must name"]);
     refused("0\t64\t0\n1\t64\t0\n", &["'0 64 0' is not a header"]);
     let text = format!("t [s]  u [N m]  x1 [rad]\n{}", rows("  "));
@@ -711,7 +711,7 @@ fn bad_values_are_named_with_their_place() {
             "line 7",
             "column 1 (t)",
             "does not increase",
-            "4 s after 4 s",
+            "4 s stands in two rows",
         ],
     );
     refused(&with_row_5("3.5,2,2,2"), &["line 7", "3.5 s after 4 s"]);

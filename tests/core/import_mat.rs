@@ -320,7 +320,7 @@ fn what_is_wrong_is_said_with_what_would_be_right() {
         FLAT,
         "t=current [s],u=time [A],x1=enc [rad]",
         None,
-        &["column current, sample 2", "increase"],
+        &["column current, sample 6", "increase"],
     );
     refused(
         FLAT,

@@ -25,6 +25,7 @@ mod hidden_effects;
 mod hunting;
 mod import;
 mod import_mat;
+mod input_check;
 mod limit_cycles;
 mod lost_rows;
 

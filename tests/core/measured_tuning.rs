@@ -347,6 +347,255 @@ fn a_record_that_tells_no_gain_gives_no_gains() {
     assert!(result.text.contains("No gains follow"), "{}", result.text);
 }
 
+#[test]
+fn a_plant_of_negative_gain_is_the_same_loop_with_the_input_turned() {
+    // A cooler: as the heater's record, but what was on is off.
+    let test = Test {
+        hysteresis: 0.2,
+        holds: 0.4,
+        ..tests()[0].clone()
+    };
+    let heater = relay_test(&plants()[3], &test, 5);
+    let mut cooler = heater.clone();
+    cooler.input.iter_mut().for_each(|u| *u = 1.0 - *u);
+    let [heats, cools] = [heater, cooler].map(|r| tune_record(&r, &Settings::default()).unwrap());
+    let (up, down) = (heats.ultimate.unwrap(), cools.ultimate.unwrap());
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}: {}", cools.text);
+    near(-down.gain, up.gain);
+    near(down.period, up.period);
+    let [gain, period] = plants()[3].ultimate();
+    assert!(
+        (down.gain / -gain - 1.0).abs() < 0.02 && (down.period / period - 1.0).abs() < 0.02,
+        "{}",
+        cools.text
+    );
+    near(
+        cools.cycle.as_ref().unwrap().hysteresis,
+        heats.cycle.as_ref().unwrap().hysteresis,
+    );
+    assert!(heats.cycle.unwrap().hysteresis > 0.0);
+    assert_eq!(heats.gains.len(), cools.gains.len());
+    for (h, c) in heats.gains.iter().zip(&cools.gains) {
+        assert_eq!((&h.rule, &h.controller), (&c.rule, &c.controller));
+        near(-c.kp, h.kp);
+        near(-c.ki, h.ki);
+        near(c.phase_margin_deg.unwrap(), h.phase_margin_deg.unwrap());
+    }
+    let turned = format!("the phase is {:.1}", heats.point.unwrap().phase_deg);
+    assert!(
+        cools.text.contains(&turned) && cools.text.contains("with the input turned"),
+        "{}",
+        cools.text
+    );
+}
+
+/// A test from cold of the same plant, of gain 3 with lags of 30 s and 6 s; its ultimate period is some 25 s.
+fn cold(change: impl Fn(&mut Test), seed: u64) -> Record {
+    let mut test = tests()[1].clone();
+    test.cold = true;
+    change(&mut test);
+    relay_test(&plants()[3], &test, seed)
+}
+
+/// With the rows before it in which the input was off and the output where it begins.
+fn off_before(mut record: Record, rows: usize) -> Record {
+    let step = record.time[1] - record.time[0];
+    let first = record.output[0];
+    for _ in 0..rows {
+        record.time.insert(0, record.time[0] - step);
+        record.input.insert(0, 0.0);
+        record.output.insert(0, first);
+    }
+    record
+}
+
+fn told(record: &Record) -> MeasuredTuning {
+    tune_record(record, &Settings::default()).unwrap()
+}
+
+#[test]
+fn a_step_from_rest_gives_its_gain() {
+    for seed in 1..5 {
+        let record = cold(|t| (t.holds, t.periods) = (1.2, 12.0), seed);
+        let result = told(&off_before(record, 1));
+        let best = &result.models[0];
+        assert!(
+            (best.gain.value - 3.0).abs() < 0.1 && best.gain.std_error < 0.1,
+            "{:?}: {}",
+            best.gain,
+            result.text
+        );
+        assert!((best.operating_point + 3.6).abs() < 0.1, "{best:?}");
+        assert!(!result.gains.is_empty());
+    }
+}
+
+#[test]
+fn an_output_that_still_rises_is_not_said_to_level_off() {
+    for (seed, rows) in [(1, 1), (2, 30), (3, 30)] {
+        let record = cold(|t| t.periods = 0.6, seed);
+        let result = told(&off_before(record, rows));
+        let slope = has(&result, TroubleKind::WindowTooShort);
+        assert!(
+            slope > 0.0 && result.text.contains("still rises"),
+            "{}",
+            result.text
+        );
+        assert!(
+            (result.troubles.iter()).all(|t| t.kind != TroubleKind::TargetUnreachable)
+                && !result.text.contains("levels off"),
+            "{}",
+            result.text
+        );
+    }
+}
+
+#[test]
+fn noise_is_named_after_a_warm_up_as_well() {
+    for seed in 1..5 {
+        for (hysteresis, noise) in [(0.075, 0.25), (0.02, 0.1)] {
+            let record = cold(|t| (t.hysteresis, t.noise) = (hysteresis, noise), seed);
+            let result = told(&record);
+            has(&result, TroubleKind::NoiseLargerThanHysteresis);
+            assert!(
+                (result.troubles.iter()).all(|t| t.kind != TroubleKind::WindowTooShort),
+                "{}",
+                result.text
+            );
+        }
+    }
+}
+
+#[test]
+fn a_relay_that_stops_switching_is_said_and_the_cycle_before_is_read() {
+    // The heater no longer heats, or no longer enough.
+    for load in [1.0, 0.6] {
+        let record = cold(|t| (t.later, t.periods) = ([0.5, load], 20.0), 4);
+        let result = told(&record);
+        let ends = has(&result, TroubleKind::TargetUnreachable);
+        let level = 3.0 * (0.5 - load);
+        assert!((ends - level).abs() < 0.2, "{ends} {level}");
+        assert!(
+            result.text.contains("longest periods before"),
+            "{}",
+            result.text
+        );
+        let gain = result.models[0].gain;
+        assert!(
+            (gain.value / 3.0 - 1.0).abs() < 0.1,
+            "{gain:?}: {}",
+            result.text
+        );
+        assert!(result.stall().is_none(), "{}", result.text);
+    }
+}
+
+#[test]
+fn a_test_that_is_over_has_not_stalled() {
+    // Switched off at the end, and left to cool.
+    let mut record = cold(|t| (t.later, t.periods) = ([0.5, 1.0], 20.0), 4);
+    let half = record.time.len() / 2;
+    let last = (half..record.time.len())
+        .rfind(|i| record.input[*i] != record.input[i - 1])
+        .unwrap();
+    assert_eq!(record.input[last], 1.0);
+    // What cools it is now that the input is off.
+    record.input[last..].fill(0.0);
+    let result = told(&record);
+    assert!(
+        (result.troubles.iter()).all(|t| t.kind != TroubleKind::TargetUnreachable),
+        "{}",
+        result.text
+    );
+}
+
+#[test]
+fn a_short_record_whose_models_tell_the_gain_does_not_say_that_it_tells_nothing() {
+    for periods in [2.45, 2.6] {
+        let result = told(&cold(|t| t.periods = periods, 6));
+        let rounds = has(&result, TroubleKind::WindowTooShort);
+        assert!((1.0..=2.0).contains(&rounds), "{rounds}: {}", result.text);
+        assert!(
+            result.static_gain.is_some() && result.stall().is_none(),
+            "{}",
+            result.text
+        );
+    }
+}
+
+#[test]
+fn a_minimum_time_is_recognised_in_a_regular_cycle() {
+    for seed in 1..4 {
+        let of = |least_time| {
+            cold(
+                |t| {
+                    (t.holds, t.least_time, t.noise) = (0.4, least_time, 0.05);
+                    (t.hysteresis, t.periods) = (0.1, 30.0);
+                },
+                seed,
+            )
+        };
+        let free = told(&of(0.0));
+        let none = |r: &MeasuredTuning| {
+            r.troubles
+                .iter()
+                .all(|t| t.kind != TroubleKind::MinimumTime)
+        };
+        assert!(none(&free), "{}", free.text);
+        let held = told(&of(1.0));
+        has(&held, TroubleKind::MinimumTime);
+        assert!(!held.text.contains("less hysteresis"), "{}", held.text);
+    }
+    // Without noise only thresholds that are known show it.
+    let record = cold(
+        |t| (t.cold, t.least_time, t.noise, t.hysteresis) = (false, 1.0, 0.0, 0.0),
+        1,
+    );
+    let settings = Settings {
+        hysteresis: Some(0.0),
+        ..Settings::default()
+    };
+    has(
+        &tune_record(&record, &settings).unwrap(),
+        TroubleKind::MinimumTime,
+    );
+}
+
+#[test]
+fn a_drift_is_of_whole_periods() {
+    for drift in [-0.3, 0.3] {
+        let result = told(&cold(
+            |t| (t.drift, t.hysteresis, t.periods) = (drift, 0.3, 16.0),
+            7,
+        ));
+        let number = has(&result, TroubleKind::Drift);
+        assert!((0.15..0.4).contains(&(number * drift.signum())), "{number}");
+        assert!(
+            result.text.contains("the mean input drifts"),
+            "{}",
+            result.text
+        );
+    }
+}
+
+#[test]
+fn what_is_not_determined_is_said_once() {
+    let record = cold(|t| (t.holds, t.periods) = (1.2, 12.0), 3);
+    let mut result = told(&off_before(record, 1));
+    for m in &mut result.models {
+        m.gain.std_error = 10.0 * m.gain.value;
+        for t in &mut m.time_constants {
+            t.std_error = 10.0 * t.value;
+        }
+    }
+    let said = result.sentences().join(" ");
+    assert_eq!(said.matches("not determined").count(), 1, "{said}");
+    assert!(
+        said.contains("not determined by this record: gain, time constant."),
+        "{said}"
+    );
+}
+
 /// What a plant out of reach of its set point shows: a step that levels off.
 fn out_of_reach() -> Record {
     let time: Vec<f64> = (0..600).map(|i| 2.0 * f64::from(i)).collect();
@@ -389,6 +638,17 @@ fn a_controller_is_not_taken_for_the_plant() {
     let result = tune_record(&record, &Settings::default()).unwrap();
     let slope = has(&result, TroubleKind::Controller);
     assert!((slope + 0.9).abs() < 1e-9, "{slope}");
+    // What is no model of the plant gives no gains for it.
+    assert!(
+        result.gains.is_empty() && result.static_gain.is_none() && result.ultimate.is_none(),
+        "{:?}",
+        result.gains
+    );
+    assert!(
+        result.text.contains("a controller made the input"),
+        "{}",
+        result.text
+    );
 }
 
 /// An input that changes at every sample, on a gain of 0.5 with lags of 20 s and 5 s and noise.
@@ -447,6 +707,7 @@ fn readings() -> Readings {
         levels: [0.0, 255.0],
         hysteresis: 0.5,
         half_periods: None,
+        unequal: false,
     }
 }
 
@@ -485,6 +746,7 @@ fn numbers_without_hysteresis_give_an_ultimate_gain_with_an_honest_error() {
             levels: [0.0, 1.0],
             hysteresis: 0.0,
             half_periods: None,
+            unequal: false,
         };
         let told = tune_readings(&readings, &Settings::default())
             .unwrap()
@@ -497,6 +759,81 @@ fn numbers_without_hysteresis_give_an_ultimate_gain_with_an_honest_error() {
             plant.name
         );
     }
+}
+
+/// What is read off the cycle of a plant of the bench.
+fn read_off(plant: &Plant, holds: f64, hysteresis: f64) -> Readings {
+    let test = Test {
+        holds,
+        hysteresis,
+        samples: 400.0,
+        ..tests()[0].clone()
+    };
+    let record = relay_test(plant, &test, 3);
+    let cycle = tune_record(&record, &Settings::default())
+        .unwrap()
+        .cycle
+        .unwrap();
+    Readings {
+        amplitude: cycle.amplitude,
+        period: cycle.period,
+        levels: cycle.levels,
+        hysteresis: cycle.hysteresis.max(0.0),
+        half_periods: Some(cycle.half_periods),
+        ..readings()
+    }
+}
+
+#[test]
+fn numbers_of_an_asymmetric_cycle_hold_the_point_within_their_error() {
+    // What is uniform reaches the root of 3 of its standard error; the samples of the bench add a little.
+    let most = 1.1 * 3.0_f64.sqrt();
+    for plant in plants()[..6].iter().step_by(2) {
+        for (holds, hysteresis) in [(0.1, 0.05), (0.2, 0.2), (0.75, 0.4)] {
+            let readings = read_off(plant, holds, hysteresis);
+            let point = tune_readings(&readings, &Settings::default())
+                .unwrap()
+                .point
+                .unwrap();
+            let [magnitude, phase] = plant.response(point.omega);
+            let off = [
+                (point.magnitude - magnitude) / point.std_error_magnitude,
+                (point.phase_deg - phase.to_degrees()) / point.std_error_phase_deg,
+            ];
+            println!(
+                "{}, holds {holds}: {:.1} ± {:.1} degrees for {:.1}; {off:.2?}",
+                plant.name,
+                point.phase_deg,
+                point.std_error_phase_deg,
+                phase.to_degrees()
+            );
+            assert!(
+                off.iter().all(|o| o.abs() < most),
+                "{}, holds {holds}: {off:?} {point:?}",
+                plant.name
+            );
+            assert!(
+                point.std_error_phase_deg < 30.0
+                    && point.std_error_magnitude < 0.3 * point.magnitude
+            );
+        }
+    }
+}
+
+#[test]
+fn half_periods_that_differ_by_an_unknown_amount_give_no_point_and_no_gains() {
+    let unequal = Readings {
+        unequal: true,
+        half_periods: None,
+        ..readings()
+    };
+    let result = tune_readings(&unequal, &Settings::default()).unwrap();
+    has(&result, TroubleKind::Asymmetric);
+    assert!(
+        result.point.is_none() && result.gains.is_empty() && result.cycle.is_some(),
+        "{}",
+        result.text
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ use hysteron_core::diagnosis::{
 };
 use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::progress::Progress;
-use hysteron_core::report::{Provenance, ReportInput, html, sha256};
+use hysteron_core::report::{Provenance, ReportInput, Tongue, html, sha256};
 
 fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(format!(
@@ -55,6 +55,7 @@ fn page_with(
             bytes: 4711,
             sha256: sha256(b"abc"),
         },
+        tongue: Tongue::ENGLISH,
     });
     (diagnosis, text)
 }
@@ -91,8 +92,9 @@ fn check_well_formed(page: &str) {
 /// No script, no other file, no handler of events: only elements and attributes that draw.
 fn check_self_contained(page: &str) {
     let elements = "html head meta title style body main header section h1 h2 h3 p ul li div span figure figcaption \
-                    table thead tbody tr th td code pre strong svg path rect text";
-    let attributes = "lang charset name content class viewBox width height aria-hidden role x y rx d text-anchor transform";
+                    table thead tbody tr th td code pre strong svg path rect text \
+                    math mrow mi mn mo mtext msub msup mfrac mspace";
+    let attributes = "lang charset name content class viewBox width height aria-hidden role x y rx d text-anchor transform aria-label";
     for (tag, _) in tags(page) {
         let tag = tag.trim_start_matches('/').trim_end_matches('/');
         if tag == "!doctype html" {
@@ -144,7 +146,7 @@ fn a_report_says_what_the_diagnosis_says() {
     // Detail, its residual, the whole residual; one picture an axis at least; the waterfall.
     assert!(page.matches("<figure>").count() >= 5);
     for parameter in &last.parameters {
-        let cell = format!("<code>{}</code>", parameter.name);
+        let cell = format!("<td><math aria-label=\"{}\">", parameter.name);
         assert!(page.contains(&cell), "{cell} is missing");
     }
 }
@@ -201,9 +203,10 @@ fn a_formula_that_was_looked_for_has_its_section() {
     check_self_contained(&page);
     for text in [
         "<h2>The formula of the unknown</h2>",
-        "Input = -a*y^5 &amp; no &lt;b&gt;more&lt;/b&gt;.",
-        "<code>-a*y^3</code>",
-        "<code>-a*y^5</code>",
+        "<p>Input = <math aria-label=\"-a*y^5\">",
+        " &amp; no &lt;b&gt;more&lt;/b&gt;.</p>",
+        "<math aria-label=\"-a*y^3\">",
+        "<msup><mi>y</mi><mrow><mn>5</mn></mrow></msup>",
         "a = 2.0 ± 5 % (95 %: 1.80 to 2.20)",
         "length of the formula",
         "--effect &#39;formula_5: -a*y^5; a = 2&#39;",

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use hysteron_core::tuning::measured::log::{Held, Log, LogError, Source, read, recognise};
-use hysteron_core::tuning::measured::{Form, Record};
+use hysteron_core::tuning::measured::log::{Held, Levels, Log, LogError, Source, read, recognise};
+use hysteron_core::tuning::measured::{Form, Record, TroubleKind, Wishes};
 
 use crate::support::relay_rig::{plants, relay_test, tests};
 
@@ -130,6 +130,29 @@ fn the_reports_of_marlin_are_a_record() {
 }
 
 #[test]
+fn the_bed_is_read_where_marlin_tunes_the_bed() {
+    let record = heated(1);
+    let scale = 2.0 / record.time[1];
+    let mut text = String::from("PID Autotune start\n");
+    for (u, y) in record.input.iter().zip(&record.output) {
+        writeln!(
+            text,
+            " T:24.1 /0.00 B:{y:.2} /200.00 @:0 B@:{:.0}",
+            127.0 * u
+        )
+        .unwrap();
+    }
+    let log = session(&text, Source::Marlin);
+    assert!(matches!(log.held, Held::Record(_)));
+    let [_, period] = plants()[3].ultimate();
+    let told = log.tune(None).unwrap().ultimate.unwrap();
+    assert!(
+        (told.period / (scale * period) - 1.0).abs() < 0.05,
+        "{told:?}"
+    );
+}
+
+#[test]
 fn the_cycles_of_marlin_lead_to_gains() {
     let text = "PID Autotune start\n bias: 92 d: 92 min: 196.56 max: 203.75\n \
                 bias: 90 d: 90 min: 196.64 max: 203.82 Ku: 31.92 Tu: 39.45\n Classic PID\n Kp: 19.15 Ki: 0.97 Kd: 94.44\n\
@@ -211,6 +234,199 @@ fn esphomes_log_gives_what_it_says() {
     );
 }
 
+#[test]
+fn esphomes_info_log_of_an_asymmetric_cycle_gives_no_point_and_no_gains() {
+    // Without the times, which only the verbose log has.
+    let info: String = ESPHOME
+        .lines()
+        .filter(|l| !l.contains("][V]["))
+        .fold(String::new(), |all, l| all + l + "\n");
+    let log = session(&info, Source::Esphome);
+    assert_eq!(log.levels, Levels::AssumedByGain);
+    let result = log.tune(None).unwrap();
+    assert!(
+        result.point.is_none() && result.gains.is_empty() && result.cycle.is_some(),
+        "{}",
+        result.text
+    );
+    assert!(
+        result
+            .troubles
+            .iter()
+            .any(|t| t.kind == TroubleKind::Asymmetric),
+        "{}",
+        result.text
+    );
+    assert!(
+        result.text.contains("0 and 1 were assumed"),
+        "{}",
+        result.text
+    );
+    // One that found nothing wrong gives both.
+    let symmetric = info.replace(
+        "Oscillation Frequency is not symmetrical",
+        "All checks passed!",
+    );
+    let result = session(&symmetric, Source::Esphome).tune(None).unwrap();
+    assert!(result.point.is_some(), "{}", result.text);
+}
+
+#[test]
+fn esphomes_stretch_belongs_to_the_output_in_the_middle_of_it() {
+    // A slow sensor: the relay turns in the update in which the set point is crossed, and the turn is written first.
+    let mut text = String::new();
+    let mut clock = 0;
+    for k in 0..6 {
+        for (wait, output, dt) in [(60, "0.0", 60_000), (240, "100.0", 240_000)] {
+            clock += wait;
+            let (m, s) = (clock / 60, clock % 60);
+            writeln!(
+                text,
+                "[10:{m:02}:{s:02}][V][pid.autotune:290]: Autotune: Turning output to {output}%"
+            )
+            .unwrap();
+            if k > 0 {
+                writeln!(text, "[10:{m:02}:{s:02}][V][pid.autotune:314]:   dt: {dt}").unwrap();
+            }
+        }
+    }
+    text +=
+        "[V][pid.autotune:172]:   Oscillation Period: 300.0\n[V]:   Oscillation Amplitude: 1.8\n";
+    let log = session(&text, Source::Esphome);
+    assert_eq!(log.levels, Levels::Told);
+    let cycle = log.tune(None).unwrap().cycle.unwrap();
+    // Up from the line with 100 % to that with 0 %.
+    assert_eq!(cycle.half_periods, [60.0, 240.0]);
+}
+
+#[test]
+fn an_autotune_that_still_runs_has_not_given_up() {
+    let text = "[10:00:00][I][pid.autotune:190]: PID Autotune:\n\
+                [10:00:00][I][pid.autotune:190]:   Autotune is still running!\n";
+    let said = read("a log", text).unwrap().unwrap_err().to_string();
+    assert!(
+        said.starts_with("the log ends before the result") && !said.contains("gave up"),
+        "{said}"
+    );
+}
+
+/// An ultimate gain of 0.02 at 300 s under a relay of 0 and 100: the amplitude is `4 100/(pi 0.02)` by the tuner.
+const THERMOSTAT: [f64; 2] = [0.02, 300.0];
+
+#[test]
+fn home_assistants_gains_alone_tell_what_it_read() {
+    let [gain, period] = THERMOSTAT;
+    let kp = gain / 34.0;
+    let line = |rule: &str, kp: f64| {
+        format!(
+            "2024-02-28 22:39:20.876 WARNING (MainThread) [custom_components.smart_thermostat.climate] Smart thermostat \
+             Living (climate.living) PID Autotuner output with {rule} rule: Kp={kp}, Ki={}, Kd={}\n",
+            kp / (period / 40.0),
+            kp * period / 160.0
+        )
+    };
+    let text = line("ziegler-nichols", kp) + &line("tyreus-luyben", gain / 44.0);
+    let log = session(&text, Source::Mycodo);
+    let result = log.tune(None).unwrap();
+    let cycle = result.cycle.as_ref().unwrap();
+    let amplitude = 400.0 / (std::f64::consts::PI * gain);
+    assert!(
+        (cycle.period / period - 1.0).abs() < 1e-9
+            && (cycle.amplitude / amplitude - 1.0).abs() < 1e-9
+            && cycle.levels == [0.0, 100.0],
+        "{cycle:?}"
+    );
+    assert!(
+        result.text.contains("0 and 100 were assumed"),
+        "{}",
+        result.text
+    );
+    // Half of the tuner's: the relay swings by 50 either way.
+    assert!((result.conventional.unwrap().gain / (0.5 * gain) - 1.0).abs() < 1e-9);
+    // Levels of the user's: the amplitude is in proportion to the step.
+    let wishes = Wishes {
+        levels: Some([0.0, 40.0]),
+        ..Wishes::default()
+    };
+    let result = log.clone().with(&wishes).unwrap().tune(None).unwrap();
+    let cycle = result.cycle.as_ref().unwrap();
+    assert!(
+        (cycle.amplitude / (0.4 * amplitude) - 1.0).abs() < 1e-9 && cycle.levels == [0.0, 40.0]
+    );
+    assert!(!result.text.contains("assumed"), "{}", result.text);
+}
+
+#[test]
+fn mycodos_info_log_tells_the_times_and_the_levels() {
+    let [gain, period] = THERMOSTAT;
+    let mut text = String::new();
+    // Up for 100 s, down for 200 s, written every 10 s.
+    for i in 0..150 {
+        let s = 10 * i;
+        let stamp = format!(
+            "2024-02-28 22:{:02}:{:02},876 - mycodo.pid_3b8a1c2f - INFO -",
+            10 + s / 60,
+            s % 60
+        );
+        let (word, output) = if s % 300 < 100 {
+            ("up", 60)
+        } else {
+            ("down", 0)
+        };
+        writeln!(
+            text,
+            "{stamp} state: relay step {word}\n{stamp} output: {output}"
+        )
+        .unwrap();
+    }
+    let stamp = "2024-02-28 22:59:59,876 - mycodo.pid_3b8a1c2f - INFO -";
+    for (rule, kp) in [("ziegler-nichols", gain / 34.0), ("brewing", gain / 2.5)] {
+        writeln!(
+            text,
+            "{stamp} rule: {rule}\n{stamp} Kp: {kp}\n{stamp} Ki: {}\n{stamp} Kd: 1",
+            kp / (period / 40.0)
+        )
+        .unwrap();
+    }
+    let log = session(&text, Source::Mycodo);
+    assert_eq!(log.levels, Levels::Told);
+    let cycle = log.tune(None).unwrap().cycle.unwrap();
+    assert_eq!(
+        (cycle.period, cycle.half_periods, cycle.levels),
+        (300.0, [100.0, 200.0], [0.0, 60.0])
+    );
+    let amplitude = 4.0 * 60.0 / (std::f64::consts::PI * gain);
+    assert!(
+        (cycle.amplitude / amplitude - 1.0).abs() < 1e-9,
+        "{cycle:?}"
+    );
+}
+
+#[test]
+fn levels_are_asked_for_only_where_a_log_does_not_say_them() {
+    let wishes = Wishes {
+        levels: Some([0.0, 0.6]),
+        ..Wishes::default()
+    };
+    // The console has the gains at full power; with 0.6 of it they come from 0.6 of the amplitude.
+    let text = "PID parameters: pid_Kp=40.166 pid_Ki=1.955 pid_Kd=206.353\n";
+    let log = session(text, Source::Klipper);
+    let said = log.tune(None).unwrap().text;
+    assert!(said.contains("0 and 1 were assumed"), "{said}");
+    let cycle = log
+        .with(&wishes)
+        .unwrap()
+        .tune(None)
+        .unwrap()
+        .cycle
+        .unwrap();
+    assert!((cycle.amplitude - 0.6 * 4.85).abs() < 0.005, "{cycle:?}");
+    let text =
+        "Autotune: raw=-9.600000/0.600000 Ku=0.159155 Tu=41.200000  Kp=24.3 Ki=1.18 Kd=125.4\n";
+    let said = session(text, Source::Klipper).with(&wishes).unwrap_err();
+    assert_eq!(said, LogError::Levels);
+}
+
 /// Lines of the tuner that Mycodo and Home Assistant's thermostats share, after a clock in their own form.
 fn shared_tuner(stamp: impl Fn(u32) -> String) -> String {
     let mut text = String::new();
@@ -261,7 +477,7 @@ fn mycodos_log_gives_the_cycle_and_what_is_wrong_with_its_gains() {
         "{cycle:?}"
     );
     assert!(
-        result.text.contains("twice too large") && result.text.contains("20 times"),
+        result.text.contains("twice as large as it should be") && result.text.contains("20 times"),
         "{}",
         result.text
     );

@@ -238,17 +238,12 @@ fn an_effect_named_elsewhere_is_found() {
         ("app/src/pages/mod.rs", "mod tune;"),
         ("app/src/pages/tune.rs", ""),
     ]);
-    let found: Vec<_> = effects_named(&tree, &["cogging", "tune"])
-        .into_iter()
-        .collect();
+    let found = effects_named(&tree, &["cogging", "tune"]);
     let wanted = [
-        ("app/src/lib.rs", vec!["app/src/lib.rs: cogging".to_owned()]),
-        (
-            "effect",
-            vec!["core/src/effect/load.rs: cogging".to_owned()],
-        ),
+        ("app/src/lib.rs", "cogging"),
+        ("core/src/effect/load.rs", "cogging"),
     ];
-    assert_eq!(found, wanted);
+    assert!(found.keys().eq(&wanted), "{found:?}");
 }
 
 #[test]

@@ -23,7 +23,7 @@ use imports::{Imports, circles, imports as imports_of};
 use tree::{Tree, crates_in};
 
 /// Rooms of core, lowest first, then those of the app: a file imports from its own room and from rooms before it.
-const ROOMS: [&str; 41] = [
+const ROOMS: [&str; 43] = [
     // small numerics, no physics
     "count",
     "order",
@@ -32,6 +32,7 @@ const ROOMS: [&str; 41] = [
     "root",
     "random",
     "curve",
+    "equation",
     "exponential",
     "fourier",
     "crew",
@@ -57,6 +58,7 @@ const ROOMS: [&str; 41] = [
     "rig",
     "effect",
     "diagnosis",
+    "opening",
     "user_model",
     "by_hand",
     "criticism",
@@ -71,15 +73,17 @@ const ROOMS: [&str; 41] = [
     "app: shell",
 ];
 
-/// The one room that may name effects: what contacts tell of a gap, and what turns viscous friction into dry friction.
-const CRITICISM: &str = "criticism";
+/// The effects that are named elsewhere: what contacts tell of a gap, and what turns viscous friction into dry friction.
+const NAMED_ELSEWHERE: [(&str, &str); 2] = [
+    ("core/src/criticism/dry_or_viscous.rs", "coulomb_friction"),
+    ("core/src/criticism/knowledge.rs", "backlash"),
+];
 
-/// Still to be mended: rooms with circles, arrows upward, pages that import others, rooms that name effects. A test
+/// Still to be mended: rooms with circles, arrows upward, pages that import others. A test
 /// fails for a line that is needed no more, so that the lists only become shorter.
 const KNOWN_CIRCLES: &[&str] = &[];
 const KNOWN_UPWARD: &[(&str, &str)] = &[];
 const KNOWN_PAGES: &[&str] = &[];
-const KNOWN_EFFECTS: &[&str] = &[];
 
 /// Where the app's pages stand, a folder each, and the files there that are no page.
 const PAGES: &str = "app/src/pages/";
@@ -202,18 +206,18 @@ fn between_pages(imports: &Imports) -> BTreeMap<&str, Vec<String>> {
 }
 
 /// Rooms that name effects of others, with the files and the effects.
-fn effects_named<'a>(tree: &'a Tree, ids: &[&str]) -> BTreeMap<&'a str, Vec<String>> {
+fn effects_named<'a>(tree: &'a Tree, ids: &[&'a str]) -> BTreeMap<(&'a str, &'a str), Vec<String>> {
     let mut found = BTreeMap::new();
     let pages: BTreeSet<&str> = tree.modules.iter().filter_map(|m| page(&m.file)).collect();
     for module in &tree.modules {
         let file = &module.file;
         // A page may be called as an effect is.
         let is_page = |text: &str| file.starts_with("app/") && pages.contains(text);
-        for text in &module.texts {
-            if ids.contains(&text.as_str()) && !is_page(text) && !may_name(file, text) {
-                let room = room(file).unwrap_or(file);
-                let named: &mut Vec<String> = found.entry(room).or_default();
-                named.push(format!("{file}: {text}"));
+        for id in ids {
+            let named = module.texts.iter().filter(|text| text == id);
+            if named.count() > 0 && !is_page(id) && !may_name(file, id) {
+                let of: &mut Vec<String> = found.entry((file.as_str(), *id)).or_default();
+                of.push(format!("{file}: {id}"));
             }
         }
     }
@@ -277,8 +281,5 @@ fn no_page_imports_another() {
 fn effects_are_named_in_their_own_files() {
     let effects = hysteron_core::effect::registry();
     let ids: Vec<&str> = effects.iter().map(|e| e.id().as_str()).collect();
-    compare(
-        &effects_named(&HOUSE.0, &ids),
-        &[&[CRITICISM], KNOWN_EFFECTS].concat(),
-    );
+    compare(&effects_named(&HOUSE.0, &ids), &NAMED_ELSEWHERE);
 }

@@ -102,9 +102,10 @@ impl Tree {
                 self.for_tests.extend([beside, within]);
                 continue;
             }
-            // What is included from elsewhere belongs to the module that has it as its own.
             if child.attrs.iter().any(|a| a.path().is_ident("path")) {
-                continue;
+                return Err(format!(
+                    "{file}: {name} is another module's file, by #[path]: a file has one place"
+                ));
             }
             let read = if let Some((_, items)) = &child.content {
                 self.read_module(file, &inside, Some(index), items, files)?

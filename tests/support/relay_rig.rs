@@ -105,6 +105,10 @@ pub struct Test {
     pub wander: f64,
     /// Least time up and down, in periods without it.
     pub least_time: f64,
+    /// Whether the test begins where the plant rests with the relay down, with the relay up.
+    pub cold: bool,
+    /// Share of the test from which another load acts, and how much, in input levels.
+    pub later: [f64; 2],
     /// Samples of a period, and periods.
     pub samples: f64,
     pub periods: f64,
@@ -122,6 +126,8 @@ pub fn tests() -> Vec<Test> {
         drift,
         wander: 0.0,
         least_time: 0.0,
+        cold: false,
+        later: [1.0, 0.0],
         samples: 100.0,
         periods: 10.0,
     };
@@ -187,6 +193,8 @@ struct Relay {
     step: f64,
     drift: f64,
     wander: f64,
+    cold: bool,
+    later: [f64; 2],
     /// Samples.
     least_time: usize,
 }
@@ -194,9 +202,15 @@ struct Relay {
 /// Runs the plant about its set point (output 0) for `count` samples every `sampling` s.
 fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut Random) -> Record {
     let order = plant.lags.len() + usize::from(plant.integrates);
+    // What acted before.
+    let rest = if relay.cold {
+        relay.levels[0] - relay.holds
+    } else {
+        0.0
+    };
     let mut motion = Motion {
         plant,
-        states: vec![0.0; order],
+        states: vec![plant.gain * rest; order],
     };
     let h = sampling / STEPS as f64;
     let late = (plant.dead_time / h).round() as usize;
@@ -209,7 +223,7 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
     let mut wandered = 0.0;
     for i in 0..count {
         // The input that acted in the last step.
-        let acted = (inputs.len().checked_sub(late + 1)).map_or(0.0, |k| inputs[k]);
+        let acted = (inputs.len().checked_sub(late + 1)).map_or(rest, |k| inputs[k]);
         let mut seen = motion.output(acted) + relay.noise * random.normal();
         if relay.step > 0.0 {
             seen = ((seen - offset) / relay.step).round() * relay.step + offset;
@@ -226,10 +240,16 @@ fn run(plant: &Plant, relay: &Relay, sampling: f64, count: usize, random: &mut R
         if relay.wander > 0.0 {
             wandered += relay.wander * random.normal() / (count as f64).sqrt();
         }
+        let later = if i as f64 >= relay.later[0] * count as f64 {
+            relay.later[1]
+        } else {
+            0.0
+        };
         for _ in 0..STEPS {
-            let load = wandered + relay.drift * inputs.len() as f64 / (count * STEPS) as f64;
+            let load =
+                later + wandered + relay.drift * inputs.len() as f64 / (count * STEPS) as f64;
             inputs.push(u - relay.holds - load);
-            let acting = (inputs.len().checked_sub(late + 1)).map_or(0.0, |k| inputs[k]);
+            let acting = (inputs.len().checked_sub(late + 1)).map_or(rest, |k| inputs[k]);
             motion.step(acting, h);
         }
     }
@@ -257,12 +277,14 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
     let sampling = step * STEPS as f64;
     let mut relay = Relay {
         levels: test.levels,
-        holds: test.holds,
+        holds: if test.cold { 0.5 } else { test.holds },
         hysteresis: 0.0,
         noise: 0.0,
         step: 0.0,
         drift: 0.0,
         wander: 0.0,
+        cold: false,
+        later: [1.0, 0.0],
         least_time: 0,
     };
     // Tried once without noise, to know what amplitude there will be.
@@ -283,6 +305,7 @@ pub fn relay_test(plant: &Plant, test: &Test, seed: u64) -> Record {
     relay.step = test.step * amplitude;
     relay.drift = test.drift;
     relay.wander = test.wander;
+    (relay.holds, relay.cold, relay.later) = (test.holds, test.cold, test.later);
     relay.least_time = (test.least_time * samples) as usize;
     run(
         plant,

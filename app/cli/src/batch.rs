@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError, mpsc};
 
+use hysteron_work::language::say;
 use serde::Serialize;
 
 use crate::arguments::Arguments;
@@ -88,7 +89,7 @@ impl Batch {
         if self.skipped > 0 {
             let skipped = self.skipped;
             self.progress
-                .line(&format!("{skipped} skipped: their results are there"));
+                .line(&say(&format!("{skipped} skipped: their results are there")));
         }
         let workers = arguments
             .jobs
@@ -161,7 +162,7 @@ impl Batch {
             Ok(report) => self
                 .progress
                 .finished(&format!("{name}: {}", report.summary())),
-            Err(line) => self.progress.failed(&line),
+            Err(line) => self.progress.failed(&say(&line)),
         }
         Ok(())
     }
@@ -270,7 +271,7 @@ impl Progress {
 
     fn finished(&mut self, text: &str) {
         self.done += 1;
-        let text = format!("{} of {}: {text}", self.done, self.of);
+        let text = format!("{}: {text}", self.count());
         if self.terminal {
             let line: String = text.chars().filter(|c| !c.is_control()).take(79).collect();
             // Progress that cannot be shown is no reason to stop.
@@ -280,10 +281,14 @@ impl Progress {
         }
     }
 
+    fn count(&self) -> String {
+        format!("{} {} {}", self.done, say("of"), self.of)
+    }
+
     /// A failure stays on the screen.
     fn failed(&mut self, text: &str) {
         self.done += 1;
-        self.line(&format!("{} of {}: {text}", self.done, self.of));
+        self.line(&format!("{}: {text}", self.count()));
     }
 
     fn line(&self, text: &str) {

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use hysteron_work::language::say;
+
 /// Cycles by name, with period, amplitude and whether they are stable.
 #[derive(Default)]
 pub struct CycleTable {
@@ -12,23 +14,32 @@ impl CycleTable {
     /// Adds a cycle; `stable` is `None` where that is not known.
     pub fn row(&mut self, name: &str, period: f64, amplitude: f64, stable: Option<bool>) {
         let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
+        let [period, amplitude] = [period, amplitude].map(|v| say(&format!("{v:.9}")));
+        let (name, stable) = (say(name), say(stable));
         let _ = writeln!(
             self.rows,
-            "{name:<22} {period:>16.9} {amplitude:>16.9}   {stable}"
+            "{name:<22} {period:>16} {amplitude:>16}   {stable}"
         );
     }
 
     /// Adds a line of words on cycles of this name.
     pub fn words(&mut self, name: &str, words: &str) {
-        let _ = writeln!(self.rows, "{name:<22} {words}");
+        let _ = writeln!(self.rows, "{:<22} {}", say(name), say(words));
     }
 
     /// The table with its head; `None` where nothing oscillates.
     pub fn text(&self) -> Option<String> {
-        let (rows, [none, period, amplitude]) = (&self.rows, ["", "period [s]", "amplitude"]);
+        let [period, amplitude, stable, convention] = [
+            "period [s]",
+            "amplitude",
+            "stable",
+            "Amplitude: half of peak to peak.",
+        ]
+        .map(say);
+        let (rows, none) = (&self.rows, "");
         (!rows.is_empty()).then(|| {
-            let head = format!("{none:<22} {period:>16} {amplitude:>16}   stable");
-            format!("{head}\n{rows}Amplitude: half of peak to peak.\n")
+            let head = format!("{none:<22} {period:>16} {amplitude:>16}   {stable}");
+            format!("{head}\n{rows}{convention}\n")
         })
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use hysteron_core::backlash::{BacklashMap, GapEstimate, MapSilence, backlash_map, estimate_gap};
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, Quantity, TorqueConstant};
+use hysteron_work::language::say;
 use serde_json::json;
 
 use crate::output::Format;
@@ -80,23 +81,23 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
     let mut out = format!(
         "{}: {}\n",
         name.replace(char::is_control, " "),
-        estimate.text
+        say(&estimate.text)
     );
     if let Some(interval) = estimate.interval {
         let [low, high] = interval.map(scaled);
-        let _ = writeln!(out, "95 % interval {low:.3} to {high:.3} {unit}");
+        let interval = format!("95 % interval {low:.3} to {high:.3} {unit}");
+        let _ = writeln!(out, "{}", say(&interval));
     }
     if !estimate.traverses.is_empty() && estimate.gap.is_some() {
         let (at, gap) = (format!("at [{unit}]"), format!("gap [{unit}]"));
+        let [left, reached, at, gap] = ["left [s]", "reached [s]", &at, &gap].map(say);
         let _ = writeln!(
             out,
-            "\n{:>10} {at:>11} {:>12} {at:>11} {gap:>12}",
-            "left [s]", "reached [s]"
+            "\n{left:>13} {at:>11} {reached:>13} {at:>11} {gap:>12}"
         );
         for t in estimate.traverses.iter().take(LISTED) {
-            let _ = writeln!(
-                out,
-                "{:10.4} {:11.3} {:12.4} {:11.3} {:12.3} ± {:.3}",
+            let row = format!(
+                "{:13.4} {:11.3} {:13.4} {:11.3} {:12.3} ± {:.3}",
                 t.from.time,
                 scaled(t.from.position),
                 t.to.time,
@@ -104,32 +105,31 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
                 scaled(t.gap),
                 scaled(t.std_error)
             );
+            let _ = writeln!(out, "{}", say(&row));
         }
         if estimate.traverses.len() > LISTED {
-            let _ = writeln!(out, "... {} more", estimate.traverses.len() - LISTED);
+            let more = format!("... {} more", estimate.traverses.len() - LISTED);
+            let _ = writeln!(out, "{}", say(&more));
         }
     }
     if let Some(map) = map {
-        match (map.gap, map.asymmetry) {
+        let found = match (map.gap, map.asymmetry) {
             (Some(gap), Some(asymmetry)) => {
                 let [gap, asymmetry] = [gap, asymmetry].map(scaled);
-                let _ = writeln!(
-                    out,
-                    "\nBy the backlash map with the measured load, for reference: gap {gap:.3} {unit}, its middle at \
+                format!(
+                    "By the backlash map with the measured load, for reference: gap {gap:.3} {unit}, its middle at \
                      {asymmetry:.3} {unit}"
-                );
+                )
             }
-            _ => {
-                let _ = writeln!(
-                    out,
-                    "\nBy the measured load, for reference: {}",
-                    silence(map, scale, &unit)
-                );
-            }
-        }
+            _ => format!(
+                "By the measured load, for reference: {}",
+                silence(map, scale, &unit)
+            ),
+        };
+        let _ = writeln!(out, "\n{}", say(&found));
     }
     for note in notes {
-        let _ = writeln!(out, "Note: {note}");
+        let _ = writeln!(out, "{}: {}", say("Note"), say(note));
     }
     out
 }

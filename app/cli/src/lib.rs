@@ -26,11 +26,46 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
+use hysteron_work::language::{self, Language};
 
 pub use output::{complain, fail};
 pub use text::render;
 
 use output::finish;
+
+/// The language that is spoken, for every subcommand.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub struct Speech {
+    /// Language of text and report: English or German; JSON, help and files stay as they are
+    #[arg(
+        long,
+        value_enum,
+        value_name = "LANGUAGE",
+        global = true,
+        default_value = "en"
+    )]
+    lang: Code,
+}
+
+/// A language by its code.
+#[derive(Clone, Copy, Debug, Default, clap::ValueEnum)]
+enum Code {
+    /// English
+    #[default]
+    En,
+    /// Deutsch
+    De,
+}
+
+impl Speech {
+    /// Speaks it from now on.
+    pub fn begin(self) {
+        language::speak(match self.lang {
+            Code::En => Language::English,
+            Code::De => Language::German,
+        });
+    }
+}
 
 /// A subcommand and its arguments.
 #[derive(Debug, clap::Subcommand)]

@@ -6,13 +6,14 @@ use std::path::PathBuf;
 use hysteron_core::limit_cycle::{Cycle, ExactCycle, LongRunResult, Prediction, Trust, predict};
 use hysteron_core::scenario::{AnyScenario, Scenario};
 use hysteron_core::tuning::{RelayGain, StabilityLimits, relay_gain, stability_limits};
+use hysteron_work::language::say;
 use serde_json::json;
 
 use crate::cycle_table::CycleTable;
 use crate::limit_cycle_drive::DriveReport;
 use crate::limit_cycle_on_off::OnOffReport;
 use crate::limit_cycle_servo::ServoReport;
-use crate::output::Format;
+use crate::output::{Format, say_lines};
 use crate::simulate;
 
 /// Version of the JSON object.
@@ -68,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         AnyScenario::Drive(input) => {
             let report = DriveReport::new(&input).map_err(located)?;
             match arguments.format {
-                Format::Text => report.text(),
+                Format::Text => say_lines(&report.text()),
                 Format::Json => format!("{:#}\n", report.json()),
             }
         }
@@ -165,7 +166,7 @@ fn ultimate_json(report: &Report) -> serde_json::Value {
 
 fn text(report: &Report) -> String {
     let p = &report.prediction;
-    let mut out = format!("{}\n\n", report.sentences());
+    let mut out = format!("{}\n\n", say(&report.sentences()));
     let describing: Vec<Cycle> = p.describing_function.iter().map(|i| i.cycle).collect();
     let exact: Vec<Cycle> = p.exact.iter().map(|c| c.cycle).collect();
     let mut table = CycleTable::default();
@@ -182,7 +183,7 @@ fn text(report: &Report) -> String {
     out += &table.text().unwrap_or_default();
     let ultimate = report.ultimate.as_ref().map(|u| u.text.as_str());
     let limits = report.limits.text();
-    let _ = writeln!(out, "{}", ultimate.unwrap_or(limits.trim_start()));
+    let _ = writeln!(out, "{}", say(ultimate.unwrap_or(limits.trim_start())));
     out
 }
 

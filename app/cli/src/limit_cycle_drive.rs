@@ -5,10 +5,14 @@ use std::fmt::Write as _;
 use hysteron_core::drive::{
     Command, Direction, DriftingCycle, DriveInput, EventKind, drifting_cycle, run, summarize,
 };
+use hysteron_core::uncertain::digits;
 use serde_json::json;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
+
+/// Digits of a length or velocity that is said.
+const DIGITS: i32 = 7;
 
 /// What is predicted and simulated, of the motor's velocity.
 pub struct DriveReport {
@@ -88,11 +92,11 @@ impl DriveReport {
         );
         let _ = writeln!(
             text,
-            "It swings over {:.6e} rad or m, {:.1} % of the gap, and drifts by {:.6e} a period, {:.6e} a second{}.",
-            cycle.swing,
+            "It swings over {} rad or m, {:.1} % of the gap, and drifts by {} a period, {} a second{}.",
+            digits(cycle.swing, DIGITS),
             100.0 * cycle.swing / self.gap,
-            cycle.drift,
-            cycle.drift_velocity(),
+            digits(cycle.drift, DIGITS),
+            digits(cycle.drift_velocity(), DIGITS),
             match self.direction {
                 Some(Direction::Against) => ": against the stronger push, friction outweighs delay",
                 Some(Direction::With) => ": with the stronger push, delay outweighs friction",

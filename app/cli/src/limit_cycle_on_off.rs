@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use hysteron_core::on_off::{Balance, OnOffCycle, Settled, describing_function, settled};
 use hysteron_core::scenario::OnOffScenario;
 use hysteron_core::simulate::Noise;
+use hysteron_work::language::say;
 use serde_json::{Value, json};
 
 use crate::cycle_table::CycleTable;
@@ -91,7 +92,7 @@ impl OnOffReport {
     }
 
     pub fn text(&self) -> String {
-        let mut out = format!("{}\n", self.sentences());
+        let mut out = format!("{}\n", say(&self.sentences()));
         let mut table = CycleTable::default();
         for b in self.describing_function.iter().flatten() {
             table.row("describing function", b.period, b.amplitude, b.stable);
@@ -118,7 +119,8 @@ impl OnOffReport {
             let parts: Vec<String> = parts
                 .map(|(position, time)| format!("{} {time:.6} s", position.name()))
                 .collect();
-            let _ = writeln!(out, "In each period: {}.", parts.join(", "));
+            let parts = format!("In each period: {}.", parts.join(", "));
+            let _ = writeln!(out, "{}", say(&parts));
         }
         out
     }

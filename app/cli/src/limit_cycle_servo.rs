@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use hysteron_core::hunting::{HuntingBalance, HuntingCycle, Settled, describing_function, settled};
 use hysteron_core::scenario::ServoScenario;
 use hysteron_core::simulate::Noise;
+use hysteron_work::language::say;
 use serde_json::{Value, json};
 
 use crate::cycle_table::CycleTable;
@@ -76,7 +77,7 @@ impl ServoReport {
     }
 
     pub fn text(&self) -> String {
-        let mut out = format!("{}\n", self.sentences());
+        let mut out = format!("{}\n", say(&self.sentences()));
         let mut table = CycleTable::default();
         for b in &self.describing_function {
             table.row("describing function", b.period, b.amplitude, b.stable);

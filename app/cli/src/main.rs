@@ -6,13 +6,18 @@ use std::process::ExitCode;
 #[derive(Debug, clap::Parser)]
 #[command(name = "hysteron-cli", version, arg_required_else_help = false)]
 struct Arguments {
+    #[command(flatten)]
+    speech: hysteron_cli::Speech,
     #[command(subcommand)]
     command: hysteron_cli::Command,
 }
 
 fn main() -> ExitCode {
     match hysteron_cli::parse::<Arguments>(std::env::args_os()) {
-        Ok(arguments) => arguments.command.run(),
+        Ok(arguments) => {
+            arguments.speech.begin();
+            arguments.command.run()
+        }
         Err(code) => code,
     }
 }

@@ -8,9 +8,10 @@ use hysteron_core::diagnosis::{Diagnosis, Discovery, Limits};
 use hysteron_core::effect::{EffectId, VISCOUS_FRICTION};
 use hysteron_core::measurement::{ImportOptions, Mapping, Measurement};
 use hysteron_core::progress::Progress;
-use hysteron_core::report::{self, Provenance, ReportInput};
+use hysteron_core::report::{self, Provenance, ReportInput, Tongue};
 use hysteron_core::user_model::UserModel;
 use hysteron_work::cores;
+use hysteron_work::language::{Language, say, spoken};
 
 use crate::arguments::{Arguments, Kind};
 use crate::read::read;
@@ -86,20 +87,21 @@ impl Report {
             .iter()
             .map(|class| {
                 let ids: Vec<&str> = class.iter().map(|id| id.as_str()).collect();
-                ids.join(" or ")
+                ids.join(&format!(" {} ", say("or")))
             })
             .collect();
         let found = if classes.is_empty() {
-            "nothing found".to_owned()
+            say("nothing found")
         } else {
             classes.join(" + ")
         };
         let rest = if verdict.unknown {
-            ", and something unknown"
+            format!(", {}", say("and something unknown"))
         } else {
-            ""
+            String::new()
         };
-        format!("{found}{rest} ({:.1} s)", self.diagnosis.seconds)
+        let seconds = say(&format!("({:.1} s)", self.diagnosis.seconds));
+        format!("{found}{rest} {seconds}")
     }
 }
 
@@ -174,6 +176,10 @@ pub fn of(
                         discovery: discovery.as_ref(),
                         model: (given != blank()).then_some(&given),
                         provenance: &provenance(source.0, arguments, source.1),
+                        tongue: Tongue {
+                            code: spoken().code(),
+                            say,
+                        },
                     }))
                 });
                 let last = diagnosis.steps.last();
@@ -250,6 +256,9 @@ fn provenance(file: &Path, arguments: &Arguments, bytes: &[u8]) -> Provenance {
     }
     if arguments.discover {
         command.push_str(" --discover");
+    }
+    if spoken() != Language::default() {
+        command.extend([" --lang ", spoken().code()]);
     }
     for effect in &arguments.effect {
         command.extend([" --effect ", &report::shell_word(effect)]);

@@ -4,6 +4,7 @@ use std::io::{self, Write as _};
 use std::process::ExitCode;
 
 use hysteron_core::simulate::Noise;
+use hysteron_work::language::say;
 
 /// How a result is written.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -43,9 +44,9 @@ pub fn write_error(error: &io::Error) -> ExitCode {
     }
 }
 
-/// Says in one line what is wrong; the exit code.
+/// Says in one line what is wrong, in the language that is spoken; the exit code.
 pub fn fail(message: &str, code: u8) -> ExitCode {
-    complain(message);
+    complain(&say(message));
     ExitCode::from(code)
 }
 
@@ -57,6 +58,18 @@ pub fn complain(message: &str) {
         .collect();
     // Where stderr is closed there is nobody left to tell.
     let _ = writeln!(io::stderr(), "hysteron: {}", words.join(" "));
+}
+
+/// Each line in the language that is spoken, with its indent.
+pub fn say_lines(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let words = line.trim_start();
+        out.push_str(&line[..line.len() - words.len()]);
+        out.push_str(&say(words));
+        out.push('\n');
+    }
+    out
 }
 
 /// How far a prediction of period and amplitude is off, in a sentence.

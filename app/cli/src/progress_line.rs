@@ -2,6 +2,8 @@
 
 use std::io::{self, IsTerminal as _, Write as _};
 
+use hysteron_work::language::say;
+
 /// One line on stderr that is written over again and again; nothing where stderr is no terminal.
 pub struct ProgressLine {
     terminal: bool,
@@ -20,7 +22,7 @@ impl ProgressLine {
         if !self.terminal {
             return;
         }
-        let line: String = format!("{:3.0} % {text}", fraction * 100.0)
+        let line: String = format!("{:3.0} % {}", fraction * 100.0, say(text))
             .chars()
             .take(79)
             .collect();

@@ -9,6 +9,7 @@ use hysteron_core::diagnosis::{Parameter, Screening, Subset};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
 use hysteron_core::uncertain::with_error;
+use hysteron_work::language::say;
 
 use crate::arguments::Kind;
 use crate::output::Format;
@@ -59,37 +60,34 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
 
 fn text(name: &str, screening: &Screening, notes: &[String]) -> String {
     let mut out = format!(
-        "{}: {} samples\n",
+        "{}: {}\n",
         name.replace(char::is_control, " "),
-        screening.samples
+        say(&format!("{} samples", screening.samples))
     );
-    let _ = writeln!(out, "{}", screening.input_check.text);
+    let _ = writeln!(out, "{}", say(&screening.input_check.text));
     if let Some(left) = screening.left_by_body {
-        let _ = writeln!(
-            out,
-            "The body alone leaves {:.1} % of the motion.",
-            100.0 * left
-        );
+        let alone = format!("The body alone leaves {:.1} % of the motion.", 100.0 * left);
+        let _ = writeln!(out, "{}", say(&alone));
     }
     match screening.subsets.as_slice() {
         [] => {}
         [one] => {
-            let _ = writeln!(out, "\nWhat explains it best:");
+            let _ = writeln!(out, "\n{}", say("What explains it best:"));
             subset(&mut out, one);
         }
         [first, others @ ..] => {
-            let _ = writeln!(out, "\nWhat explains it best:");
+            let _ = writeln!(out, "\n{}", say("What explains it best:"));
             subset(&mut out, first);
-            let _ = writeln!(out, "\nThis record cannot tell that from:");
+            let _ = writeln!(out, "\n{}", say("This record cannot tell that from:"));
             for other in others {
                 subset(&mut out, other);
             }
         }
     }
     for note in notes {
-        let _ = writeln!(out, "Note: {note}");
+        let _ = writeln!(out, "{}: {}", say("Note"), say(note));
     }
-    let _ = writeln!(out, "({:.2} s)", screening.seconds);
+    let _ = writeln!(out, "{}", say(&format!("({:.2} s)", screening.seconds)));
     out
 }
 
@@ -99,11 +97,8 @@ fn subset(out: &mut String, subset: &Subset) {
         [] => "the body alone".to_owned(),
         names => names.join(" and "),
     };
-    let _ = writeln!(
-        out,
-        "  {names}; {:.1} % of the motion is left",
-        100.0 * subset.left
-    );
+    let left = format!("{:.1} % of the motion is left", 100.0 * subset.left);
+    let _ = writeln!(out, "  {}; {}", say(&names), say(&left));
     for parameter in &subset.parameters {
         let _ = writeln!(out, "    {}", line(parameter));
     }
@@ -118,6 +113,6 @@ fn line(parameter: &Parameter) -> String {
         unit,
         ..
     } = parameter;
-    let value = with_error(*value, *std_error, unit);
-    format!("{name:<8} {value:<32} {label}")
+    let value = say(&with_error(*value, *std_error, unit));
+    format!("{name:<8} {value:<32} {}", say(label))
 }

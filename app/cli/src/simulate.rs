@@ -9,6 +9,12 @@ use hysteron_core::hunting::{self, HuntingError, HuntingRun};
 use hysteron_core::on_off;
 use hysteron_core::scenario::AnyScenario;
 use hysteron_core::simulate::{Cut, Noise, Trajectory};
+use hysteron_core::uncertain::digits;
+
+use crate::output::say_lines;
+
+/// Digits of a velocity that is said.
+const DIGITS: i32 = 7;
 
 /// Share by which the last two cycles may differ and still count as settled.
 const SETTLED: f64 = 1e-3;
@@ -73,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
             path.display()
         );
     }
-    Ok(text)
+    Ok(say_lines(&text))
 }
 
 /// Reads a scenario file.
@@ -185,8 +191,10 @@ fn drive_summary(input: &DriveInput, run: &DriveRun) -> String {
     if let Some(drift) = found.drifts.first() {
         let _ = writeln!(
             text,
-            "In the gap the motor drifts at {:.6e} rad/s (or m/s) from {:.3} s to {:.3} s.",
-            drift.velocity, drift.from, drift.to
+            "In the gap the motor drifts at {} rad/s (or m/s) from {:.3} s to {:.3} s.",
+            digits(drift.velocity, DIGITS),
+            drift.from,
+            drift.to
         );
     }
     let count = found.traverses.len();

@@ -8,6 +8,7 @@ use hysteron_core::diagnosis::{
 use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
 use hysteron_core::uncertain::{brief, with_error};
+use hysteron_work::language::say;
 
 const WIDTH: usize = 80;
 
@@ -65,7 +66,8 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     for proposal in &diagnosis.verdict.experiments {
         other_experiments(&mut out, proposal);
     }
-    let _ = writeln!(out, "\nTook {:.2} s.", diagnosis.seconds);
+    let took = say(&format!("Took {:.2} s.", diagnosis.seconds));
+    let _ = writeln!(out, "\n{took}");
     out
 }
 
@@ -76,7 +78,8 @@ pub fn formulas(discovery: &Discovery) -> String {
     heading(out, "Formula of the unknown");
     paragraph(out, "  ", &discovery.text);
     if !discovery.formulas.is_empty() {
-        let _ = writeln!(out, "  length  error  formula");
+        let [length, error, formula] = ["length", "error", "formula"].map(say);
+        let _ = writeln!(out, "  {length:>6}  {error:>6}  {formula}");
     }
     let listed = discovery
         .formulas
@@ -84,11 +87,12 @@ pub fn formulas(discovery: &Discovery) -> String {
         .filter(|f| f.on_front || f.in_class);
     for formula in listed {
         let mark = if formula.in_class { '*' } else { ' ' };
-        let (length, error) = (formula.length, brief(formula.error));
-        let _ = writeln!(out, "{mark} {length:6}  {error:>5}  {}", formula.formula);
+        let (length, error) = (formula.length, say(&brief(formula.error)));
+        let _ = writeln!(out, "{mark} {length:6}  {error:>6}  {}", formula.formula);
     }
     if let Some(found) = discovery.found() {
-        let _ = writeln!(out, "  Again with: --effect \"{}\"", found.typed);
+        let again = say("Again with");
+        let _ = writeln!(out, "  {again}: --effect \"{}\"", found.typed);
     }
     if let Some(experiment) = &discovery.experiment {
         paragraph(out, "  ", &format!("Next experiment: {}", experiment.text));
@@ -139,13 +143,13 @@ fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: 
         &step.parameters.iter().filter(fresh).collect::<Vec<_>>(),
     );
     if !step.findings.is_empty() {
-        let _ = writeln!(out, "\n  Where it fails");
+        let _ = writeln!(out, "\n  {}", say("Where it fails"));
         for finding in &step.findings {
             bullet(out, &finding.text);
         }
     }
     if !step.tests.is_empty() {
-        let _ = writeln!(out, "\n  What is left");
+        let _ = writeln!(out, "\n  {}", say("What is left"));
         for test in &step.tests {
             bullet(out, &test.text);
         }
@@ -179,14 +183,14 @@ fn names(ids: &[EffectId]) -> String {
 }
 
 fn parameters(out: &mut String, list: &[&Parameter]) {
-    let width =
-        |f: fn(&Parameter) -> &str| list.iter().map(|p| f(p).chars().count()).max().unwrap_or(0);
-    let (name, label) = (width(|p| &p.name), width(|p| &p.label));
-    for p in list {
-        let value = with_error(p.value, p.std_error, &p.unit);
+    let labels: Vec<String> = list.iter().map(|p| say(&p.label)).collect();
+    let name = widest(list.iter().map(|p| p.name.as_str()));
+    let width = widest(labels.iter().map(String::as_str));
+    for (p, label) in list.iter().zip(&labels) {
+        let value = say(&with_error(p.value, p.std_error, &p.unit));
         line(
             out,
-            &format!("  {:<name$}  {:<label$}  {value}", p.name, p.label),
+            &format!("  {:<name$}  {label:<width$}  {value}", p.name),
         );
     }
 }
@@ -196,35 +200,29 @@ fn candidates(out: &mut String, list: &[Candidate]) {
         return;
     }
     let rows: Vec<(String, &Candidate)> = list.iter().map(|c| (names(&c.effects), c)).collect();
-    let width = rows
-        .iter()
-        .map(|r| r.0.chars().count())
-        .max()
-        .unwrap_or(0)
-        .max("What could be added".len());
+    let [title, error, evidence] = ["What could be added", "error", "evidence"].map(say);
+    let names = rows.iter().map(|r| r.0.as_str());
+    let width = widest(names.chain([title.as_str()]));
     let _ = writeln!(out);
     line(
         out,
-        &format!(
-            "  {:<width$}  {:>9}  {:>10}",
-            "What could be added", "error", "evidence"
-        ),
+        &format!("  {title:<width$}  {error:>9}  {evidence:>10}"),
     );
     for (name, candidate) in rows {
         let head = format!(
-            "  {name:<width$}  {:>9}  {:>10.1}  ",
-            brief(candidate.error),
-            candidate.delta_bic
+            "  {name:<width$}  {:>9}  {:>10}  ",
+            say(&brief(candidate.error)),
+            say(&format!("{:.1}", candidate.delta_bic))
         );
         let note = if !candidate.equivalent_to.is_empty() {
             let ids: Vec<&str> = candidate.equivalent_to.iter().map(|e| e.as_str()).collect();
-            format!("same as {}", ids.join(", "))
+            format!("{} {}", say("same as"), ids.join(", "))
         } else if candidate.significant {
-            "helps".to_owned()
+            say("helps")
         } else if candidate.promising {
-            "perhaps: chance is not ruled out".to_owned()
+            say("perhaps: chance is not ruled out")
         } else {
-            "too little to add it".to_owned()
+            say("too little to add it")
         };
         let indent = head.chars().count();
         let notes = wrap(&note, WIDTH.saturating_sub(indent).max(20));
@@ -256,6 +254,9 @@ fn chart(out: &mut String, diagnosis: &Diagnosis) {
         before = Some(step);
     }
     rows.push(("noise floor".to_owned(), diagnosis.noise_floor));
+    for (label, _) in &mut rows {
+        *label = say(label);
+    }
     let finite = || {
         rows.iter()
             .map(|r| r.1)
@@ -272,12 +273,7 @@ fn chart(out: &mut String, diagnosis: &Diagnosis) {
         ""
     };
     heading(out, &format!("Error step by step (times the noise{scale})"));
-    let width = rows
-        .iter()
-        .map(|r| r.0.chars().count())
-        .max()
-        .unwrap_or(0)
-        .min(WIDTH - BAR - 14);
+    let width = widest(rows.iter().map(|r| r.0.as_str())).min(WIDTH - BAR - 14);
     for (label, error) in &rows {
         let label: String = label.chars().take(width).collect();
         let share = if logarithmic {
@@ -286,7 +282,7 @@ fn chart(out: &mut String, diagnosis: &Diagnosis) {
         } else {
             error / most
         };
-        let value = brief(*error);
+        let value = say(&brief(*error));
         line(
             out,
             &format!("  {label:<width$}  {value:>8}  {}", bar(share)),
@@ -318,9 +314,15 @@ fn percent(share: f64) -> String {
     }
 }
 
+/// Characters of the longest.
+fn widest<'a>(texts: impl Iterator<Item = &'a str>) -> usize {
+    texts.map(|t| t.chars().count()).max().unwrap_or(0)
+}
+
+/// A heading in the language that is spoken, as paragraphs and bullets are.
 fn heading(out: &mut String, text: &str) {
     let _ = writeln!(out);
-    let lines = wrap(text, WIDTH);
+    let lines = wrap(&say(text), WIDTH);
     let rule = lines.iter().map(|l| l.chars().count()).max().unwrap_or(0);
     for text in lines {
         line(out, &text);
@@ -329,13 +331,13 @@ fn heading(out: &mut String, text: &str) {
 }
 
 fn paragraph(out: &mut String, indent: &str, text: &str) {
-    for piece in wrap(text, WIDTH - indent.len()) {
+    for piece in wrap(&say(text), WIDTH - indent.len()) {
         line(out, &format!("{indent}{piece}"));
     }
 }
 
 fn bullet(out: &mut String, text: &str) {
-    for (i, piece) in wrap(text, WIDTH - 4).iter().enumerate() {
+    for (i, piece) in wrap(&say(text), WIDTH - 4).iter().enumerate() {
         line(
             out,
             &format!("{}{piece}", if i == 0 { "  - " } else { "    " }),

@@ -10,6 +10,7 @@ use hysteron_core::tuning::measured::{
     Wishes, open, tune_readings,
 };
 use hysteron_core::uncertain::digits;
+use hysteron_work::language::say;
 use serde_json::json;
 
 use crate::arguments::Kind;
@@ -35,13 +36,8 @@ pub struct Arguments {
     /// Period of the oscillation, s; of a file without a time column its sampling period, such as 4s or 250Hz
     #[arg(long, value_name = "PERIOD")]
     period: Option<String>,
-    /// Input while the relay is down and up
-    #[arg(
-        long,
-        value_name = "LOW,HIGH",
-        conflicts_with = "file",
-        allow_hyphen_values = true
-    )]
+    /// Input while the relay is down and up; of a log only where it does not say it
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     levels: Option<Two>,
     /// Half the distance between the outputs at which the relay switches
     #[arg(long, value_name = "H")]
@@ -128,7 +124,16 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         full_scale: arguments.full_scale,
         target: arguments.target,
         hysteresis: arguments.hysteresis,
+        levels: arguments
+            .levels
+            .map(|l| l.0)
+            .filter(|_| arguments.file.is_some()),
     };
+    if let Some(levels) = wishes.levels
+        && !(levels.iter().all(|l| l.is_finite()) && levels[0] != levels[1] && levels[1] != 0.0)
+    {
+        return Err("--levels must be two different numbers, the second not 0".to_owned());
+    }
     if let Some(scale) = arguments.full_scale
         && !(scale.is_finite() && scale > 0.0)
     {
@@ -174,6 +179,7 @@ fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
         levels: levels.0,
         hysteresis: arguments.hysteresis.unwrap_or(0.0),
         half_periods: arguments.half_periods.map(|t| t.0),
+        unequal: false,
     }))
 }
 
@@ -283,79 +289,116 @@ fn text(result: &MeasuredTuning) -> String {
     let mut out = format!(
         "{}: {}\n",
         result.name.replace(char::is_control, " "),
-        result.text
+        say(&result.text)
     );
-    if !result.models.is_empty() {
-        let _ = writeln!(
-            out,
-            "\n{:<16} {:>12} {:>12} {:>12} {:>12} {:>9}",
-            "model", "gain", "lag [s]", "2nd lag [s]", "dead time [s]", "left"
-        );
+    for rows in [model_rows(result), gain_rows(result)] {
+        if rows.len() > 1 {
+            let _ = write!(out, "\n{}", aligned(&rows));
+        }
     }
-    for m in &result.models {
+    out
+}
+
+/// The models under their head.
+fn model_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
+    let head = [
+        "model",
+        "gain",
+        "lag [s]",
+        "2nd lag [s]",
+        "dead time [s]",
+        "left",
+    ];
+    let row = |m: &FittedModel| {
         let lag = |i: usize| {
             m.time_constants
                 .get(i)
                 .map_or_else(String::new, |t| short(t.value))
         };
-        let _ = writeln!(
-            out,
-            "{:<16} {:>12} {:>12} {:>12} {:>12} {:>7.2} %",
-            m.structure.id(),
+        vec![
+            m.structure.id().to_owned(),
             short(m.gain.value),
             lag(0),
             lag(1),
             short(m.dead_time.value),
-            100.0 * m.left
-        );
-    }
-    // These forms have times in the place of gains.
-    let of_times = |form| matches!(form, Form::Ideal | Form::Series);
-    if let Some(first) = result.gains.first() {
-        let [integral, derivative] = if of_times(first.form) {
-            ["ti [s]", "td [s]"]
-        } else {
-            ["ki [1/s]", "kd [s]"]
-        };
-        let _ = writeln!(
-            out,
-            "\n{:<22} {:>12} {:>12} {:>12} {:>13} {:>12}",
-            format!("gains, {} form", first.form.id()),
-            "kp",
-            integral,
-            derivative,
-            "phase margin",
-            "gain margin"
-        );
-    }
-    for g in &result.gains {
-        let margins = if g.stable || result.models.is_empty() {
-            let phase = g
-                .phase_margin_deg
-                .map_or_else(|| "-".to_owned(), |p| format!("{p:.0} deg"));
-            let gain = g
-                .gain_margin
-                .map_or_else(|| "-".to_owned(), |m| format!("{m:.2}"));
-            format!("{phase:>13} {gain:>12}")
-        } else {
-            "unstable on the model".to_owned()
-        };
-        let name = format!("{} {}", g.name, g.controller.to_uppercase());
-        let [integral, derivative] = if of_times(g.form) {
-            [g.ti.map_or_else(|| "-".to_owned(), short), short(g.td)]
+            say(&format!("{:.2} %", 100.0 * m.left)),
+        ]
+    };
+    let models = result.models.iter().map(row);
+    std::iter::once(head.map(say).to_vec())
+        .chain(models)
+        .collect()
+}
+
+/// The gains under their head; some forms have times in the place of gains.
+fn gain_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
+    let Some(form) = result.gains.first().map(|g| g.form) else {
+        return Vec::new();
+    };
+    let of_times = matches!(form, Form::Ideal | Form::Series);
+    let [integral, derivative] = if of_times {
+        ["ti [s]", "td [s]"]
+    } else {
+        ["ki [1/s]", "kd [s]"]
+    };
+    let title = format!("gains, {} form", form.id());
+    let head = [
+        title.as_str(),
+        "kp",
+        integral,
+        derivative,
+        "phase margin",
+        "gain margin",
+    ];
+    let none = || "-".to_owned();
+    let row = |g: &TunedGains| {
+        let name = format!("{} {}", say(&g.name), g.controller.to_uppercase());
+        let [integral, derivative] = if of_times {
+            [g.ti.map_or_else(none, short), short(g.td)]
         } else {
             [short(g.ki), short(g.kd)]
         };
-        let _ = writeln!(
-            out,
-            "{name:<22} {:>12} {integral:>12} {derivative:>12} {margins}",
-            short(g.kp),
-        );
+        let mut row = vec![name, short(g.kp), integral, derivative];
+        if g.stable || result.models.is_empty() {
+            row.push(g.phase_margin_deg.map_or_else(none, |p| format!("{p:.0}°")));
+            row.push(g.gain_margin.map_or_else(none, |m| say(&format!("{m:.2}"))));
+        } else {
+            row.push(say("unstable on the model"));
+        }
+        row
+    };
+    let gains = result.gains.iter().map(row);
+    std::iter::once(head.map(say).to_vec())
+        .chain(gains)
+        .collect()
+}
+
+/// Rows as lines: the first column begins at the left, the others end beneath each other. A row with fewer columns than
+/// the first ends with words, which need no column.
+fn aligned(rows: &[Vec<String>]) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |column: usize| {
+        let whole = rows.iter().filter(|r| r.len() == columns);
+        let cells = whole.filter_map(|r| r.get(column));
+        cells.map(|c| c.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut out = String::new();
+    for row in rows {
+        for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
+            let _ = match column {
+                0 => write!(out, "{cell:<width$}"),
+                last if last + 1 == row.len() && row.len() < columns => write!(out, "   {cell}"),
+                _ => write!(out, "   {cell:>width$}"),
+            };
+        }
+        out.truncate(out.trim_end().len());
+        out.push('\n');
     }
     out
 }
 
 /// Five significant digits.
 fn short(value: f64) -> String {
-    digits(value, 5)
+    say(&digits(value, 5))
 }

@@ -15,6 +15,8 @@ struct Arguments {
     /// A measurement to open in the app, as CSV or MATLAB file; of many the first
     #[arg(value_name = "FILE.csv")]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    speech: hysteron_cli::Speech,
     #[command(subcommand)]
     command: Option<hysteron_cli::Command>,
 }
@@ -22,11 +24,13 @@ struct Arguments {
 /// Does what `arguments` say, the first of which is the program.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     match hysteron_cli::parse::<Arguments>(arguments) {
-        Ok(Arguments {
-            command: Some(command),
-            ..
-        }) => command.run(),
-        Ok(Arguments { files, .. }) => window(files.into_iter().next()),
+        Ok(arguments) => {
+            arguments.speech.begin();
+            match arguments.command {
+                Some(command) => command.run(),
+                None => window(arguments.files.into_iter().next()),
+            }
+        }
         Err(code) => code,
     }
 }

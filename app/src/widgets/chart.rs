@@ -1,22 +1,22 @@
 //! What the plots of several pages share.
 
-use std::ops::{Deref, DerefMut};
 use std::rc::Rc;
 
 use egui::{Id, IdSalt, WidgetInfo};
 use egui_plot::{
-    AxisHints, HoverPosition, Line, Plot, PlotGeometry, PlotItem, PlotMemory, PlotPoint,
-    PlotPoints, PlotResponse, PlotUi, Points, uniform_grid_spacer,
+    AxisHints, HoverPosition, Plot, PlotMemory, PlotPoints, PlotResponse, Points,
+    uniform_grid_spacer,
 };
 
 use super::chart_axes::{
-    LABELS, beside, grid, grid_x, label, power_label, powers, scale, shown_from, title,
+    LABELS, beside, grid, grid_x, label, plain, power_label, powers, scale, shown_from, title,
 };
 pub use super::chart_axes::{round_step, span_decades};
 pub use super::chart_caption::{Key, Shape, caption_ui};
-use super::chart_cursor::{self, Curve, cursor_ui, line_ui};
+use super::chart_cursor::{self, cursor_ui, linked_ui};
 use super::chart_keys::Worked;
 use super::chart_menu;
+pub use super::chart_pen::Pen;
 use super::chart_reading::{Reader, reading};
 use super::chart_zoom::Zoomed;
 use crate::export::Table;
@@ -28,9 +28,6 @@ pub use hysteron_core::uncertain::significant;
 
 /// How much fainter the lines of the grid are the closer they stand: fainter than any curve.
 const GRID_FADE: f32 = 1.0;
-
-/// How near a point must be to be pointed at, points on the screen.
-const REACH: f32 = 8.0;
 
 pub fn curve(points: &[[f64; 2]]) -> PlotPoints<'static> {
     points.iter().copied().collect()
@@ -163,46 +160,23 @@ impl<'a> Chart<'a> {
         ui: &mut egui::Ui,
         draw: impl FnOnce(&mut Pen<'_, 'a>) -> R + 'a,
     ) -> PlotResponse<R> {
-        let Self {
-            mut plot,
-            salt,
-            zoom: (name, zoomed),
-            axes,
-            decades,
-            drag_zoomed,
-            width,
-            height,
-            read,
-            linked,
-            pressed,
-        } = self;
         let ctx = ui.ctx().clone();
-        let id = ui.scope_id().with(salt);
-        plot = plot.id(id);
+        let id = ui.scope_id().with(self.salt);
+        let (axes, decades) = (self.axes, self.decades);
         // In the units that suit what it showed last.
         let scales = scales_of(&ctx, id, &axes, decades);
         let names = [0, 1].map(|i| tr(title(&axes[i], &scales[i])));
         let factors = scales.each_ref().map(|s| s.factor);
-        let read = read.unwrap_or_else(|| {
-            let [across, up] = factors;
-            reading(names.clone(), move |p| {
-                let [x, y] = plain(decades, [p.x, p.y]);
-                [x / across, y / up]
-            })
-        });
-        plot = plot.grid_color(theme::grid(ui.visuals()));
-        plot = with_axes(ui, plot, names, factors, decades, [width, height]);
+        let own = self.read;
+        let read = own.unwrap_or_else(|| in_units(names.clone(), factors, decades));
+        let size = [self.width, self.height];
+        let plot = self.plot.id(id).grid_color(theme::grid(ui.visuals()));
+        let plot = with_axes(ui, plot, names, factors, decades, size);
         let menu = egui::Popup::is_any_open(&ctx);
-        let keys = chart_cursor::live(&ctx).is_some();
-        if menu || keys {
-            // What is read at the pointer would cover the menu, or what the keys read.
-            plot = plot.label_formatter(|_| None).show_crosshair(!keys);
-        } else {
-            let read = read.clone();
-            plot = plot.label_formatter(move |at| read(at));
-        }
+        let mut plot = with_pointer(&ctx, plot, menu, &read);
+        let (name, zoomed) = self.zoom;
         let mut stays = zoomed == [true, false];
-        if drag_zoomed {
+        if self.drag_zoomed {
             let memory = PlotMemory::load(&ctx, id);
             let zoomed = memory.is_some_and(|m| !m.auto_bounds.all());
             plot = plot.allow_drag(zoomed);
@@ -219,22 +193,14 @@ impl<'a> Chart<'a> {
         let titles = axes.clone();
         let worked = Worked {
             plot: id,
-            group: linked,
+            group: self.linked,
             axes: zoomed,
         };
         let shown = plot.show(ui, move |plot| {
             if let Some(change) = change {
                 change.make(plot);
             }
-            let curves = plot.response().has_focus().then(Vec::new);
-            let mut pen = Pen {
-                plot,
-                id,
-                axes: titles,
-                decades,
-                table,
-                curves,
-            };
+            let mut pen = Pen::new(plot, id, titles, decades, table);
             let inner = draw(&mut pen);
             let curves = pen.curves.unwrap_or_default();
             let asked = worked.work(pen.plot, &curves);
@@ -245,52 +211,85 @@ impl<'a> Chart<'a> {
             ctx.request_repaint();
         }
         let (inner, table, asked) = shown.inner;
-        let (response, transform) = (shown.response, shown.transform);
-        if stays && response.dragged() && ctx.input(egui::InputState::any_touches) {
-            // A finger that goes up or down over a plot that stays moves the page, which the plot would keep it from.
-            ui.scroll_with_delta(egui::vec2(0.0, response.drag_delta().y));
-        }
-        let live = chart_cursor::live(&ctx);
-        let cursor = live.as_ref().filter(|r| r.plot == id).map(|r| &r.cursor);
-        if let Some(group) = linked {
-            let pointer = response.hover_pos().filter(|_| live.is_none());
-            let x = cursor.map(|c| c.at[0]);
-            let x = x.or(pointer.map(|p| transform.value_from_position(p).x));
-            chart_cursor::point(&ctx, group, id, x);
-            if let Some((other, x)) = chart_cursor::pointed(&ctx, group)
-                && other != id
-            {
-                line_ui(ui, &transform, x);
-            }
-        }
-        let text = cursor.and_then(|c| c.text(&read));
-        let info = || WidgetInfo {
-            current_text_value: text.as_ref().map(|t| t.replace('\n', "; ")),
-            ..WidgetInfo::labeled(
-                egui::Role::Image,
-                true,
-                tr(format!("Plot: {} over {}", axes[1], axes[0])),
-            )
-        };
-        response.widget_info(info);
-        if let Some(cursor) = cursor.filter(|_| !menu && !chart_menu::wished(&ctx, id)) {
-            theme::tell(&response);
-            cursor_ui(ui, &response, &transform, cursor, text.as_deref());
-        }
-        chart_menu::ui(
-            ui,
-            id,
-            &axes,
-            start,
-            response.rect,
-            (table, asked && !pressed),
-        );
-        PlotResponse {
+        let shown = PlotResponse {
             inner,
-            response,
-            transform,
+            response: shown.response,
+            transform: shown.transform,
             hovered_plot_item: shown.hovered_plot_item,
+        };
+        if stays {
+            scroll_by_touch(ui, &shown.response);
         }
+        read_ui(ui, &shown, (id, self.linked), &axes, &read, !menu);
+        let asked = asked && !self.pressed;
+        chart_menu::ui(ui, id, &axes, start, shown.response.rect, (table, asked));
+        shown
+    }
+}
+
+/// What is read by the values of the axes, in their units.
+fn in_units<'a>(names: [String; 2], [across, up]: [f64; 2], decades: [bool; 2]) -> Reader<'a> {
+    reading(names, move |p| {
+        let [x, y] = plain(decades, [p.x, p.y]);
+        [x / across, y / up]
+    })
+}
+
+/// Says what is read at the pointer, where that would not cover an open menu or what the keys read.
+fn with_pointer<'a>(
+    ctx: &egui::Context,
+    plot: Plot<'a>,
+    menu: bool,
+    read: &Reader<'a>,
+) -> Plot<'a> {
+    let keys = chart_cursor::live(ctx).is_some();
+    if menu || keys {
+        return plot.label_formatter(|_| None).show_crosshair(!keys);
+    }
+    let read = read.clone();
+    plot.label_formatter(move |at| read(at))
+}
+
+/// A finger that goes up or down over a plot that stays moves the page, which the plot would keep it from.
+fn scroll_by_touch(ui: &egui::Ui, response: &egui::Response) {
+    if response.dragged() && ui.input(egui::InputState::any_touches) {
+        ui.scroll_with_delta(egui::vec2(0.0, response.drag_delta().y));
+    }
+}
+
+/// What is read: where plots of its group are read, the words for who cannot see it, and, where it is `bare` of a menu,
+/// the cursor of the keys.
+fn read_ui<R>(
+    ui: &egui::Ui,
+    shown: &PlotResponse<R>,
+    (id, group): (Id, Option<Id>),
+    axes: &[String; 2],
+    read: &Reader<'_>,
+    bare: bool,
+) {
+    let (response, transform) = (&shown.response, &shown.transform);
+    let live = chart_cursor::live(ui.ctx());
+    let cursor = live.as_ref().filter(|r| r.plot == id).map(|r| &r.cursor);
+    if let Some(group) = group {
+        let pointer = response.hover_pos().filter(|_| live.is_none());
+        let x = cursor.map(|c| c.at[0]);
+        let x = x.or(pointer.map(|p| transform.value_from_position(p).x));
+        linked_ui(ui, transform, group, id, x);
+    }
+    let text = cursor.and_then(|c| c.text(read));
+    response.widget_info(|| words(axes, text.as_deref()));
+    if let Some(cursor) = cursor.filter(|_| bare && !chart_menu::wished(ui.ctx(), id)) {
+        theme::tell(response);
+        cursor_ui(ui, response, transform, cursor, text.as_deref());
+    }
+}
+
+/// A plot in words: its axes, and what the keys read in it.
+fn words(axes: &[String; 2], text: Option<&str>) -> WidgetInfo {
+    let name = tr(format!("Plot: {} over {}", axes[1], axes[0]));
+    WidgetInfo {
+        current_text_value: text.map(|t| t.replace('\n', "; ")),
+        ..WidgetInfo::labeled(egui::Role::Image, true, name)
     }
 }
 
@@ -305,17 +304,6 @@ fn scales_of(ctx: &egui::Context, id: Id, axes: &[String; 2], decades: [bool; 2]
         // A logarithmic axis shows powers of its unit.
         let size = if decades[i] { 0.0 } else { size };
         scale(&axes[i], size)
-    })
-}
-
-/// What is drawn at a place, where logarithms may stand for it.
-fn plain(decades: [bool; 2], at: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|i| {
-        if decades[i] {
-            10_f64.powf(at[i])
-        } else {
-            at[i]
-        }
     })
 }
 
@@ -351,110 +339,6 @@ fn with_axes<'a>(
         (x, plot.x_grid_spacer(lines))
     };
     plot.custom_x_axes(vec![x]).custom_y_axes(vec![y])
-}
-
-/// Draws in a plot, and notes the numbers of its curves where they are asked for.
-pub struct Pen<'p, 'd> {
-    plot: &'p mut PlotUi<'d>,
-    id: Id,
-    axes: [String; 2],
-    decades: [bool; 2],
-    table: Option<Table>,
-    /// What the keys can read, if they are here.
-    curves: Option<Vec<Curve>>,
-}
-
-impl<'d> Pen<'_, 'd> {
-    /// Whether the numbers of whole curves are asked for, not only what is in view.
-    pub fn notes(&self) -> bool {
-        self.table.is_some()
-    }
-
-    pub fn line(&mut self, line: Line<'d>) {
-        self.note(&line, true);
-        self.plot.line(line);
-    }
-
-    pub fn points(&mut self, points: Points<'d>) {
-        self.note(&points, false);
-        self.plot.points(points);
-    }
-
-    /// The place that is read, with the keys or the pointer.
-    pub fn pointed(&self) -> Option<[f64; 2]> {
-        if let Some(reading) = chart_cursor::live(self.ctx()) {
-            return (reading.plot == self.id).then_some(reading.cursor.at);
-        }
-        let place = self.pointer_coordinate()?;
-        self.response().hovered().then_some([place.x, place.y])
-    }
-
-    /// The first of some points that is where the plot is pointed at.
-    pub fn pointed_among(&self, points: &[[f64; 2]]) -> Option<usize> {
-        let place = self.screen_from_plot(self.pointed()?.into());
-        let near = |p: &[f64; 2]| self.screen_from_plot((*p).into()).distance(place) <= REACH;
-        points.iter().position(near)
-    }
-
-    /// Notes a curve where it is asked for; two columns of a table: x and y.
-    fn note(&mut self, item: &dyn PlotItem, joined: bool) {
-        let PlotGeometry::Points(points) = item.geometry() else {
-            return;
-        };
-        if let Some(curves) = &mut self.curves
-            && item.allow_hover()
-        {
-            let name = item.name().to_owned();
-            let points = points.iter().map(|p| [p.x, p.y]).collect();
-            curves.push(Curve {
-                name,
-                points,
-                joined,
-            });
-        }
-        let Some(table) = self.table.as_mut().filter(|_| !points.is_empty()) else {
-            return;
-        };
-        let name = item.name().replace('\u{a0}', " ");
-        let titles = distinct(table, &name, &self.axes);
-        let place = |p: &PlotPoint| plain(self.decades, [p.x, p.y]);
-        let values = [0, 1].map(|i| points.iter().map(|p| place(p)[i]).collect());
-        table.columns.extend(titles.into_iter().zip(values));
-    }
-}
-
-/// Titles of the columns of a curve that no other in the table has: curves of the same name are numbered.
-fn distinct(table: &Table, name: &str, axes: &[String; 2]) -> [String; 2] {
-    let taken = |title: &String| table.columns.iter().any(|(t, _)| t == title);
-    let mut count = 1;
-    loop {
-        let number = if count == 1 {
-            String::new()
-        } else {
-            format!(" {count}")
-        };
-        let titles = axes
-            .each_ref()
-            .map(|axis| format!("{name}{number}: {axis}"));
-        if !titles.iter().any(taken) {
-            return titles;
-        }
-        count += 1;
-    }
-}
-
-impl<'d> Deref for Pen<'_, 'd> {
-    type Target = PlotUi<'d>;
-
-    fn deref(&self) -> &PlotUi<'d> {
-        self.plot
-    }
-}
-
-impl DerefMut for Pen<'_, '_> {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        self.plot
-    }
 }
 
 /// A plot that shows its data until someone zooms.

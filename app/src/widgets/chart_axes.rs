@@ -182,6 +182,17 @@ pub(super) fn powers(input: &GridInput) -> Vec<GridMark> {
         .collect()
 }
 
+/// What is drawn at a place, where logarithms may stand for it.
+pub(super) fn plain(decades: [bool; 2], at: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|i| {
+        if decades[i] {
+            10_f64.powf(at[i])
+        } else {
+            at[i]
+        }
+    })
+}
+
 /// Decades that have grid lines, at most: what a plot spans before it has anything to show may be wild.
 const MOST_DECADES: i32 = 40;
 

@@ -162,13 +162,23 @@ fn stroke(ui: &Ui, width: f32) -> Stroke {
 }
 
 /// A line at an x.
-pub fn line_ui(ui: &Ui, transform: &PlotTransform, x: f64) {
+fn line_ui(ui: &Ui, transform: &PlotTransform, x: f64) {
     let x = transform.position_from_point_x(x);
     ui.painter().with_clip_rect(seen(ui, transform)).vline(
         x,
         transform.frame().y_range(),
         stroke(ui, 1.0),
     );
+}
+
+/// Says at which x a plot of a group is pointed at, and shows in it where another of them is.
+pub fn linked_ui(ui: &Ui, transform: &PlotTransform, group: Id, plot: Id, x: Option<f64>) {
+    point(ui.ctx(), group, plot, x);
+    if let Some((other, x)) = pointed(ui.ctx(), group)
+        && other != plot
+    {
+        line_ui(ui, transform, x);
+    }
 }
 
 /// A ring around a place.

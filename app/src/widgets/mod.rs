@@ -6,6 +6,7 @@ mod chart_caption;
 pub mod chart_cursor;
 mod chart_keys;
 pub mod chart_menu;
+mod chart_pen;
 mod chart_reading;
 pub mod chart_zoom;
 pub mod controls;

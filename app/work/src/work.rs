@@ -1,5 +1,4 @@
-//! What long computations do. The same code runs on a thread natively and in the worker on the web; the page
-//! itself has none of it, which keeps it small.
+//! What long computations do. The same code runs on a thread natively and in a worker on the web.
 
 use std::borrow::Cow;
 use std::fmt;

@@ -3,9 +3,13 @@
 use super::data::Data;
 use super::motion::Motion;
 use crate::measurement::Kind;
+use crate::order::median;
 
 /// Most levels of an input that counts as a relay's.
 const RELAY_LEVELS: usize = 6;
+
+/// Share by which periods of a relay loop may differ from the usual one.
+const ALIKE: f64 = 0.25;
 
 /// A change of velocity from sample to sample below this share of the largest is none: the body rests, or what is
 /// left is round-off.
@@ -107,15 +111,17 @@ pub(super) fn axes(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Axi
             since(&data.time, switched),
             |a, b, _| span_after(a, b, "the input switched"),
         ));
-        axes.push(continuous(
-            "relay_phase",
-            "1",
-            relay_phase(data),
-            |a, b, _| {
-                let (a, b) = (100.0 * a, 100.0 * b);
-                format!("between {a:.0} % and {b:.0} % of the relay period")
-            },
-        ));
+        if has_period(data) {
+            axes.push(continuous(
+                "relay_phase",
+                "1",
+                relay_phase(data),
+                |a, b, _| {
+                    let (a, b) = (100.0 * a, 100.0 * b);
+                    format!("between {a:.0} % and {b:.0} % of the relay period")
+                },
+            ));
+        }
     }
     axes
 }
@@ -252,11 +258,27 @@ fn since(time: &[f64], event: impl Fn(usize) -> bool) -> Vec<f64> {
         .collect()
 }
 
+/// Samples at which the input switches upwards.
+fn ups(data: &Data) -> Vec<usize> {
+    let is_up = |i: &usize| data.input[*i] > data.input[i - 1];
+    (1..data.len()).filter(is_up).collect()
+}
+
+/// Whether the input switches upwards at times that are alike, as in a loop that a relay closed: not one that is drawn or a staircase.
+fn has_period(data: &Data) -> bool {
+    let ups = ups(data);
+    let length = |pair: &[usize]| data.time[pair[1]] - data.time[pair[0]];
+    let mut lengths: Vec<f64> = ups.windows(2).map(length).collect();
+    let usual = median(&mut lengths);
+    let alike = lengths
+        .iter()
+        .filter(|l| (*l - usual).abs() <= ALIKE * usual);
+    2 * alike.count() > lengths.len()
+}
+
 /// Share of the relay period, counted from each upward switch.
 fn relay_phase(data: &Data) -> Vec<f64> {
-    let ups: Vec<usize> = (1..data.len())
-        .filter(|i| data.input[*i] > data.input[i - 1])
-        .collect();
+    let ups = ups(data);
     let mut phase = vec![f64::NAN; data.len()];
     for pair in ups.windows(2) {
         let (from, to) = (data.time[pair[0]], data.time[pair[1]]);

@@ -23,6 +23,10 @@ const MOST_SWINGS: usize = 6;
 const PAUSE: f64 = 1.6;
 const RARE: usize = 50;
 
+/// Where the clock is so uneven that there are more, one is a gap that is this many times as long as the longest of the others:
+/// of intervals as random as those of a decay, one in a billion.
+const FAR_LONGER: f64 = 5.0;
+
 /// A run of samples that is used as a whole, either for fitting or for judging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Block {
@@ -56,16 +60,17 @@ pub(super) fn in_motion(velocity: &[f64], length: usize) -> Vec<usize> {
         .collect()
 }
 
-/// First samples after gaps in `time`, where rows are missing: what the input did there is not known. A record whose
-/// samples come at all distances has none.
+/// First samples after gaps in `time`, where rows are missing or runs are joined: what the input did there is not known.
 pub(super) fn pauses(time: &[f64]) -> Vec<usize> {
     let step = |k: usize| time[k] - time[k - 1];
-    let usual = median(&mut (1..time.len()).map(step).collect::<Vec<_>>());
-    let mut found: Vec<usize> = (1..time.len())
-        .filter(|k| step(*k) > PAUSE * usual)
-        .collect();
+    let mut steps: Vec<f64> = (1..time.len()).map(step).collect();
+    let least = PAUSE * median(&mut steps);
+    let mut found: Vec<usize> = (1..time.len()).filter(|k| step(*k) > least).collect();
     if found.len() * RARE > time.len() {
-        return Vec::new();
+        steps.sort_by(f64::total_cmp);
+        let often = steps.len() - time.len() / RARE;
+        let least = FAR_LONGER * steps[often.saturating_sub(1)];
+        found.retain(|k| step(*k) > least);
     }
     // What stands between two of them may be too short for a window.
     let mut from = 0;

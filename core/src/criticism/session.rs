@@ -1,16 +1,13 @@
-//! What all fits on one measurement share: its data, sizes, units, and how a fit becomes a report.
+//! What all fits on one measurement share: its data, sizes and units.
 
 use std::sync::Arc;
 
-use super::atlas::atlas;
 use super::cost::fitted_costs;
 use super::data::Data;
 use super::fit::Fit;
 use super::guess::guess;
 use super::knowledge::{self, Knowledge};
-use super::locate::locate;
 use super::noise::{is_left_by_random_forces, is_noise_with_memory};
-use super::output::Output;
 use super::probes::{Probed, Probes};
 use super::relay_loop::RelayLoop;
 use super::score::{Score, motion_square, score};
@@ -19,18 +16,14 @@ use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
 use crate::crew::Crew;
-use crate::diagnosis::{
-    ChannelNoise, CriticismError, InputCheck, InputVerdict, Parameter, Replay, ReplayChannel,
-    Screening,
-};
+use crate::diagnosis::{CriticismError, InputCheck, InputVerdict, Screening};
 use crate::effect::{
     self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
-    Scales, SeenGap,
-    baseline::{self, Baseline},
+    Scales, SeenGap, baseline::Baseline,
 };
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
 use crate::uncertain::NORMAL_95;
-use crate::user_model::{Status, UserModel};
+use crate::user_model::UserModel;
 
 /// A fit with its score.
 #[derive(Clone)]
@@ -92,9 +85,6 @@ pub(super) const TELLING: f64 = NORMAL_95;
 /// Samples of a drive on which models are compared; a longer record is fitted as a whole at last.
 const COMPARED: usize = 20_000;
 
-/// Standard error, in times of what a value may be, at which the record tells nothing of it: no larger one is given.
-const UNTOLD: f64 = 1e3;
-
 /// Iterations of a fit of the whole record from that of a part of it.
 const WHOLE_ITERATIONS: usize = 2;
 
@@ -153,7 +143,7 @@ pub(super) struct Session {
     /// Whether the input explains the motion.
     pub input_check: InputCheck,
     /// The gap that a drifting test shows.
-    gap: Option<SeenGap>,
+    pub gap: Option<SeenGap>,
     /// The loop in which the record was made, if a relay closed it.
     pub relay_loop: Option<RelayLoop>,
     pub input_unit: String,
@@ -315,6 +305,7 @@ impl Session {
             .collect();
         Probe::new(&ProbeInput {
             kind: data.kind,
+            rotates: self.motion == Motion::Rotational,
             scales: self.scales,
             position: &data.position_estimate(),
             followed: data.excitation.followed(),
@@ -451,72 +442,6 @@ impl Session {
         })
     }
 
-    /// Effects of a fit, those of the baseline first.
-    pub fn effects(&self, fit: &Fit) -> Vec<EffectId> {
-        baseline::effects(self.kind())
-            .iter()
-            .copied()
-            .chain(fit.structure.effects.iter().map(|e| e.id()))
-            .collect()
-    }
-
-    /// Every parameter with its standard error, which is no less than these `spreads` of the values.
-    pub fn parameters(&self, scored: &Scored, spreads: &[f64]) -> Vec<Parameter> {
-        let fit = &scored.fit;
-        let mut errors = scored.standard_errors();
-        for (error, spread) in errors.iter_mut().zip(spreads) {
-            *error = error.max(*spread);
-        }
-        let known = fit.structure.known();
-        let status = |j: usize| known[j].map_or(Status::Free, |k| k.status);
-        // One that the record itself holds is known as well as where the output rests at first.
-        let held = fit.structure.held().map(|(place, _)| place);
-        let rest = self.data.outputs.first().map_or(0.0, |o| o.noise);
-        let mut parameters: Vec<Parameter> = fit
-            .structure
-            .baseline
-            .parameters()
-            .iter()
-            .enumerate()
-            .map(|(j, p)| Parameter {
-                effect: p.effect,
-                name: p.symbol.to_owned(),
-                label: p.label.to_owned(),
-                value: fit.values[j],
-                std_error: if held == Some(j) {
-                    rest
-                } else {
-                    errors[j].min(p.dimension.map_or(f64::INFINITY, |dimension| {
-                        UNTOLD * fit.values[j].abs().max(self.scales.of(dimension))
-                    }))
-                },
-                status: status(j),
-                unit: self.unit_of(p.dimension),
-            })
-            .collect();
-        for (index, effect) in fit.structure.effects.iter().enumerate() {
-            let range = fit.structure.range(index);
-            let least = self.gap.map_or_else(Vec::new, |gap| {
-                effect.least_errors(&fit.values[range.clone()], &gap)
-            });
-            let mut least = least.into_iter();
-            for (j, spec) in range.zip(effect.parameters()) {
-                let least = least.next().filter(|_| status(j) == Status::Free);
-                let size = fit.values[j].abs().max(self.scales.of(spec.dimension));
-                parameters.push(Parameter {
-                    effect: Some(effect.id()),
-                    name: spec.symbol.to_owned(),
-                    label: spec.label.to_owned(),
-                    value: fit.values[j],
-                    std_error: errors[j].max(least.unwrap_or(0.0)).min(UNTOLD * size),
-                    status: status(j),
-                    unit: self.unit_of(Some(spec.dimension)),
-                });
-            }
-        }
-        parameters
-    }
-
     /// What a fit of the whole record leaves.
     pub fn rest(&self, scored: &Scored) -> Rest {
         let remembers =
@@ -548,49 +473,5 @@ impl Session {
         let error = scored.score.error;
         let probe = || self.probe_of(data, fit);
         error < MOST_PUSHED && is_left_by_random_forces(data, &fit.motion, error, probe)
-    }
-
-    /// Where a fit of the whole record fails.
-    pub fn findings(&self, scored: &Scored) -> Vec<crate::diagnosis::Finding> {
-        locate(self.whole(), &scored.fit.motion, self.output_unit())
-    }
-
-    /// The residual over every axis.
-    pub fn atlas(&self, fit: &Fit) -> Vec<crate::diagnosis::Profile> {
-        atlas(self.whole(), &fit.motion, self.output_unit())
-    }
-
-    /// The noise of each measured channel.
-    pub fn channel_noise(&self) -> Vec<ChannelNoise> {
-        let outputs = self.outputs.iter().zip(&self.whole().outputs);
-        let noise = |((quantity, name, unit), output): (&(Quantity, String, String), &Output)| {
-            ChannelNoise {
-                channel: name.clone(),
-                quantity: *quantity,
-                value: output.noise,
-                unit: unit.clone(),
-                step: Some(output.step).filter(|step| *step > 0.0),
-            }
-        };
-        outputs.map(noise).collect()
-    }
-
-    /// Curves for the plots.
-    pub fn replay(&self, fit: &Fit) -> Replay {
-        Replay {
-            channels: self
-                .outputs
-                .iter()
-                .zip(&self.whole().outputs)
-                .map(|((quantity, name, unit), output)| ReplayChannel {
-                    quantity: *quantity,
-                    name: name.clone(),
-                    unit: unit.clone(),
-                    noise: output.noise,
-                    modelled: fit.motion.of(output.is_velocity).to_vec(),
-                })
-                .collect(),
-            window_starts: self.whole().windows.clone(),
-        }
     }
 }

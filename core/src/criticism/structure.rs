@@ -2,7 +2,7 @@
 
 use super::knowledge::Knowledge;
 use crate::effect::baseline::Baseline;
-use crate::effect::{Effect, EffectId, Scales};
+use crate::effect::{Effect, EffectId, Range, Scales};
 use crate::model::{LoadBegin, Model};
 use crate::user_model::{Known, Status};
 
@@ -156,6 +156,10 @@ impl Structure {
             for (j, spec) in self.range(index).zip(effect.parameters()) {
                 if spec.is_size() && present[j] > 0.0 {
                     limit(&mut values[j], present[j]);
+                }
+                // Where the input jumps, its derivative tells nothing of what is farther off.
+                if spec.range == Range::Late && present[j] > 0.0 {
+                    values[j] = values[j].min(STEP_FACTOR * present[j]);
                 }
             }
         }

@@ -4,26 +4,42 @@ use super::contradicted::overruled;
 use super::dry_or_viscous::InsteadOfViscous;
 use super::explain::{Difference, Explain, Trial, difference as between, may_replace};
 use super::fingerprint::fingerprints;
+use super::left_out::add_left_out;
 use super::missing::missing_parts;
 use super::next_experiment::{Design, Rival, designs};
 use super::one_way::OneWay;
 use super::ranking::{noise_floor, rank};
 use super::residual_test::residual_tests;
 use super::score::share_left;
-use super::select::{delta_bic, outweighs};
-use super::session::{Rest, Scored, Session};
+use super::select::{delta_bic, is_all_that_counters_show, is_noise, outweighs};
+use super::session::{Rest, Scored, Session, small_share};
 use super::verdict::{
-    Class, add_both_ways, add_dry_friction, add_experiments, add_glitches, add_held, add_hint,
-    add_idle, add_input_check, add_integrating, add_limited, add_overruled, add_part_of_the_way,
-    add_pauses, add_relay_loop, add_rest, verdict,
+    Class, PartOfTheWay, Refused, add_both_ways, add_dry_friction, add_experiments, add_hint,
+    add_idle, add_input_check, add_integrating, add_other_experiment, add_overruled,
+    add_part_of_the_way, add_relay_loop, add_rest, verdict,
 };
 use crate::diagnosis::{
-    Candidate, Contradiction, Limits, NextExperiment, Step, StepReport, Verdict,
+    Candidate, Contradiction, Finding, Limits, NextExperiment, Parameter, Step, StepReport, Verdict,
 };
 use crate::effect::{Effect, EffectId};
 
 /// Fall of the error of either half from which an effect is mentioned though chance is not ruled out.
 const PROMISING: f64 = 0.3;
+
+/// A model of which the verdict speaks, and what is known of it.
+struct Told<'a> {
+    /// Place of its trial.
+    place: usize,
+    trial: &'a Trial,
+    /// The same on the whole record.
+    whole: &'a Scored,
+    rest: Rest,
+    parameters: &'a [Parameter],
+    /// Where it fails.
+    findings: &'a [Finding],
+    /// Effects that were tried beside its own, each with its best trial.
+    tried: &'a [(&'static dyn Effect, &'a Trial)],
+}
 
 /// What is known beside the fits.
 pub(super) struct Tell {
@@ -103,27 +119,20 @@ impl Tell {
         let tried = explain.with_one_more(ids);
         let last = suggestion.is_none() && needless.is_empty();
         let overruled = overruled(session, &whole);
+        let told = Told {
+            place,
+            trial,
+            whole: &whole,
+            rest,
+            parameters: &parameters,
+            findings: &findings,
+            tried: &tried,
+        };
         let verdict = last.then(|| {
-            let mut verdict = self.verdict(session, explain, trial, &whole, rest, &parameters);
-            let first = session.first(&whole).error;
-            add_rest(&mut verdict, rest, &whole.score, first, &findings);
-            add_integrating(&mut verdict, &parameters);
-            let dry = self.dry.as_ref().filter(|_| place == explain.best);
-            match dry.filter(|_| verdict.contradicted.is_empty()) {
-                Some(dry) => add_dry_friction(&mut verdict, dry),
-                None => add_relay_loop(&mut verdict, trial.in_loop, explain.trials[0].in_loop),
-            }
-            if verdict.unknown {
-                add_part_of_the_way(&mut verdict, part_of_the_way(session, trial, &tried));
-                add_hint(&mut verdict, hint(session, trial, &tried));
-            }
+            let mut verdict = self.verdict(session, explain, &told);
             add_idle(&mut verdict, &present, &[]);
-            add_input_check(&mut verdict, &session.input_check);
-            let whole = session.whole();
-            add_glitches(&mut verdict, whole.glitches);
-            add_pauses(&mut verdict, whole.pauses);
-            add_held(&mut verdict, whole);
-            add_limited(&mut verdict, whole);
+            add_input_check(&mut verdict, &session.input_check, &parameters);
+            add_left_out(&mut verdict, session.whole());
             add_overruled(&mut verdict, overruled);
             verdict
         });
@@ -158,15 +167,29 @@ impl Tell {
         })
     }
 
-    fn verdict(
-        &self,
-        session: &Session,
-        explain: &Explain,
-        trial: &Trial,
-        whole: &Scored,
-        rest: Rest,
-        parameters: &[crate::diagnosis::Parameter],
-    ) -> Verdict {
+    /// What is missing and what is left, how the model does in its own loop, and what would explain a part of the rest.
+    fn verdict(&self, session: &Session, explain: &Explain, told: &Told) -> Verdict {
+        let mut verdict = self.missing(session, explain, told);
+        let first = session.first(told.whole).error;
+        let (rest, score) = (told.rest, &told.whole.score);
+        add_rest(&mut verdict, rest, score, first, told.findings);
+        add_integrating(&mut verdict, told.parameters);
+        let dry = self.dry.as_ref().filter(|_| told.place == explain.best);
+        match dry.filter(|_| verdict.contradicted.is_empty()) {
+            Some(dry) => add_dry_friction(&mut verdict, dry),
+            None => add_relay_loop(&mut verdict, told.trial.in_loop, explain.trials[0].in_loop),
+        }
+        if verdict.unknown {
+            let (trial, tried) = (told.trial, told.tried);
+            add_part_of_the_way(&mut verdict, part_of_the_way(session, trial, tried));
+            add_hint(&mut verdict, hint(session, trial, tried));
+        }
+        verdict
+    }
+
+    /// What is missing, what could stand in its place, and which experiments tell.
+    fn missing(&self, session: &Session, explain: &Explain, told: &Told) -> Verdict {
+        let trial = told.trial;
         let order = explain.order();
         let effects = trial.effects();
         let mut places: Vec<usize> = (0..effects.len())
@@ -192,14 +215,15 @@ impl Tell {
         let mut verdict = verdict(
             &added,
             &classes,
-            parameters,
-            whole,
-            rest,
+            told.parameters,
+            told.whole,
+            told.rest,
             self.contradicted.clone(),
         );
         if is_joined {
             add_both_ways(&mut verdict);
         } else {
+            add_other_experiment(&mut verdict, &session.whole().input);
             add_experiments(&mut verdict, &self.experiments);
         }
         verdict
@@ -231,20 +255,57 @@ fn hint(
     is_promising(&difference).then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
 }
 
-/// The effects that lower the error most for certain though they leave more than they explain, and to what.
+/// The effects that lower the error most for certain and were not taken, why not, and the error with them.
 fn part_of_the_way(
     session: &Session,
     model: &Trial,
     tried: &[(&'static dyn Effect, &Trial)],
-) -> Option<(Vec<EffectId>, f64)> {
+) -> Option<PartOfTheWay> {
     let better = |t: &&(&'static dyn Effect, &Trial)| between(session, model, t.1).is_better();
-    let (best, trial) = tried.iter().find(better)?;
-    let same = |t: &&(&'static dyn Effect, &Trial)| {
-        t.0.id() == best.id() || between(session, trial, t.1).is_same()
+    let better: Vec<&(&'static dyn Effect, &Trial)> = tried.iter().filter(better).collect();
+    // Of what leaves noise, that which needs the fewest values.
+    let noise = better.iter().filter(|t| leaves_noise(session, t.1));
+    let plain = noise.min_by_key(|t| t.1.values());
+    let (best, trial) = plain.or(better.first())?;
+    let same = |t: &&&(&'static dyn Effect, &Trial)| {
+        let alike = t.1.values() <= trial.values() && between(session, trial, t.1).is_same();
+        t.0.id() == best.id() || alike
     };
-    let class = tried.iter().filter(better).filter(same);
-    let error = session.completed(&trial.scored).score.error;
-    Some((class.map(|t| t.0.id()).collect(), error))
+    let class = better.iter().filter(same);
+    Some(PartOfTheWay {
+        class: class.map(|t| t.0.id()).collect(),
+        error: session.completed(&trial.scored).score.error,
+        refused: refused(session, model, trial, best.id()),
+    })
+}
+
+/// Whether a model leaves noise of either half.
+fn leaves_noise(session: &Session, trial: &Trial) -> bool {
+    let small = small_share(&trial.scored.fit);
+    let mut halves = trial.halves();
+    halves.all(|half| {
+        is_all_that_counters_show(&half.score) || is_noise(&half.score, session.first(half), small)
+    })
+}
+
+/// Why an effect that lowers the error for certain is not named.
+fn refused(session: &Session, before: &Trial, after: &Trial, effect: EffectId) -> Refused {
+    let scored = &after.scored;
+    let effects = &scored.fit.structure.effects;
+    let Some(place) = effects.iter().position(|e| e.id() == effect) else {
+        return Refused::Other;
+    };
+    if !leaves_noise(session, after) && !outweighs(before.error(), after.error()) {
+        Refused::LeavesMore
+    } else if !scored.shows_marks_of(effects[place], &session.scales) {
+        Refused::WithoutMarks
+    } else if !scored.tells_of(place) {
+        Refused::MayBeNothing
+    } else if !session.is_sizeable(&scored.fit, place) {
+        Refused::Trifle
+    } else {
+        Refused::Other
+    }
 }
 
 /// Every effect of the library, the best first; the suggested one leads.

@@ -2,9 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::data::Data;
 use super::dry_or_viscous::InsteadOfViscous;
-use super::locate::signal_name;
 use super::score::Score;
 use super::select::is_plain_noise;
 use super::session::{Rest, Scored};
@@ -18,6 +16,9 @@ use crate::uncertain::{in_unit, with_error};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
+
+/// Standard error, as a share of it, up to which an inertia, or the gain of a process, is told: its 95 % interval is half of it.
+const DETERMINED: f64 = 0.25;
 
 /// What a model leaves that explains all there is.
 const ALL_NOISE: &str = " is measurement noise.";
@@ -292,72 +293,58 @@ pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
     }
 }
 
-/// Says how many values were left out.
-pub(super) fn add_glitches(verdict: &mut Verdict, glitches: usize) {
-    let _ = match glitches {
-        0 => return,
-        1 => write!(
-            verdict.text,
-            " One value stood alone, far off its neighbours, and was left out: a glitch of the sensor."
-        ),
-        many => write!(
-            verdict.text,
-            " {many} values stood alone, far off their neighbours, and were left out: glitches of the sensor."
-        ),
+/// Effects that lower the error for certain and are not named, and the error with the best of them.
+pub(super) struct PartOfTheWay {
+    /// Which cannot be told apart.
+    pub class: Vec<EffectId>,
+    /// In times of the noise.
+    pub error: f64,
+    /// Why they are not named.
+    pub refused: Refused,
+}
+
+/// Why an effect that lowers the error for certain is not named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Refused {
+    /// It leaves more than it explains.
+    LeavesMore,
+    /// What makes it what it is does not stand out.
+    WithoutMarks,
+    /// Its size may be 0 by its error.
+    MayBeNothing,
+    /// It is a trifle of the input.
+    Trifle,
+    /// It was not the best when it was compared.
+    Other,
+}
+
+/// Says what would explain a part for certain, why it is not named, and the error with it.
+pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheWay>) {
+    let Some(part) = part else { return };
+    let class = in_registry_order(part.class);
+    let (listed, error) = (names(&class, " or "), part.error);
+    let reason = match part.refused {
+        Refused::LeavesMore => {
+            let _ = write!(
+                verdict.text,
+                " Part of the way, and not named since it leaves more than it explains: {listed}, with which the error is \
+                 {error:.2} times the noise."
+            );
+            verdict.part_of_the_way = class;
+            return;
+        }
+        Refused::WithoutMarks => {
+            " It is not named, since what sets it apart from others does not stand out in this record."
+        }
+        Refused::MayBeNothing => " It is not named, since by its error its size may be 0.",
+        Refused::Trifle => " It is not named, since it would be a trifle of the input.",
+        Refused::Other => "",
     };
-}
-
-/// Says over how many gaps in the time the model does not run.
-pub(super) fn add_pauses(verdict: &mut Verdict, pauses: usize) {
-    let _ = match pauses {
-        0 => return,
-        1 => write!(
-            verdict.text,
-            " Rows are missing in one place, or two runs are joined there: the model begins anew after it."
-        ),
-        many => write!(
-            verdict.text,
-            " Rows are missing in {many} places, or runs are joined there: the model begins anew after each."
-        ),
-    };
-}
-
-/// Says of which outputs only the fresh readings were used.
-pub(super) fn add_held(verdict: &mut Verdict, data: &Data) {
-    for output in data.outputs.iter().filter(|o| o.is_held()) {
-        let _ = write!(
-            verdict.text,
-            " The {} stays as it is between {} readings: only these were used.",
-            signal_name(data.kind, output),
-            output.telling(0, data.len())
-        );
-    }
-}
-
-/// Says which sensors were at their limit for a while.
-pub(super) fn add_limited(verdict: &mut Verdict, data: &Data) {
-    for output in data.outputs.iter().filter(|o| o.limited > 0) {
-        let _ = write!(
-            verdict.text,
-            " The {} stays at its largest values for {} samples: its sensor was at its limit, and they were left out.",
-            signal_name(data.kind, output),
-            output.limited
-        );
-    }
-}
-
-/// Says what would explain a part for certain and leave more than that, and the error with it.
-pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<(Vec<EffectId>, f64)>) {
-    if let Some((class, error)) = part {
-        let class = in_registry_order(class);
-        let _ = write!(
-            verdict.text,
-            " Part of the way, and not named since it leaves more than it explains: {}, with which the error is {error:.2} \
-             times the noise.",
-            names(&class, " or ")
-        );
-        verdict.part_of_the_way = class;
-    }
+    let _ = write!(
+        verdict.text,
+        " With {listed} the error would be {error:.2} times the noise.{reason}"
+    );
+    verdict.part_of_the_way = class;
 }
 
 /// Says which effect would lower the error much, and to what, though chance is not ruled out.
@@ -374,13 +361,14 @@ pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
 
 /// Says first where the input does not explain the motion: where its sign is turned or it follows the output, no physics is
 /// named, for that would be physics of another machine. A model that leaves noise alone has explained the motion.
-pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck) {
+/// That the inertia is not told is not said beside one that is.
+pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, parameters: &[Parameter]) {
+    let inertia = parameters.first();
+    let is_told = inertia.is_some_and(|p| p.std_error < DETERMINED * p.value.abs());
     let leads = match check.verdict {
         InputVerdict::Ok => false,
-        InputVerdict::DoesNotExplain
-        | InputVerdict::InertiaNotTold
-        | InputVerdict::Sign
-        | InputVerdict::ClosedLoop => true,
+        InputVerdict::InertiaNotTold => !is_told,
+        InputVerdict::DoesNotExplain | InputVerdict::Sign | InputVerdict::ClosedLoop => true,
     };
     if verdict.complete || !leads {
         return;
@@ -414,6 +402,16 @@ pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId], unsure: &[Effec
     }
 }
 
+/// Puts advice for an input that has more than two levels in the place of the general one.
+pub(super) fn add_other_experiment(verdict: &mut Verdict, input: &[f64]) {
+    let first = input.first();
+    let second = input.iter().find(|u| Some(*u) != first);
+    let has_more = input.iter().any(|u| Some(u) != first && Some(u) != second);
+    if let Some(advice) = verdict.next_experiment.as_mut().filter(|_| has_more) {
+        OTHER_EXPERIMENT.clone_into(advice);
+    }
+}
+
 /// Puts the experiments that were found in the place of the general advice.
 pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperiment]) {
     if !experiments.is_empty() && verdict.next_experiment.is_some() {
@@ -425,6 +423,10 @@ pub(super) fn add_experiments(verdict: &mut Verdict, experiments: &[NextExperime
 /// For effects that act alike in one experiment.
 const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than two levels, such as a \
     staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
+
+/// The same where the input has more levels than two already.
+const OTHER_EXPERIMENT: &str = "Repeat the measurement with another input, of other levels and other speeds of change: what \
+    acts alike in one motion differs in another.";
 
 /// For what is one constant while a drive turns one way.
 const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the motion, a \

@@ -6,7 +6,9 @@ use crate::effect::{EffectId, FormulaError};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CriticismError {
     /// The input never changes, so nothing can be learnt from it.
-    #[error("the input is constant over the whole file: an experiment must move it")]
+    #[error(
+        "the input is constant over the whole file: an experiment must move it; of a step from rest, add the row before the step, with the input as it was then"
+    )]
     ConstantInput,
     /// An output never changes.
     #[error(

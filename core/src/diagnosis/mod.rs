@@ -1,6 +1,6 @@
 //! What a diagnosis says: plain values, the same in JSON, on the command line and on screen.
 //!
-//! Nothing is computed here: the jobs of [`criticism`](crate::criticism) fill these values, everything else reads them.
+//! Nothing is fitted or simulated here: the jobs of [`criticism`](crate::criticism) fill these values, everything else reads them.
 
 mod answer;
 mod discovery;
@@ -10,7 +10,6 @@ mod fingerprint;
 mod limits;
 mod missing;
 mod noise;
-mod opening;
 mod parameter;
 mod profile;
 mod program;
@@ -30,7 +29,6 @@ pub use fingerprint::Fingerprint;
 pub use limits::{LimitError, Limits};
 pub use missing::MissingPart;
 pub use noise::ChannelNoise;
-pub use opening::Opening;
 pub use parameter::{Parameter, Status};
 pub use profile::{Profile, ProfileBin};
 pub use program::{Program, Sine};

@@ -61,7 +61,7 @@ impl Effect for EncoderEccentricity {
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let (low, high) = probe.position_range();
-        if high - low < LEAST_TRAVEL {
+        if !probe.rotates || high - low < LEAST_TRAVEL {
             return Vec::new();
         }
         PHASES.map(|phase| vec![USUAL, phase]).to_vec()

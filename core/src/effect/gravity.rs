@@ -62,6 +62,9 @@ impl Effect for Gravity {
     }
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
+        if !probe.rotates {
+            return Vec::new();
+        }
         let sine = probe.signature(|x, _| libm::sin(x));
         let cosine = probe.signature(|x, _| libm::cos(x));
         let fit = probe.regress(&[&sine, &cosine]);

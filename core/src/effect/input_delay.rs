@@ -10,6 +10,9 @@ pub(super) struct InputDelay;
 /// Dead times are tried from half a sample to this share of the record.
 const LONGEST_SHARE: f64 = 0.1;
 
+/// Samples of a drive of which that share counts.
+const SEEN: f64 = 1000.0;
+
 /// Starting values that cover that span evenly on a log scale.
 const STARTS: u32 = 12;
 
@@ -56,13 +59,18 @@ impl Effect for InputDelay {
             symbol: "tau",
             label: "dead time",
             dimension: Dimension::Time,
-            range: Range::NonNegative,
+            range: Range::Late,
         }]
     }
 
     fn starts(&self, probe: &Probe, _share: f64) -> Vec<Vec<f64>> {
         let shortest = 0.5 * probe.scales.step;
-        let longest = LONGEST_SHARE * probe.scales.duration.min(1000.0 * probe.scales.step);
+        let seen = match probe.kind {
+            // Its windows begin anew with a state of their own.
+            Kind::Drive => probe.scales.duration.min(SEEN * probe.scales.step),
+            Kind::Process => probe.scales.duration,
+        };
+        let longest = LONGEST_SHARE * seen;
         let ratio = libm::pow((longest / shortest).max(1.0), 1.0 / f64::from(STARTS - 1));
         (0..STARTS)
             .map(|i| vec![shortest * libm::pow(ratio, f64::from(i))])

@@ -63,6 +63,8 @@ const FOUND: f64 = 0.99;
 pub struct Probe {
     /// Drive or process.
     pub kind: Kind,
+    /// Whether it is a drive that turns.
+    pub rotates: bool,
     /// Typical sizes.
     pub scales: Scales,
     position: Vec<f64>,
@@ -160,6 +162,8 @@ pub struct GapLoad {
 pub struct ProbeInput<'a> {
     /// Drive or process.
     pub kind: Kind,
+    /// Whether it is a drive that turns.
+    pub rotates: bool,
     /// Typical sizes.
     pub scales: Scales,
     /// Measured position, or an estimate.
@@ -205,6 +209,7 @@ impl Probe {
             .collect();
         let mut probe = Self {
             kind: input.kind,
+            rotates: input.rotates,
             scales: input.scales,
             position: input.position[..n].to_vec(),
             followed: input.followed.iter().take(n).copied().collect(),

@@ -95,6 +95,8 @@ pub enum Range {
     Signed,
     /// 0 or more.
     NonNegative,
+    /// A time by which something is late: 0 to half of the record, or it would not be seen.
+    Late,
     /// Above 0: at least `LEAST_SHARE` of its [`Scales::of`].
     Positive,
     /// -0.9 to 0.9.
@@ -126,7 +128,7 @@ impl Range {
     pub fn refuses(self, value: f64) -> Option<&'static str> {
         let (right, wanted) = match self {
             Self::Signed => (value.is_finite(), "finite"),
-            Self::NonNegative => (value >= 0.0, "at least 0"),
+            Self::NonNegative | Self::Late => (value >= 0.0, "at least 0"),
             Self::Fraction => ((-0.9..=0.9).contains(&value), "between -0.9 and 0.9"),
             Self::UnitInterval | Self::OfContact => {
                 ((0.0..=1.0).contains(&value), "between 0 and 1")
@@ -191,6 +193,9 @@ fn longest_period(scales: &Scales) -> f64 {
 /// Share of the travel from which on a displacement is most of the way.
 const MOST_OF_THE_WAY: f64 = 0.3;
 
+/// Share of the record after which nothing is late any more.
+const LATEST: f64 = 0.5;
+
 /// Smallest share of its typical size that a positive parameter may take: too small to be seen.
 pub const LEAST_SHARE: f64 = 1e-4;
 
@@ -232,6 +237,7 @@ impl ParameterSpec {
         match self.range {
             Range::Signed => value,
             Range::NonNegative => value.max(0.0),
+            Range::Late => value.clamp(0.0, LATEST * scales.duration),
             Range::Positive => value.max(LEAST_SHARE * scale),
             Range::Fraction => value.clamp(-0.9, 0.9),
             Range::UnitInterval | Range::OfContact => value.clamp(0.0, 1.0),

@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 use super::course::{Course, End, Place};
 use super::run::at_rest;
 use super::servo::{Servo, ServoError};
+use crate::uncertain::digits;
+
+/// Digits of a position that is said.
+const DIGITS: i32 = 5;
 
 /// A hunting cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -121,9 +125,9 @@ pub fn settled(servo: &Servo) -> Result<Settled, ServoError> {
     }
     let text = match exact.as_ref().or(simulated.as_ref()) {
         Some(cycle) => format!(
-            "It hunts: the measured position swings to and fro by {:.4e} (half of peak to peak) with a period of {:.4} s, and \
-             the motor sticks for {:.0} % of the time.",
-            cycle.amplitude,
+            "It hunts: the measured position swings to and fro by {} (half of peak to peak) with a period of {:.4} s, and the \
+             motor sticks for {:.0} % of the time.",
+            digits(cycle.amplitude, DIGITS),
             cycle.period,
             100.0 * cycle.stuck
         ),
@@ -145,7 +149,10 @@ fn rests(servo: &Servo, place: &Place) -> Settled {
         exact: None,
         error_at_rest: Some(error),
         unbounded: false,
-        text: format!("It does not hunt: it comes to rest {error:.4e} from its reference."),
+        text: format!(
+            "It does not hunt: it comes to rest {} from its reference.",
+            digits(error, DIGITS)
+        ),
     }
 }
 

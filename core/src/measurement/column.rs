@@ -54,3 +54,15 @@ pub(super) fn role(name: &str) -> Option<Role> {
 pub(super) fn shorten(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).take(30).collect()
 }
+
+/// The begin of a line of a file, with a mark where it goes on.
+pub(super) fn begin_of(line: &str) -> String {
+    let shown: String = line.chars().filter(|c| !c.is_control()).collect();
+    match shown.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} ...", shown[..end].trim_end()),
+        None => shown,
+    }
+}
+
+/// Most characters of a line that are shown.
+const LONGEST: usize = 70;

@@ -1,16 +1,21 @@
 //! Comma-separated files, as people have them.
 
+use super::average;
 use super::clock::{Clock, unit_from_1970};
 use super::error::{ImportError, Problem};
 use super::fill::fill;
 use super::found::addressed;
-use super::header::{Field, Header, Role, map, shorten, understand};
+use super::gaps;
+use super::header::{Field, Header, Role, begin_of, shorten, understand};
+use super::mapped::map;
 use super::mapping::ImportOptions;
 use super::period::Period;
 use super::rates;
 use super::resembling::is_period;
 use super::size::wrong_size;
+use super::switched_on;
 use super::text::{Dialect, Text, open, split_row, survey};
+use super::times;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
 /// Reads a text with columns, with a mapping, a torque constant and a period.
@@ -32,12 +37,11 @@ pub(super) fn import_text(
         let found = rows
             .clone()
             .next()
-            .map_or_else(String::new, |r| shorten(&r.1.trim().replace('\t', " ")));
+            .map_or_else(String::new, |r| begin_of(&r.1.trim().replace('\t', " ")));
         return Err(fail(Some(line), None, Problem::NoHeader { found }));
     }
-    map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
+    let mut notes = map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
     let mut options = options.clone();
-    let mut notes = Vec::new();
     if let Some((place, period)) = period_column(&fields, &options, rows.clone(), dialect) {
         let name = shorten(&fields[place].name);
         notes.push(format!(
@@ -66,11 +70,15 @@ pub(super) fn import_text(
     })?;
     header.notes.splice(..0, notes);
     let separator = dialect.separator;
-    let (values, repeated) = read_rows(&header, dialect, clock, rows.clone())
-        .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
-    let values = check_sizes(&header, separator, rows, values)
-        .map_err(|(line, column, problem)| fail(Some(line), column, problem))?;
+    let located = |(line, column, problem): Failure| fail(Some(line), column, problem);
+    let mut table = read_rows(&header, dialect, clock, rows.clone()).map_err(located)?;
+    let mended = in_order(&header, &mut table).map_err(located)?;
+    check_sizes(&header, separator, rows, &table).map_err(located)?;
+    let Rows {
+        values, repeated, ..
+    } = table;
     header.notes.extend(said_of_repeated(repeated));
+    header.notes.extend(mended);
     header
         .doubt_seconds(&values)
         .map_err(|(column, problem)| fail(Some(line), column, problem))?;
@@ -160,14 +168,25 @@ fn said_of_repeated(count: usize) -> Option<String> {
 
 type Failure = (usize, Option<String>, Problem);
 
-/// Values by column, in SI, and how many rows were left out because they repeat the one before.
+/// What stands in rows.
+struct Rows {
+    /// Values by column, in SI.
+    values: Vec<Vec<f64>>,
+    /// The line of each row.
+    lines: Vec<usize>,
+    /// How many rows were left out because they repeat the one before.
+    repeated: usize,
+}
+
+/// Reads rows.
 fn read_rows<'a>(
     header: &Header,
     mut dialect: Dialect,
     mut times: Clock,
     lines: impl Iterator<Item = (usize, &'a str)>,
-) -> Result<(Vec<Vec<f64>>, usize), Failure> {
+) -> Result<Rows, Failure> {
     let mut repeated = 0;
+    let mut kept = Vec::new();
     let mut other = Clock::default();
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); header.columns.len()];
     let time = header.columns.iter().position(|c| c.role == Role::Time);
@@ -228,19 +247,33 @@ fn read_rows<'a>(
             }
             continue;
         }
-        if let Some((column, time)) = time.map(|i| (&header.columns[i], &values[i]))
-            && let [.., before, now] = time.as_slice()
-            && now <= before
-        {
-            let here = Some(format!("{} ({})", column.index + 1, column.name));
-            let problem = Problem::TimeOrder {
-                before: format!("{before}"),
-                now: format!("{now}"),
-            };
-            return Err((line, here, problem));
-        }
+        kept.push(line);
     }
-    Ok((values, repeated))
+    Ok(Rows {
+        values,
+        lines: kept,
+        repeated,
+    })
+}
+
+/// Makes the times of a table increase, and says what was done for it.
+fn in_order(header: &Header, table: &mut Rows) -> Result<Vec<String>, Failure> {
+    let Some(time) = header.columns.iter().position(|c| c.role == Role::Time) else {
+        return Ok(Vec::new());
+    };
+    let mended = times::mend(&mut table.values[time], header.kind).map_err(|(row, problem)| {
+        let column = &header.columns[time];
+        let here = Some(format!("{} ({})", column.index + 1, column.name));
+        (table.lines[row], here, problem)
+    })?;
+    let others = table
+        .values
+        .iter_mut()
+        .enumerate()
+        .filter(|(i, _)| *i != time);
+    others.for_each(|(_, values)| times::leave_out(values, &mended.out));
+    times::leave_out(&mut table.lines, &mended.out);
+    Ok(mended.notes)
 }
 
 /// Whether the last row is the one before it once more.
@@ -276,19 +309,21 @@ fn is_date(text: &str) -> bool {
     digit(text.as_bytes().first()) && (between(b":") > 0 || between(b"-/") > 1)
 }
 
-/// The values of these rows, if they can be calculated with.
+/// Checks that values can be calculated with.
 fn check_sizes<'a>(
     header: &Header,
     separator: char,
     mut rows: impl Iterator<Item = (usize, &'a str)>,
-    values: Vec<Vec<f64>>,
-) -> Result<Vec<Vec<f64>>, Failure> {
-    let mut columns = header.columns.iter().zip(&values);
+    table: &Rows,
+) -> Result<(), Failure> {
+    let mut columns = header.columns.iter().zip(&table.values);
     let place =
         columns.find_map(|(column, values)| Some((column, wrong_size(column.role, values)?)));
-    let Some((column, (line, row))) = place.and_then(|(c, row)| Some((c, rows.nth(row)?))) else {
-        return Ok(values);
+    let Some((column, row)) = place else {
+        return Ok(());
     };
+    let line = table.lines[row];
+    let row = rows.find(|(at, _)| *at == line).map_or("", |(_, row)| row);
     let mut fields = Vec::with_capacity(header.width);
     split_row(row, separator, &mut fields);
     let text = shorten(fields.get(column.index).copied().unwrap_or_default());
@@ -330,15 +365,20 @@ pub(super) fn assemble(
             expected: MIN_SAMPLES,
         });
     }
-    let input = input.ok_or(Problem::NoColumn {
+    let mut input = input.ok_or(Problem::NoColumn {
         wanted: "u",
         hint: "add the input, such as u [N m]",
     })?;
     outputs.sort_by_key(|c| c.quantity != Quantity::Position);
+    let step = switched_on::from_rest(&mut time, &mut input, &mut outputs, &mut reference);
+    let thinned = average::thin(header.kind, &mut time, &mut input, &mut outputs);
     let warnings = rates::contradiction(&time, &outputs)
         .into_iter()
         .chain(header.ignored.iter().map(|n| ignored(n, header.kind)))
         .chain(header.notes.iter().cloned())
+        .chain(step)
+        .chain(thinned)
+        .chain(gaps::said(header.kind, &time))
         .collect();
     Ok(Measurement {
         name: name.to_owned(),

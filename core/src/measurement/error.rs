@@ -167,6 +167,14 @@ pub enum Problem {
         "time does not increase ({now} s after {before} s); rows must be in order of time, each time once"
     )]
     TimeOrder { before: String, now: String },
+    #[error(
+        "time does not increase: {time} s stands in two rows with different values; where the clock is too coarse for its rows, give the sampling period, which then counts instead"
+    )]
+    TimeTwice { time: String },
+    #[error(
+        "time begins anew here ({now} s after {before} s), as in another run; what a process did between two runs is not known: save each run in a file of its own"
+    )]
+    TimeBeginsAnew { before: String, now: String },
     #[error("only {} of numbers; at least {expected} are needed to tell noise from signal", counted(*found, "row"))]
     TooShort { found: usize, expected: usize },
 }

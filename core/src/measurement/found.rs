@@ -2,11 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::header::{Field, Role, addresses};
+use super::header::{Field, Role};
+use super::mapped::addresses;
 
 /// First values that are kept of a column, and stretches of which its course is kept, at most: an even number.
 const FIRST: usize = 3;
 const STRETCHES: usize = 64;
+
+/// Samples for which a value stays at least, on the average, in a column that goes in steps.
+const HELD: usize = 10;
+
+/// Samples of a run at least, on the average, and the share of the whole way within which another begins.
+const RUN: usize = 20;
+const NEAR_BEGIN: f64 = 0.1;
 
 /// A column of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,15 +47,38 @@ pub struct Numbers {
     pub course: Vec<Option<[f64; 2]>>,
     /// How often the length of a stretch was doubled.
     doubled: u32,
-    /// Whether one of them is not larger than the one before.
-    turns: bool,
+    /// How often one is not larger than the one before, and how often it is another.
+    falls: usize,
+    changes: usize,
+    /// The largest of those that are less than the one before.
+    landed: Option<f64>,
     last: Option<f64>,
 }
 
 impl Numbers {
     /// Whether each is larger than the one before, as times are.
     pub fn increase(&self) -> bool {
-        !self.turns
+        self.falls == 0
+    }
+
+    /// Whether they increase but for a few times at which they are back where they began, as the times of runs that follow
+    /// one another are, or stand still.
+    pub fn increase_in_runs(&self) -> bool {
+        let Some([least, largest]) = self.range.filter(|_| self.falls > 0) else {
+            return false;
+        };
+        let back = |landed: f64| landed - least <= NEAR_BEGIN * (largest - least);
+        self.falls * RUN <= self.count && self.landed.is_none_or(back) && self.changes > 0
+    }
+
+    /// Whether they differ.
+    pub fn vary(&self) -> bool {
+        self.range.is_some_and(|[least, largest]| least < largest)
+    }
+
+    /// Whether they differ, and each stays for some samples as a rule, as an input does that goes in steps.
+    pub fn step(&self) -> bool {
+        self.vary() && self.changes * HELD <= self.count
     }
 
     pub(super) fn take(&mut self, value: f64) {
@@ -60,7 +91,13 @@ impl Numbers {
             let [least, largest] = self.range.unwrap_or([value; 2]);
             self.range = Some([least.min(value), largest.max(value)]);
         }
-        self.turns |= !self.last.is_none_or(|last| value > last);
+        if let Some(last) = self.last {
+            self.falls += usize::from(value.is_nan() || value <= last);
+            self.changes += usize::from(value != last);
+            if value < last {
+                self.landed = Some(self.landed.map_or(value, |landed| landed.max(value)));
+            }
+        }
         self.last = Some(value);
     }
 
@@ -115,6 +152,26 @@ mod tests {
         let mut numbers = Numbers::default();
         values.into_iter().for_each(|v| numbers.take(v));
         numbers.course
+    }
+
+    #[test]
+    fn steps_and_times_that_begin_anew_are_seen() {
+        let seen = |value: fn(usize) -> f64| {
+            let mut numbers = Numbers::default();
+            (0..400).for_each(|k| numbers.take(value(k)));
+            [
+                numbers.increase(),
+                numbers.increase_in_runs(),
+                numbers.step(),
+            ]
+        };
+        assert_eq!(seen(|k| 0.1 * k as f64), [true, false, false]);
+        assert_eq!(seen(|k| (k % 50) as f64), [false, true, false]);
+        assert_eq!(seen(|k| k.saturating_sub(2) as f64), [false, true, false]);
+        assert_eq!(seen(|k| (k / 50) as f64), [false, false, true]);
+        assert_eq!(seen(|k| (k / 50 % 2) as f64), [false, false, true]);
+        assert_eq!(seen(|k| libm::sin(k as f64)), [false, false, false]);
+        assert_eq!(seen(|_| 3.0), [false, false, false]);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! The header: which column is what, in which unit.
 
-pub(super) use super::column::{Role, role, shorten};
+pub(super) use super::column::{Role, begin_of, role, shorten};
 use super::error::Problem;
-use super::mapping::{ImportOptions, Mapping};
+use super::mapping::ImportOptions;
 use super::period::Period;
 use super::unit::{self, ACCEPTED, Measures};
 use super::{Kind, Quantity};
@@ -136,157 +136,124 @@ pub(super) fn name_and_unit(field: &str, numbered: bool) -> (String, Option<Stri
     }
 }
 
-/// What a mapping calls a column that has no name of its own, before its place from 1.
-const PLACE: &str = "column ";
-
-/// How a mapping calls each column: by its name where no other has it and a mapping can say it, else by its place.
-pub(super) fn addresses(fields: &[Field]) -> Vec<String> {
-    let address = |(i, field): (usize, &Field)| {
-        let name = &field.name;
-        let alone = fields.iter().filter(|f| f.name == *name).count() == 1;
-        if alone && Mapping::can_say(name) {
-            name.clone()
-        } else {
-            format!("{PLACE}{}", i + 1)
-        }
-    };
-    fields.iter().enumerate().map(address).collect()
-}
-
-/// The column of this name or at this place.
-fn addressed(fields: &[Field], source: &str) -> Option<usize> {
-    let called = |name: fn(&Field) -> &String| fields.iter().position(|f| name(f) == source);
-    let named = called(|f| &f.name).or_else(|| called(|f| &f.also));
-    let place = || {
-        source
-            .strip_prefix(PLACE)?
-            .parse::<usize>()
-            .ok()?
-            .checked_sub(1)
-    };
-    named.or_else(place).filter(|i| *i < fields.len())
-}
-
-/// Gives the columns that a mapping names their meaning; what it takes, no other column can be.
-pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<(), Problem> {
-    for field in fields.iter_mut() {
-        if mapping.entries.iter().any(|e| field.role == Some(e.role)) {
-            field.role = None;
-        }
-    }
-    for entry in &mapping.entries {
-        let Some(source) = &entry.source else {
-            continue;
-        };
-        let Some(i) = addressed(fields, source) else {
-            return Err(Problem::NoSuchColumn {
-                wanted: shorten(source),
-                found: listed(addresses(fields).iter().map(String::as_str)),
-            });
-        };
-        if let Some(field) = fields.get_mut(i) {
-            if field.name.is_empty() {
-                field.name.clone_from(source);
-            }
-            field.role = Some(entry.role);
-            field.sign = if entry.negative { -1.0 } else { 1.0 };
-            if entry.unit.is_some() {
-                field.unit.clone_from(&entry.unit);
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Understands the fields of a header.
 pub(super) fn understand(fields: Vec<Field>, options: &ImportOptions) -> Result<Header, Located> {
     let width = fields.len();
     let roles: Vec<Option<Role>> = fields.iter().map(|f| f.role).collect();
     if roles.iter().all(Option::is_none) {
         let names: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
-        let found = shorten(&names.join(","));
+        let found = begin_of(&names.join(","));
         return Err((None, Problem::NoHeader { found }));
     }
-    let has = |q: Quantity| roles.contains(&Some(Role::Measured(q)));
-    let kind = options.kind.unwrap_or(
-        if has(Quantity::Output) && !has(Quantity::Position) && !has(Quantity::Velocity) {
-            Kind::Process
-        } else {
-            Kind::Drive
-        },
-    );
+    let kind = options.kind.unwrap_or_else(|| kind_of(&roles));
     present(&roles, kind, options.period.is_some())?;
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
-    let mut plain = Vec::new();
-    let mut clock = None;
+    let mut assumed = Assumed::default();
     for (index, field) in fields.into_iter().enumerate() {
-        let Field {
-            name,
-            unit,
-            role,
-            sign,
-            ..
-        } = field;
-        let here = || Some((index + 1, name.clone()));
         // A period that is given counts, whatever times there are.
         let counts = |r: &Role| belongs(*r, kind) && (*r != Role::Time || options.period.is_none());
-        let Some(role) = role.filter(counts) else {
+        let Some(role) = field.role.filter(counts) else {
             if options.mapping.is_empty() {
-                ignored.push(shorten(&name));
+                ignored.push(shorten(&field.name));
             }
             continue;
         };
+        let name = field.name.clone();
+        let here = Some((index + 1, name.clone()));
         if columns.iter().any(|c| c.role == role) {
-            return Err((here(), Problem::Twice { name }));
+            return Err((here, Problem::Twice { name }));
         }
-        let unit = match unit {
-            Some(unit) => unit,
-            None if kind == Kind::Process && role != Role::Time => {
-                plain.push(shorten(&name));
-                "1".to_owned()
-            }
-            None if kind == Kind::Process && is_time(&name) => {
-                clock = Some(shorten(&name));
-                "s".to_owned()
-            }
-            None => {
-                let example = example(role);
-                return Err((here(), Problem::NoUnit { name, example }));
-            }
-        };
-        let (measures, factor, unit) = convert(role, kind, &name, &unit)
-            .map_err(|p| (here(), or_process(p, role, options)))?;
-        columns.push(Column {
-            index,
-            role,
-            name,
-            factor: factor * sign,
-            measures,
-            unit,
-        });
+        let column = column(index, field, role, kind, &mut assumed);
+        columns.push(column.map_err(|p| (here, or_process(p, role, options)))?);
     }
     let mut header = Header {
         kind,
         columns,
         ignored,
-        notes: Vec::new(),
+        notes: assumed.notes(),
         width,
         period: options.period,
-        assumes_seconds: clock.is_some(),
+        assumes_seconds: assumed.clock.is_some(),
     };
-    if let Some(clock) = clock {
-        let note = format!("No unit is given for {clock}: taken as seconds.");
-        header.notes.push(note);
-    }
-    if !plain.is_empty() {
-        let plain = plain.join(", ");
-        let note = format!("No unit is given for {plain}: taken as plain numbers.");
-        header.notes.push(note);
-    }
     make_torque(&mut header, options)?;
     agree(&header)?;
     Ok(header)
+}
+
+/// What is measured where nobody says it: a drive, unless there is the output of a process and no motion.
+fn kind_of(roles: &[Option<Role>]) -> Kind {
+    let has = |q: Quantity| roles.contains(&Some(Role::Measured(q)));
+    if has(Quantity::Output) && !has(Quantity::Position) && !has(Quantity::Velocity) {
+        Kind::Process
+    } else {
+        Kind::Drive
+    }
+}
+
+/// A field that is read in this role, in its own unit or in one that is assumed.
+fn column(
+    index: usize,
+    field: Field,
+    role: Role,
+    kind: Kind,
+    assumed: &mut Assumed,
+) -> Result<Column, Problem> {
+    let Field {
+        name, unit, sign, ..
+    } = field;
+    let Some(unit) = unit.or_else(|| assumed.unit(&name, role, kind)) else {
+        let example = example(role);
+        return Err(Problem::NoUnit { name, example });
+    };
+    let (measures, factor, unit) = convert(role, kind, &name, &unit)?;
+    Ok(Column {
+        index,
+        role,
+        name,
+        factor: factor * sign,
+        measures,
+        unit,
+    })
+}
+
+/// The columns of a process whose unit is not given, by their names.
+#[derive(Default)]
+struct Assumed {
+    /// The time, taken as seconds.
+    clock: Option<String>,
+    /// What is taken as plain numbers.
+    plain: Vec<String>,
+}
+
+impl Assumed {
+    /// The unit that a column without one is taken to have, if any may be.
+    fn unit(&mut self, name: &str, role: Role, kind: Kind) -> Option<String> {
+        if kind != Kind::Process {
+            return None;
+        }
+        let unit = if role != Role::Time {
+            self.plain.push(shorten(name));
+            "1"
+        } else if is_time(name) {
+            self.clock = Some(shorten(name));
+            "s"
+        } else {
+            return None;
+        };
+        Some(unit.to_owned())
+    }
+
+    /// What was assumed, for the user.
+    fn notes(&self) -> Vec<String> {
+        let clock = self.clock.as_ref();
+        let clock = clock.map(|clock| format!("No unit is given for {clock}: taken as seconds."));
+        let plain = (!self.plain.is_empty()).then(|| {
+            let plain = self.plain.join(", ");
+            format!("No unit is given for {plain}: taken as plain numbers.")
+        });
+        clock.into_iter().chain(plain).collect()
+    }
 }
 
 /// Whether a column of this name can be nothing but the time.

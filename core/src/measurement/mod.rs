@@ -5,6 +5,7 @@
 //! refuses anything else, so that no later module has to check again.
 
 mod advice;
+mod average;
 mod cell;
 mod clock;
 mod column;
@@ -12,6 +13,7 @@ mod csv;
 mod error;
 mod fill;
 mod found;
+mod gaps;
 mod guess;
 #[cfg(not(target_arch = "wasm32"))]
 mod hdf5;
@@ -19,6 +21,7 @@ mod header;
 mod json;
 mod kind;
 mod log;
+mod mapped;
 mod mapping;
 mod mat;
 mod period;
@@ -28,13 +31,16 @@ mod resembling;
 mod series;
 mod size;
 mod split;
+mod switched_on;
 mod table;
 mod text;
+mod times;
 mod unit;
 
 pub use column::Role;
 pub use error::{ImportError, Problem};
 pub use found::FoundColumn;
+pub use gaps::gaps;
 pub use guess::{Guess, guess};
 pub use kind::{Kind, Motion, Quantity};
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};

@@ -78,6 +78,9 @@ impl Measurement {
         match (self.kind, self.input.unit.as_str()) {
             (Kind::Process, _) => Motion::None,
             (Kind::Drive, "N") => Motion::Translational,
+            (Kind::Drive, _) if self.outputs.iter().any(|o| o.unit.starts_with('m')) => {
+                Motion::Translational
+            }
             (Kind::Drive, _) => Motion::Rotational,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::found::FoundColumn;
 use super::header::Role;
-use super::unit::parse;
+use super::unit::{is_bare_counts, parse};
 use super::{Kind, Quantity};
 
 /// What resembles a role: parts of names, and whole words that are too short to be looked for in others.
@@ -78,6 +78,8 @@ pub(super) const RESEMBLING: [Resembling; 5] = [
             "kuehler",
             "ansteuer",
             "tastgrad",
+            "entrada",
+            "ssr",
         ],
         words: &[
             "u", "i", "iq", "m", "f", "tau", "q1", "q2", "u1", "uin", "ctrl", "cmd", "mv", "co",
@@ -88,7 +90,7 @@ pub(super) const RESEMBLING: [Resembling; 5] = [
         parts: &[
             "output", "ausgang", "temp", "press", "druck", "level", "stand", "flow", "fluss",
             "istwert", "pegel", "niveau", "regelgr", "humid", "feuchte", "concentr", "konzentr",
-            "response", "antwort",
+            "response", "antwort", "salida",
         ],
         words: &["y", "t1", "t2", "y1", "yout", "pv", "out"],
     },
@@ -97,11 +99,23 @@ pub(super) const RESEMBLING: [Resembling; 5] = [
 /// Parts of names of what no drive has, whatever its unit.
 const OF_PROCESS: [&str; 7] = ["temp", "press", "druck", "level", "pegel", "flow", "fluss"];
 
+/// A part of the name of what comes out and is never put in, whatever else is in it, as in `current_temp`.
+const TEMPERATURE: &str = "temp";
+
+/// Parts of names of what acts, of which an output is the input of what is measured, as in `heater_output`.
+const ACTORS: [&str; 12] = [
+    "heat", "heiz", "valve", "ventil", "pump", "control", "burner", "brenner", "cooler", "ssr",
+    "pwm", "duty",
+];
+
 /// Units of what no drive has.
 const UNITS_OF_PROCESS: [&str; 18] = [
     "°c", "degc", "deg c", "celsius", "°f", "degf", "deg f", "k", "kelvin", "bar", "mbar", "pa",
     "kpa", "hpa", "psi", "l/min", "l/s", "m3/h",
 ];
+
+/// How many of them are units of temperature.
+const OF_TEMPERATURE: usize = 9;
 
 /// Parts of names of what was wanted, and not measured.
 pub(super) const WANTED: [&str; 10] = [
@@ -182,6 +196,15 @@ impl Resembling {
         let has = |parts: &[&str]| parts.iter().any(|p| name.contains(p));
         let named = self.resembles(&column.name);
         let measured = output || self.moves();
+        let input = self.role == Role::Measured(Quantity::Input);
+        let warm = has(&[TEMPERATURE]) || column.unit.as_deref().is_some_and(is_of_temperature);
+        let acts = has(&ACTORS) && !has(&OF_PROCESS);
+        // What the file has in a unit of something else does not move.
+        let strange = |unit: &str| parse(unit).is_none() && !is_bare_counts(unit);
+        let moves_not = self.moves() && column.unit.as_deref().is_some_and(strange);
+        if (input && warm) || (output && acts) || moves_not {
+            return 0;
+        }
         let other_time = self.role != Role::Time
             && column.numbers.increase()
             && RESEMBLING[0].resembles(&column.name);
@@ -227,6 +250,11 @@ impl Resembling {
 /// Whether it is a unit of what no drive has.
 pub(super) fn is_of_process(unit: &str) -> bool {
     UNITS_OF_PROCESS.contains(&unit.trim().to_lowercase().as_str())
+}
+
+/// Whether it is a unit of temperature.
+fn is_of_temperature(unit: &str) -> bool {
+    UNITS_OF_PROCESS[..OF_TEMPERATURE].contains(&unit.trim().to_lowercase().as_str())
 }
 
 /// Whether a name resembles those of this role.

@@ -9,11 +9,13 @@ use super::csv::assemble;
 use super::error::{ImportError, Problem};
 use super::fill::fill;
 use super::found::{FoundColumn, Numbers, addressed};
-use super::header::{Field, Header, Role, listed, map, shorten, understand};
+use super::header::{Field, Header, Role, listed, shorten, understand};
+use super::mapped::map;
 use super::mapping::ImportOptions;
 use super::period::Period;
 use super::resembling::is_period;
 use super::size::wrong_size;
+use super::times;
 
 /// One series of numbers with the name by which it is addressed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -162,8 +164,7 @@ impl Table {
             let found = listed(self.series.iter().map(|s| s.name.as_str()));
             return Err(whole(Problem::NotMapped { found }));
         }
-        map(&mut fields, &options.mapping).map_err(whole)?;
-        let mut notes = Vec::new();
+        let mut notes = map(&mut fields, &options.mapping).map_err(whole)?;
         let mut options = options.clone();
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
             notes.push(format!(
@@ -180,7 +181,8 @@ impl Table {
         let mut header =
             understand(fields, &options).map_err(|(column, p)| (column.map(|(_, n)| n), p))?;
         header.notes.splice(..0, notes);
-        let values = columns(&header, series)?;
+        let (values, mended) = columns(&header, series)?;
+        header.notes.extend(mended);
         header.doubt_seconds(&values)?;
         assemble(name, &header, values).map_err(whole)
     }
@@ -236,9 +238,13 @@ fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<String
     ))
 }
 
-/// The columns of a header in SI units, checked as the rows of a text are.
-fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Located> {
+/// The columns of a header in SI units, checked as the rows of a text are, and what was done to the times.
+fn columns(
+    header: &Header,
+    mut series: Vec<Series>,
+) -> Result<(Vec<Vec<f64>>, Vec<String>), Located> {
     let mut all: Vec<Vec<f64>> = Vec::new();
+    let mut in_order = None;
     for column in &header.columns {
         let mut values = series
             .get_mut(column.index)
@@ -263,12 +269,11 @@ fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Lo
                 return Err((here(i), Problem::NotFinite { text }));
             }
         }
-        let pairs = || values.iter().zip(values.iter().skip(1));
-        if column.role == Role::Time
-            && let Some((i, (before, now))) = pairs().enumerate().find(|(_, (a, b))| b <= a)
-        {
-            let (before, now) = (format!("{before}"), format!("{now}"));
-            return Err((here(i + 1), Problem::TimeOrder { before, now }));
+        if column.role == Role::Time {
+            let mut times = values.clone();
+            let mended = times::mend(&mut times, header.kind);
+            let mended = mended.map_err(|(i, problem)| (here(i), problem))?;
+            in_order = Some((all.len(), times, mended));
         }
         if let Some(i) = wrong_size(column.role, &values) {
             let text = format!("{:e}", values[i] / column.factor);
@@ -276,5 +281,12 @@ fn columns(header: &Header, mut series: Vec<Series>) -> Result<Vec<Vec<f64>>, Lo
         }
         all.push(values);
     }
-    Ok(all)
+    let Some((time, times, mended)) = in_order else {
+        return Ok((all, Vec::new()));
+    };
+    for values in &mut all {
+        times::leave_out(values, &mended.out);
+    }
+    all[time] = times;
+    Ok((all, mended.notes))
 }

@@ -62,7 +62,7 @@ pub(super) fn open(
     let text = decoded(bytes)?;
     let lines = text
         .split(char::from(end))
-        .map(|line| line.strip_suffix('\r').unwrap_or(line))
+        .map(|line| unwrapped(line.strip_suffix('\r').unwrap_or(line)))
         .enumerate()
         .map(|(i, line)| (i + 1, line))
         .filter(|(_, line)| !line.trim().is_empty());
@@ -120,6 +120,16 @@ pub(super) fn open(
         dialect,
         rows: if numeric { whole } else { rows },
     })
+}
+
+/// A line without the quotes around all of its columns, which some programs write.
+fn unwrapped(line: &str) -> &str {
+    let inside = line
+        .trim()
+        .strip_prefix('"')
+        .and_then(|l| l.strip_suffix('"'));
+    let whole = inside.filter(|l| !l.contains('"') && l.contains([',', ';', '\t']));
+    whole.unwrap_or(line)
 }
 
 /// What stands below each name, where a row has nothing but units in it, or nothing for a column without one; or where

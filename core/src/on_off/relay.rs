@@ -36,7 +36,7 @@ impl Position {
 pub struct OnOffRelay {
     /// Outputs, hysteresis and delay: up is `k (1 + a) + bias`, down `-k (1 - a) + bias`, off `bias`.
     pub relay: Relay,
-    /// What the output shall be, in its unit.
+    /// What the output should be, in its unit.
     pub reference: f64,
     /// Half the width of the zone in which it is off, in the unit of the output; at least 0, which has no such zone.
     pub dead_zone: f64,

@@ -2,8 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::html::{Cell, escape, figure, legend, table};
-use super::input::shell_word;
+use super::escape::escape;
+use super::html::{Cell, figure, legend, table};
+use super::input::{Tongue, shell_word};
+use super::math::sentence;
 use super::model::experiments;
 use super::svg::{Axis, Chart, Mark, range};
 use crate::diagnosis::{Discovery, FoundFormula};
@@ -14,8 +16,14 @@ const WIDE: f64 = 920.0;
 const TALL: f64 = 230.0;
 
 /// What was found, and what it was chosen from.
-pub(super) fn section(discovery: &Discovery) -> String {
-    let mut out = format!("<p>{}</p>\n", escape(&discovery.text));
+pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
+    let known: Vec<&str> = discovery
+        .formulas
+        .iter()
+        .map(|f| f.formula.as_str())
+        .collect();
+    let said = sentence(&(tongue.say)(&discovery.text), &known);
+    let mut out = format!("<p>{said}</p>\n");
     if discovery.formulas.is_empty() {
         return out;
     }
@@ -28,6 +36,7 @@ pub(super) fn section(discovery: &Discovery) -> String {
     };
     legend(
         &mut out,
+        tongue,
         &[
             ("model", "least error for its length"),
             ("measured", class),
@@ -37,7 +46,8 @@ pub(super) fn section(discovery: &Discovery) -> String {
     );
     figure(
         &mut out,
-        &picture(discovery, &fronts),
+        tongue,
+        &picture(tongue, discovery, &fronts),
         "Every formula that was simulated: its length in names, numbers and signs, and what it leaves of blocks that its fit \
          did not see, in units of the noise.",
     );
@@ -49,21 +59,24 @@ pub(super) fn section(discovery: &Discovery) -> String {
         .collect();
     table(
         &mut out,
+        tongue,
         &["Formula", "Length", "Error (× noise)", "Parameters", ""],
         &rows,
     );
     if let Some(experiment) = &discovery.experiment {
         let _ = writeln!(
             out,
-            "<p class=\"next\"><strong>What would tell them apart:</strong> {}</p>",
-            escape(&experiment.text)
+            "<p class=\"next\"><strong>{}</strong> {}</p>",
+            tongue.page("What would tell them apart:"),
+            tongue.page(&experiment.text)
         );
-        out.push_str(&experiments(experiment));
+        out.push_str(&experiments(tongue, experiment));
     }
     if let Some(found) = discovery.found() {
         let _ = writeln!(
             out,
-            "<p class=\"small\">The same formula again:</p>\n<pre><code>--effect {}</code></pre>",
+            "<p class=\"small\">{}</p>\n<pre><code>--effect {}</code></pre>",
+            tongue.page("The same formula again:"),
             escape(&shell_word(&found.typed))
         );
     }
@@ -83,7 +96,7 @@ fn row(formula: &FoundFormula, class: &str) -> Vec<Cell> {
     let parameters: Vec<String> = parameters.collect();
     let class = if formula.in_class { class } else { "" };
     vec![
-        Cell::Code(formula.formula.clone()),
+        Cell::Math(formula.formula.clone()),
         Cell::Number(formula.length.to_string()),
         Cell::Number(brief(formula.error)),
         Cell::Text(parameters.join("; ")),
@@ -92,7 +105,7 @@ fn row(formula: &FoundFormula, class: &str) -> Vec<Cell> {
 }
 
 /// Error against length, and the front.
-fn picture(discovery: &Discovery, front: &[&FoundFormula]) -> String {
+fn picture(tongue: Tongue, discovery: &Discovery, front: &[&FoundFormula]) -> String {
     let at = |f: &FoundFormula| [f.length as f64, f.error];
     let mut line = vec![[0.0, discovery.before]];
     line.extend(front.iter().map(|f| at(f)));
@@ -106,6 +119,7 @@ fn picture(discovery: &Discovery, front: &[&FoundFormula]) -> String {
             .chain(all.iter().chain(&line).map(|p| p[1])),
     );
     let mut chart = Chart::new(
+        tongue,
         WIDE,
         TALL,
         Axis::new("length of the formula", "1", (0.0, lengths.1 + 1.0)),

@@ -2,47 +2,41 @@
 
 use std::fmt::Write as _;
 
-/// Text from anywhere as text of a page: no tag, no attribute, no invisible character comes through.
-pub(super) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\n' | '\t' => out.push(' '),
-            // Marks that turn the direction of the text round can make it read as something else.
-            '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {}
-            c if c.is_control() => {}
-            c => out.push(c),
-        }
+use super::escape::escape;
+use super::input::Tongue;
+use super::math::math;
+
+impl Tongue {
+    /// A text in this language, as text of a page.
+    pub(super) fn page(self, text: &str) -> String {
+        escape(&(self.say)(text))
     }
-    out
 }
 
-/// A cell of a table: escaped text, to the right if it is a number.
+/// A cell of a table: escaped text in the report's language, to the right if it is a number; formulas are typeset.
 pub(super) enum Cell {
     Text(String),
     Number(String),
-    Code(String),
+    /// A symbol or a formula, typeset.
+    Math(String),
 }
 
-/// A table; every text is escaped here.
-pub(super) fn table(out: &mut String, head: &[&str], rows: &[Vec<Cell>]) {
+/// A table; every text is put into the report's language and escaped here.
+pub(super) fn table(out: &mut String, tongue: Tongue, head: &[&str], rows: &[Vec<Cell>]) {
     out.push_str("<div class=\"wide\"><table><thead><tr>");
     for title in head {
-        let _ = write!(out, "<th>{}</th>", escape(title));
+        let _ = write!(out, "<th>{}</th>", tongue.page(title));
     }
     out.push_str("</tr></thead><tbody>\n");
     for row in rows {
         out.push_str("<tr>");
         for cell in row {
             let _ = match cell {
-                Cell::Text(text) => write!(out, "<td>{}</td>", escape(text)),
-                Cell::Number(text) => write!(out, "<td class=\"n\">{}</td>", escape(text)),
-                Cell::Code(text) => write!(out, "<td><code>{}</code></td>", escape(text)),
+                Cell::Text(text) => write!(out, "<td>{}</td>", tongue.page(text)),
+                Cell::Number(text) => {
+                    write!(out, "<td class=\"n\">{}</td>", tongue.page(text))
+                }
+                Cell::Math(text) => write!(out, "<td>{}</td>", math(text)),
             };
         }
         out.push_str("</tr>\n");
@@ -51,31 +45,31 @@ pub(super) fn table(out: &mut String, head: &[&str], rows: &[Vec<Cell>]) {
 }
 
 /// A section with its heading.
-pub(super) fn section(out: &mut String, title: &str, body: &str) {
+pub(super) fn section(out: &mut String, tongue: Tongue, title: &str, body: &str) {
     let _ = write!(
         out,
         "<section>\n<h2>{}</h2>\n{body}</section>\n",
-        escape(title)
+        tongue.page(title)
     );
 }
 
-/// A picture with a caption (which is escaped here).
-pub(super) fn figure(out: &mut String, svg: &str, caption: &str) {
+/// A picture with a caption, which is put into the report's language and escaped here.
+pub(super) fn figure(out: &mut String, tongue: Tongue, svg: &str, caption: &str) {
     let _ = writeln!(
         out,
         "<figure>{svg}<figcaption>{}</figcaption></figure>",
-        escape(caption)
+        tongue.page(caption)
     );
 }
 
 /// Names of curves with their colours.
-pub(super) fn legend(out: &mut String, entries: &[(&str, &str)]) {
+pub(super) fn legend(out: &mut String, tongue: Tongue, entries: &[(&str, &str)]) {
     out.push_str("<p class=\"legend\">");
     for (class, name) in entries {
         let _ = write!(
             out,
             "<span><svg viewBox=\"0 0 24 10\" width=\"24\" height=\"10\" aria-hidden=\"true\"><path class=\"{class}\" d=\"M1 5H23\"/></svg> {}</span> ",
-            escape(name)
+            tongue.page(name)
         );
     }
     out.push_str("</p>\n");
@@ -107,6 +101,8 @@ figure { margin: .75rem 0; } figure > svg { width: 100%; height: auto; display: 
 th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 code { font: .88em/1.5 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; overflow-wrap: anywhere; }
+.equations { background: var(--panel); border: 1px solid var(--line); padding: .25rem .75rem; overflow-x: auto; }
+math { font-size: 1.1em; }
 pre { background: var(--panel); border: 1px solid var(--line); padding: .75rem; overflow-x: auto; white-space: pre-wrap; }
 svg text { fill: var(--text); font: 12px system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", sans-serif; } svg text.faint { fill: var(--faint); }
 svg .grid { stroke: var(--line); stroke-width: .6; } svg .frame { stroke: var(--faint); stroke-width: 1; fill: none; }
@@ -116,16 +112,3 @@ svg .before { stroke: var(--model); stroke-width: 1.6; stroke-dasharray: 2 3; } 
 svg .estimate { stroke: var(--residual); stroke-width: 2; } svg path.diamond { fill: var(--measured); } svg .band { fill: var(--residual); opacity: .25; stroke: none; }
 svg rect.bar { fill: var(--model); } svg rect.floor { fill: var(--noise); } svg rect.shade { fill: var(--band); opacity: .18; }
 "#;
-
-#[cfg(test)]
-mod tests {
-    use super::escape;
-
-    #[test]
-    fn nothing_from_a_file_becomes_markup() {
-        assert_eq!(
-            escape("<script src='//x'>\u{7}&\"\u{202e}x\n</script>"),
-            "&lt;script src=&#39;//x&#39;&gt;&amp;&quot;x &lt;/script&gt;"
-        );
-    }
-}

@@ -17,6 +17,23 @@ pub struct Provenance {
     pub sha256: String,
 }
 
+/// The language of a report: it is made in English, and each sentence, name and number is put into words by `say`.
+#[derive(Clone, Copy, Debug)]
+pub struct Tongue {
+    /// Its code (ISO 639-1).
+    pub code: &'static str,
+    /// A text in it, by what it is in English.
+    pub say: fn(&str) -> String,
+}
+
+impl Tongue {
+    /// What stands in the source.
+    pub const ENGLISH: Self = Self {
+        code: "en",
+        say: str::to_owned,
+    };
+}
+
 /// What a report is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportInput<'a> {
@@ -36,6 +53,8 @@ pub struct ReportInput<'a> {
     pub model: Option<&'a UserModel>,
     /// Where it comes from.
     pub provenance: &'a Provenance,
+    /// The language that it speaks.
+    pub tongue: Tongue,
 }
 
 /// A word of a command line, quoted if a shell would take it apart.

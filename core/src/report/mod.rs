@@ -3,9 +3,11 @@
 //! The page is made from finished data alone, so that the command line, the app and a batch write the
 //! same one. Everything that comes from a file is escaped.
 
+mod escape;
 mod formulas;
 mod html;
 mod input;
+mod math;
 mod model;
 mod pictures;
 mod sha256;
@@ -17,52 +19,59 @@ use crate::diagnosis::ChannelNoise;
 use crate::measurement::Kind;
 use crate::uncertain::brief;
 use crate::user_model::UserModel;
-use html::{escape, figure, legend, section};
-pub use input::{Provenance, ReportInput, shell_word};
+use escape::escape;
+use html::{figure, legend, section};
+pub use input::{Provenance, ReportInput, Tongue, shell_word};
 pub use model::baseline;
 pub use sha256::sha256;
 
 /// The report as an HTML page.
 pub fn html(input: &ReportInput) -> String {
     let name = escape(&input.measurement.name);
+    let tongue = input.tongue;
     let mut out = format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+        "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"generator\" content=\"Hysteron {}\">\n<title>{name} - Hysteron</title>\n\
          <style>{}</style>\n</head>\n<body>\n<main>\n",
+        escape(tongue.code),
         escape(&input.provenance.version),
         html::STYLE
     );
     answer(&mut out, input);
     section(
         &mut out,
+        tongue,
         "How the error fell",
-        &pictures::waterfall(input.steps, input.last.noise_floor),
+        &pictures::waterfall(tongue, input.steps, input.last.noise_floor),
     );
-    section(&mut out, "Measured and modelled", &curves(input));
-    section(&mut out, "Where the models fail", &places(input));
+    section(&mut out, tongue, "Measured and modelled", &curves(input));
+    section(&mut out, tongue, "Where the models fail", &places(input));
     if !input.last.missing.is_empty() {
-        section(&mut out, "What is missing", &missing(input));
+        section(&mut out, tongue, "What is missing", &missing(input));
     }
     if let Some(discovery) = input.discovery {
         section(
             &mut out,
+            tongue,
             "The formula of the unknown",
-            &formulas::section(discovery),
+            &formulas::section(tongue, discovery),
         );
     }
-    section(&mut out, "The model", &model::equations(input));
+    section(&mut out, tongue, "The model", &model::equations(input));
     section(
         &mut out,
+        tongue,
         "Parameters",
-        &model::parameters(&input.last.step.parameters),
+        &model::parameters(tongue, &input.last.step.parameters),
     );
     section(
         &mut out,
+        tongue,
         "What else was tried",
-        &model::candidates(input.steps),
+        &model::candidates(tongue, input.steps),
     );
-    section(&mut out, "How to reproduce this", &reproduce(input));
+    section(&mut out, tongue, "How to reproduce this", &reproduce(input));
     out.push_str("</main>\n</body>\n</html>\n");
     out
 }
@@ -82,18 +91,23 @@ fn answer(out: &mut String, input: &ReportInput) {
         (Some(first), Some(last)) => last - first,
         _ => 0.0,
     };
-    let _ = write!(
-        out,
-        "<header>\n<h1>What is missing from the model of {}?</h1>\n<p class=\"answer\">{}</p>\n\
-         <p>{}</p>\n<p class=\"facts\">{} samples of a {kind} over {} s. Error of the model on the part of the record \
-         that it was not fitted to: {} × the measurement noise; a perfect model would leave {}.</p>\n",
-        escape(&measurement.name),
-        escape(&answer),
-        escape(verdict),
+    let tongue = input.tongue;
+    let title = format!("What is missing from the model of {}?", measurement.name);
+    let facts = format!(
+        "{} samples of a {kind} over {} s. Error of the model on the part of the record that it was not fitted to: {} × \
+         the measurement noise; a perfect model would leave {}.",
         measurement.len(),
         brief(duration),
         brief(step.error),
         brief(input.last.noise_floor),
+    );
+    let _ = write!(
+        out,
+        "<header>\n<h1>{}</h1>\n<p class=\"answer\">{}</p>\n<p>{}</p>\n<p class=\"facts\">{}</p>\n",
+        tongue.page(&title),
+        tongue.page(&answer),
+        tongue.page(verdict),
+        tongue.page(&facts),
     );
     let missed = (input.last.step.left > 0.0).then(|| {
         format!(
@@ -103,20 +117,21 @@ fn answer(out: &mut String, input: &ReportInput) {
     });
     let noise = input.last.noise.iter().map(ChannelNoise::words);
     for fact in missed.into_iter().chain(noise) {
-        let _ = writeln!(out, "<p class=\"facts\">{}</p>", escape(&fact));
+        let _ = writeln!(out, "<p class=\"facts\">{}</p>", tongue.page(&fact));
     }
     if let Some(next) = input.verdict.and_then(|v| v.next_experiment.as_ref()) {
         let _ = writeln!(
             out,
-            "<p class=\"next\"><strong>Next experiment:</strong> {}</p>",
-            escape(next)
+            "<p class=\"next\"><strong>{}:</strong> {}</p>",
+            tongue.page("Next experiment"),
+            tongue.page(next)
         );
     }
     for proposal in input.verdict.iter().flat_map(|v| &v.experiments) {
-        out.push_str(&model::experiments(proposal));
+        out.push_str(&model::experiments(tongue, proposal));
     }
     for note in &measurement.warnings {
-        let _ = writeln!(out, "<p class=\"small\">{}</p>", escape(note));
+        let _ = writeln!(out, "<p class=\"small\">{}</p>", tongue.page(note));
     }
     out.push_str("</header>\n");
 }
@@ -125,6 +140,7 @@ fn curves(input: &ReportInput) -> String {
     let mut out = String::new();
     legend(
         &mut out,
+        input.tongue,
         &[
             ("measured", "measured"),
             ("model", "model"),
@@ -138,36 +154,38 @@ fn curves(input: &ReportInput) -> String {
         };
         pictures::output(
             &mut out,
+            input.tongue,
             &input.measurement.time,
             output,
             channel,
             &input.last.step.findings,
         );
     }
-    out.push_str(
-        "<p class=\"small\">The model is driven by the measured input, and starts afresh from an estimated state \
-         in each short window.</p>\n",
-    );
+    let windows = "The model is driven by the measured input, and starts afresh from an estimated state in each short \
+                   window.";
+    let _ = writeln!(out, "<p class=\"small\">{}</p>", input.tongue.page(windows));
     out
 }
 
 /// Sentences and pictures: where the baseline failed and the last model does.
 fn places(input: &ReportInput) -> String {
     let mut out = String::new();
+    let tongue = input.tongue;
     let (first, last) = (input.steps.first(), &input.last.step);
     let more = input.steps.len() > 1;
     for (title, step) in [("The baseline", first), ("The last model", Some(last))] {
         let Some(step) = step.filter(|_| more || title == "The last model") else {
             continue;
         };
-        let _ = writeln!(out, "<h3>{title}</h3>");
+        let _ = writeln!(out, "<h3>{}</h3>", tongue.page(title));
         if step.findings.is_empty() {
-            out.push_str("<p>What it leaves is measurement noise everywhere.</p>\n");
+            let noise = tongue.page("What it leaves is measurement noise everywhere.");
+            let _ = writeln!(out, "<p>{noise}</p>");
             continue;
         }
         out.push_str("<ul>\n");
         for finding in &step.findings {
-            let _ = writeln!(out, "<li>{}</li>", escape(&finding.text));
+            let _ = writeln!(out, "<li>{}</li>", tongue.page(&finding.text));
         }
         out.push_str("</ul>\n");
     }
@@ -178,16 +196,22 @@ fn places(input: &ReportInput) -> String {
         .map(|f| f.axis.as_str())
         .collect();
     let first_atlas = if more { input.first_atlas } else { &[] };
-    let charts = pictures::profiles(input.measurement, &wanted, first_atlas, &input.last.atlas);
+    let charts = pictures::profiles(
+        tongue,
+        input.measurement,
+        &wanted,
+        first_atlas,
+        &input.last.atlas,
+    );
     if !charts.is_empty() {
         let mut entries = vec![("residual", "last model"), ("noise", "noise")];
         if more {
             entries.insert(0, ("before", "baseline"));
         }
-        legend(&mut out, &entries);
+        legend(&mut out, tongue, &entries);
         out.push_str("<div class=\"pair\">\n");
         for (svg, caption) in &charts {
-            figure(&mut out, svg, caption);
+            figure(&mut out, tongue, svg, caption);
         }
         out.push_str("</div>\n");
     }
@@ -196,12 +220,16 @@ fn places(input: &ReportInput) -> String {
 
 /// What no effect of the library explains.
 fn missing(input: &ReportInput) -> String {
-    let mut out = String::from(
-        "<p>No effect of the library explains what is left. These are forces, inputs or errors of sensors that would, \
-         estimated without a model: steps over one axis at a time, with a band of two standard errors.</p>\n<div class=\"pair\">\n",
+    let tongue = input.tongue;
+    let mut out = format!(
+        "<p>{}</p>\n<div class=\"pair\">\n",
+        tongue.page(
+            "No effect of the library explains what is left. These are forces, inputs or errors of sensors that would, \
+             estimated without a model: steps over one axis at a time, with a band of two standard errors."
+        )
     );
-    for (svg, caption) in pictures::missing(&input.last.missing) {
-        figure(&mut out, &svg, &caption);
+    for (svg, caption) in pictures::missing(tongue, &input.last.missing) {
+        figure(&mut out, tongue, &svg, &caption);
     }
     out.push_str("</div>\n");
     out
@@ -215,19 +243,22 @@ fn reproduce(input: &ReportInput) -> String {
         bytes,
         sha256,
     } = input.provenance;
+    let tongue = input.tongue;
+    let made = format!("Hysteron {version}. The same file gives the same answer, on any machine.");
+    let file = format!("File: {}, {bytes} bytes, SHA-256", input.measurement.name);
     let mut out = format!(
-        "<pre><code>{}</code></pre>\n<p>Hysteron {}. The same file gives the same answer, on any machine.</p>\n\
-         <p>File: {}, {bytes} bytes, SHA-256 <code>{}</code></p>\n",
+        "<pre><code>{}</code></pre>\n<p>{}</p>\n<p>{} <code>{}</code></p>\n",
         escape(command),
-        escape(version),
-        escape(&input.measurement.name),
+        tongue.page(&made),
+        tongue.page(&file),
         escape(sha256),
     );
     if let Some(model) = input.model {
         let lines: Vec<String> = model.to_toml().lines().map(escape).collect();
         let _ = writeln!(
             out,
-            "<p>The model that it began with:</p>\n<pre><code>{}</code></pre>",
+            "<p>{}</p>\n<pre><code>{}</code></pre>",
+            tongue.page("The model that it began with:"),
             lines.join("\n")
         );
     }

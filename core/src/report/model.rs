@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::html::{Cell, escape, table};
-use super::input::ReportInput;
+use super::html::{Cell, table};
+use super::input::{ReportInput, Tongue};
+use super::math::{display, math};
 use crate::diagnosis::{NextExperiment, Parameter, Step};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
@@ -20,38 +21,43 @@ pub fn baseline(kind: Kind) -> [&'static str; 2] {
 
 /// The baseline, and one block for each effect on top of it.
 pub(super) fn equations(input: &ReportInput) -> String {
-    let mut out = String::from("<pre><code>");
-    for line in baseline(input.measurement.kind) {
-        if !line.is_empty() {
-            let _ = writeln!(out, "{}", escape(line));
-        }
-    }
-    out.push_str("</code></pre>\n<p class=\"small\">u_acting is the input that reaches the body (u, unless an effect changes it); F the forces of the effects.</p>\n");
+    let mut out = display(baseline(input.measurement.kind));
+    let tongue = input.tongue;
+    let symbols = "the input that reaches the body (u, unless an effect changes it)";
+    let _ = writeln!(
+        out,
+        "<p class=\"small\">{}: {}; {}: {}</p>",
+        math("u_acting"),
+        tongue.page(symbols),
+        math("F"),
+        tongue.page("the forces of the effects")
+    );
     for id in added(&input.last.step) {
-        let _ = writeln!(out, "<h3>{}</h3>", escape(name_of(id)));
+        let _ = writeln!(out, "<h3>{}</h3>", tongue.page(name_of(id)));
         let Some(effect) = effect::find(id) else {
             if let Some(formula) = input.model.and_then(|m| m.formula(id)) {
                 let _ = writeln!(
                     out,
-                    "<p>An effect of your own.</p>\n<pre><code>F = {}</code></pre>",
-                    escape(formula)
+                    "<p>{}</p>\n{}",
+                    tongue.page("An effect of your own."),
+                    display([format!("F = {formula}").as_str()])
                 );
             }
             continue;
         };
         let _ = writeln!(
             out,
-            "<p>{}</p>\n<pre><code>{}</code></pre>\n<p class=\"small\">{}</p>",
-            escape(effect.sentence()),
-            escape(effect.equation()),
-            escape(effect.source())
+            "<p>{}</p>\n{}<p class=\"small\">{}</p>",
+            tongue.page(effect.sentence()),
+            display(effect.equation().lines()),
+            tongue.page(effect.source())
         );
     }
     out
 }
 
 /// What each kind of experiment would tell of a class, the proposed one first.
-pub(super) fn experiments(proposal: &NextExperiment) -> String {
+pub(super) fn experiments(tongue: Tongue, proposal: &NextExperiment) -> String {
     let trials = std::iter::once(proposal.trial()).chain(proposal.others.iter().cloned());
     let rows: Vec<Vec<Cell>> = trials
         .map(|t| vec![Cell::Text(t.text.clone()), Cell::Number(t.times_noise())])
@@ -59,6 +65,7 @@ pub(super) fn experiments(proposal: &NextExperiment) -> String {
     let mut out = String::new();
     table(
         &mut out,
+        tongue,
         &["Experiment", "The models differ by (× noise)"],
         &rows,
     );
@@ -74,13 +81,13 @@ fn added(step: &Step) -> Vec<EffectId> {
         .collect()
 }
 
-pub(super) fn parameters(parameters: &[Parameter]) -> String {
+pub(super) fn parameters(tongue: Tongue, parameters: &[Parameter]) -> String {
     let mut out = String::new();
     let rows: Vec<Vec<Cell>> = parameters
         .iter()
         .map(|p| {
             vec![
-                Cell::Code(p.name.clone()),
+                Cell::Math(p.name.clone()),
                 Cell::Text(p.label.clone()),
                 Cell::Number(with_error(p.value, p.std_error, &p.unit)),
                 Cell::Text(
@@ -102,6 +109,7 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
         .collect();
     table(
         &mut out,
+        tongue,
         &[
             "symbol",
             "meaning",
@@ -111,14 +119,13 @@ pub(super) fn parameters(parameters: &[Parameter]) -> String {
         ],
         &rows,
     );
-    out.push_str(
-        "<p class=\"small\">Standard errors are widened where the residuals are correlated.</p>\n",
-    );
+    let widened = tongue.page("Standard errors are widened where the residuals are correlated.");
+    let _ = writeln!(out, "<p class=\"small\">{widened}</p>");
     out
 }
 
 /// A table for each step that had candidates.
-pub(super) fn candidates(steps: &[Step]) -> String {
+pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
     let mut out = String::new();
     for step in steps.iter().filter(|s| !s.candidates.is_empty()) {
         let names: Vec<&str> = added(step).into_iter().map(name_of).collect();
@@ -127,12 +134,8 @@ pub(super) fn candidates(steps: &[Step]) -> String {
         } else {
             format!("On top of {}", names.join(" + "))
         };
-        let _ = writeln!(
-            out,
-            "<h3>{} (error {})</h3>",
-            escape(&on),
-            brief(step.error)
-        );
+        let title = format!("{on} (error {})", brief(step.error));
+        let _ = writeln!(out, "<h3>{}</h3>", tongue.page(&title));
         let rows: Vec<Vec<Cell>> = step
             .candidates
             .iter()
@@ -162,13 +165,13 @@ pub(super) fn candidates(steps: &[Step]) -> String {
             .collect();
         table(
             &mut out,
+            tongue,
             &["effect", "error", "evidence", "", "its parameters"],
             &rows,
         );
     }
-    out.push_str(
-        "<p class=\"small\">Error: after a refit, on the part of the record that the model was not fitted to, in units of the noise. Evidence: change of the \
-         Bayesian information criterion on the fitted data, negative is better.</p>\n",
-    );
+    let explained = "Error: after a refit, on the part of the record that the model was not fitted to, in units of the noise. \
+                     Evidence: change of the Bayesian information criterion on the fitted data, negative is better.";
+    let _ = writeln!(out, "<p class=\"small\">{}</p>", tongue.page(explained));
     out
 }

@@ -1,6 +1,7 @@
 //! The pictures of a report.
 
 use super::html::figure;
+use super::input::Tongue;
 use super::svg::{Axis, Bar, Chart, bars, range};
 use crate::curve::envelope;
 use crate::diagnosis::{Finding, MissingPart, Profile, ReplayChannel, Step};
@@ -32,7 +33,7 @@ const MOST_AXES: usize = 3;
 const LOGARITHMIC_FROM: f64 = 40.0;
 
 /// The error of every model and the noise floor.
-pub(super) fn waterfall(steps: &[Step], floor: f64) -> String {
+pub(super) fn waterfall(tongue: Tongue, steps: &[Step], floor: f64) -> String {
     let mut rows: Vec<(String, f64, &'static str)> = Vec::new();
     let mut before: Option<&Step> = None;
     for step in steps {
@@ -63,7 +64,8 @@ pub(super) fn waterfall(steps: &[Step], floor: f64) -> String {
     };
     figure(
         &mut out,
-        &bars(WIDE, &bars_of, "Error of every model"),
+        tongue,
+        &bars(tongue, WIDE, &bars_of, "Error of every model"),
         &format!("Error on held-back data in units of the measurement noise{scale}."),
     );
     out
@@ -93,6 +95,7 @@ fn change(step: &Step, before: Option<&Step>) -> String {
 /// One output: a stretch in detail, and the residual of the whole record.
 pub(super) fn output(
     out: &mut String,
+    tongue: Tongue,
     time: &[f64],
     measured: &Channel,
     modelled: &ReplayChannel,
@@ -121,13 +124,14 @@ pub(super) fn output(
         &measured.unit,
         range(shown.copied()).unwrap_or((0.0, 1.0)),
     );
-    let mut chart = Chart::new(WIDE, TALL, x(), y);
+    let mut chart = Chart::new(tongue, WIDE, TALL, x(), y);
     chart.shade(spans);
     chart.line(&part(&measured.values), "measured");
     chart.line(&part(&modelled.modelled), "model");
     let title = format!("{} measured and modelled", measured.name);
     figure(
         out,
+        tongue,
         &chart.finish(&title),
         "In detail: the stretch of the record where the model misses most.",
     );
@@ -137,18 +141,19 @@ pub(super) fn output(
         let own = values.iter().copied().chain([-noise, noise]);
         Axis::roomy(&label, &measured.unit, range(own).unwrap_or((0.0, 1.0)))
     };
-    let mut chart = Chart::new(WIDE, LOW, x(), residual_axis(&residual[from..to]));
+    let mut chart = Chart::new(tongue, WIDE, LOW, x(), residual_axis(&residual[from..to]));
     chart.shade(spans);
     chart.line(&part(&residual), "residual");
     chart.level(noise, "noise");
     chart.level(-noise, "noise");
     figure(
         out,
+        tongue,
         &chart.finish(&format!("Residual of {}", measured.name)),
         "The residual there, and twice the noise to both sides.",
     );
     let whole = Axis::new("time", "s", (time[0], time[n - 1]));
-    let mut chart = Chart::new(WIDE, LOW, whole, residual_axis(&residual));
+    let mut chart = Chart::new(tongue, WIDE, LOW, whole, residual_axis(&residual));
     chart.line(
         &envelope(&time[..n], &residual[..n], 2 * STRETCHES),
         "residual",
@@ -157,6 +162,7 @@ pub(super) fn output(
     chart.level(-noise, "noise");
     figure(
         out,
+        tongue,
         &chart.finish(&format!(
             "Residual of {} over the whole record",
             measured.name
@@ -189,6 +195,7 @@ fn detail(residual: &[f64]) -> (usize, usize) {
 /// Pictures with captions of the residual over the wanted axes, the strongest first: how large it is there
 /// with the first model and with the last.
 pub(super) fn profiles(
+    tongue: Tongue,
     measurement: &Measurement,
     wanted: &[&str],
     first: &[Profile],
@@ -213,7 +220,7 @@ pub(super) fn profiles(
                 .map_or("", |o| o.name.as_str());
             let name = axis.replace('_', " ");
             pictures.push((
-                profile_chart(&name, profile, before),
+                profile_chart(tongue, &name, profile, before),
                 format!(
                     "Residual of {output} over {name}: root mean square, in units of the noise."
                 ),
@@ -227,7 +234,7 @@ pub(super) fn profiles(
 const MOST_ESTIMATES: usize = 4;
 
 /// Pictures with captions of what is missing, estimated without a model.
-pub(super) fn missing(parts: &[MissingPart]) -> Vec<(String, String)> {
+pub(super) fn missing(tongue: Tongue, parts: &[MissingPart]) -> Vec<(String, String)> {
     parts
         .iter()
         .take(MOST_ESTIMATES)
@@ -243,6 +250,7 @@ pub(super) fn missing(parts: &[MissingPart]) -> Vec<(String, String)> {
             let y = range(bands.map(|v| v.clamp(low, high)).chain([known.0, known.1]));
             let x = range(m.parts.iter().flat_map(|p| [p.from, p.to])).unwrap_or((0.0, 1.0));
             let mut chart = Chart::new(
+                tongue,
                 HALF,
                 TALL,
                 Axis::new(&m.axis, &m.axis_unit, x),
@@ -268,7 +276,12 @@ pub(super) fn missing(parts: &[MissingPart]) -> Vec<(String, String)> {
         .collect()
 }
 
-fn profile_chart(name: &str, profile: &Profile, before: Option<&Profile>) -> String {
+fn profile_chart(
+    tongue: Tongue,
+    name: &str,
+    profile: &Profile,
+    before: Option<&Profile>,
+) -> String {
     let steps = |p: &Profile| -> Vec<[f64; 2]> {
         p.bins
             .iter()
@@ -286,7 +299,7 @@ fn profile_chart(name: &str, profile: &Profile, before: Option<&Profile>) -> Str
     };
     let sizes = own.iter().chain(&other).map(|p| p[1]).chain([1.0]);
     let y = Axis::sized("residual / noise", "1", range(sizes).unwrap_or((0.0, 1.0)));
-    let mut chart = Chart::new(HALF, LOW + 20.0, x, y);
+    let mut chart = Chart::new(tongue, HALF, LOW + 20.0, x, y);
     chart.line(&other, "before");
     chart.line(&own, "residual");
     chart.level(1.0, "noise");

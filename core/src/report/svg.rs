@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::html::escape;
+use super::escape::escape;
+use super::input::Tongue;
 use crate::uncertain::{significant, titled};
 
 /// Space for the labels, in units of the picture.
@@ -135,6 +136,7 @@ pub(super) enum Mark {
 
 /// A chart that is drawn piece by piece.
 pub(super) struct Chart {
+    tongue: Tongue,
     width: f64,
     height: f64,
     x: Axis,
@@ -143,8 +145,10 @@ pub(super) struct Chart {
 }
 
 impl Chart {
-    pub fn new(width: f64, height: f64, x: Axis, y: Axis) -> Self {
+    /// An empty one; its labels and numbers are put into this language as it is finished.
+    pub fn new(tongue: Tongue, width: f64, height: f64, x: Axis, y: Axis) -> Self {
         Self {
+            tongue,
             width,
             height,
             x,
@@ -237,16 +241,17 @@ impl Chart {
 
     /// The picture; `title` is what a screen reader says.
     pub fn finish(self, title: &str) -> String {
+        let page = |text: &str| self.tongue.page(text);
         let (w, h) = (self.width, self.height);
         let mut out = format!(
             "<svg viewBox=\"0 0 {w} {h}\" role=\"img\"><title>{}</title>",
-            escape(title)
+            page(title)
         );
         let (left, right, top, bottom) = (LEFT, w - RIGHT, TOP, h - BOTTOM);
         let spacing = |ticks: &[f64]| ticks.windows(2).next().map_or(1.0, |t| t[1] - t[0]);
         let xs = self.x.ticks((w / 110.0).max(2.0));
         for tick in &xs {
-            let (x, text) = (self.at_x(*tick), tick_text(*tick, spacing(&xs)));
+            let (x, text) = (self.at_x(*tick), page(&tick_text(*tick, spacing(&xs))));
             let _ = write!(
                 out,
                 "<path class=\"grid\" d=\"M{x:.1} {top}V{bottom:.1}\"/><text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>",
@@ -255,7 +260,7 @@ impl Chart {
         }
         let ys = self.y.ticks(((h - TOP - BOTTOM) / 28.0).max(2.0));
         for tick in &ys {
-            let (y, text) = (self.at_y(*tick), tick_text(*tick, spacing(&ys)));
+            let (y, text) = (self.at_y(*tick), page(&tick_text(*tick, spacing(&ys))));
             let _ = write!(
                 out,
                 "<path class=\"grid\" d=\"M{left} {y:.1}H{right}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
@@ -278,13 +283,13 @@ impl Chart {
             "<path class=\"frame\" d=\"M{left} {top}V{bottom:.1}H{right}\"/><text class=\"faint\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
             0.5 * (left + right),
             h - 6.0,
-            escape(&self.x.label)
+            page(&self.x.label)
         );
         let middle = 0.5 * (top + bottom);
         let _ = write!(
             out,
             "<text class=\"faint\" transform=\"translate(14 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text></svg>",
-            escape(&self.y.label)
+            page(&self.y.label)
         );
         out
     }
@@ -299,18 +304,26 @@ pub(super) struct Bar {
 }
 
 /// Horizontal bars under each other.
-pub(super) fn bars(width: f64, rows: &[Bar], title: &str) -> String {
+pub(super) fn bars(tongue: Tongue, width: f64, rows: &[Bar], title: &str) -> String {
     const ROW: f64 = 28.0;
-    let longest = |f: fn(&Bar) -> usize| rows.iter().map(f).max().unwrap_or(0) as f64;
-    let label = (CHARACTER * longest(|r| r.label.chars().count()) + 12.0).min(0.5 * width);
-    let value = CHARACTER * longest(|r| r.value.chars().count()) + 14.0;
+    let said = |text: fn(&Bar) -> &str| -> Vec<String> {
+        rows.iter().map(|row| (tongue.say)(text(row))).collect()
+    };
+    let (labels, values) = (said(|r| &r.label), said(|r| &r.value));
+    let longest = |texts: &[String]| {
+        let lengths = texts.iter().map(|t| t.chars().count());
+        lengths.max().unwrap_or(0) as f64
+    };
+    let label = (CHARACTER * longest(&labels) + 12.0).min(0.5 * width);
+    let value = CHARACTER * longest(&values) + 14.0;
     let room = (width - label - value).max(50.0);
     let mut out = format!(
         "<svg viewBox=\"0 0 {width} {}\" role=\"img\"><title>{}</title>",
         ROW * rows.len() as f64,
-        escape(title)
+        tongue.page(title)
     );
-    for (k, row) in rows.iter().enumerate() {
+    let texts = labels.iter().zip(&values);
+    for (k, (row, (name, amount))) in rows.iter().zip(texts).enumerate() {
         let y = ROW * k as f64;
         let share = if row.share.is_finite() {
             row.share.clamp(0.0, 1.0)
@@ -322,12 +335,12 @@ pub(super) fn bars(width: f64, rows: &[Bar], title: &str) -> String {
             out,
             "<text x=\"0\" y=\"{:.1}\">{}</text><rect class=\"{}\" x=\"{label:.1}\" y=\"{:.1}\" width=\"{length:.1}\" height=\"18\" rx=\"2\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             y + 18.0,
-            escape(&row.label),
+            escape(name),
             row.class,
             y + 5.0,
             label + length + 7.0,
             y + 18.0,
-            escape(&row.value)
+            escape(amount)
         );
     }
     out.push_str("</svg>");
@@ -355,6 +368,7 @@ mod tests {
     fn wild_values_draw_a_picture_without_wild_numbers() {
         let wild = [f64::NAN, f64::INFINITY, -1e300, 1e300, 0.0];
         let mut chart = Chart::new(
+            Tongue::ENGLISH,
             400.0,
             200.0,
             Axis::new("x", "1", (f64::NAN, 1.0)),

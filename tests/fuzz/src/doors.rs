@@ -5,7 +5,7 @@ use hysteron_core::scenario::Scenario;
 use hysteron_core::user_model::UserModel;
 use serde_json::json;
 
-use crate::link;
+use hysteron_work::link;
 
 /// What an input is meant to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,10 +3,6 @@
 
 mod doors;
 mod inputs;
-// The reader of links needs nothing of the window that it belongs to.
-#[path = "../../../app/src/link.rs"]
-#[allow(dead_code, reason = "links are only read here")]
-mod link;
 
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -10,6 +10,10 @@ use super::command::Command;
 use super::state::Compare;
 use crate::language::tr;
 use crate::theme;
+use crate::widgets::equation::sized_equation_ui;
+
+/// What is said before a formula that explains what no effect does.
+const A_FORMULA_DOES: &str = "No effect in the library explains the rest, but a formula does:";
 
 impl Compare {
     pub(super) fn message_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -52,11 +56,22 @@ impl Compare {
                 report.answer(verdict, &present.unwrap_or_default(), self.is_noise(report))
             }),
         };
+        // A formula that is found stands as it does in a book.
+        let (text, formula) = match self.explaining_formula() {
+            Some(formula) if text.ends_with(&formula) => {
+                let words = text.len() - formula.len();
+                (text[..words].trim_end().to_owned(), Some(formula))
+            }
+            _ => (text, None),
+        };
         let before = self.report().is_some() && self.job.is_some();
         if before && self.shown.as_ref() != Some(&self.effects) {
             theme::answer_of_before_ui(ui, &text);
         } else {
             theme::answer_ui(ui, &text);
+        }
+        if let Some(formula) = formula {
+            sized_equation_ui(ui, &formula, theme::ANSWER, &|_| None);
         }
         for noise in self.report().iter().flat_map(|report| &report.noise) {
             ui.weak(tr(noise.words()));
@@ -65,13 +80,16 @@ impl Compare {
 
     /// What explains the rest where no effect does.
     fn explained(&self) -> Option<String> {
+        let formula = self.explaining_formula()?;
+        Some(format!("{A_FORMULA_DOES} {formula}"))
+    }
+
+    /// The formula that does.
+    fn explaining_formula(&self) -> Option<String> {
         let discovery = self.discovery().filter(|_| self.is_unknown())?;
         let whole = discovery.end == DiscoveryEnd::Explained;
         let formula = &discovery.found().filter(|_| whole)?.formula;
-        let symbol = self.force_symbol();
-        Some(format!(
-            "No effect in the library explains the rest, but a formula does: {symbol} = {formula}"
-        ))
+        Some(format!("{} = {formula}", self.force_symbol()))
     }
 
     /// What a formula gives.

@@ -1,8 +1,9 @@
 //! What these data cannot tell apart, and the experiment that can.
 
-use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, Opening, Program, Trial};
+use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, Program, Trial};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
+use hysteron_core::opening::Opening;
 use hysteron_core::uncertain::in_unit;
 
 use super::command::Command;

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use hysteron_core::diagnosis::{Program, Step};
-use hysteron_core::report::{self, Provenance, ReportInput};
+use hysteron_core::report::{self, Provenance, ReportInput, Tongue};
 use hysteron_core::user_model::UserModel;
 
 use super::state::Compare;
+use crate::language::{Language, say, spoken};
 use crate::save::Document;
 
 /// Samples of an input that is saved, at most.
@@ -34,6 +35,10 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
             bytes: page.source.bytes,
             sha256: page.source.sha256.clone(),
         },
+        tongue: Tongue {
+            code: spoken().code(),
+            say,
+        },
     });
     Some(Document {
         name: format!("{}.html", stem(&measurement.name)),
@@ -53,6 +58,9 @@ fn command(page: &Compare, file: &str) -> String {
     let own = page.own.iter().map(|line| ("--effect", line.as_str()));
     for (option, value) in page.reading.arguments().chain(model).chain(own) {
         command.extend([" ", option, " ", &report::shell_word(value)]);
+    }
+    if spoken() != Language::default() {
+        command.extend([" --lang ", spoken().code()]);
     }
     command
 }

@@ -11,7 +11,7 @@ use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
 use crate::widgets::chart::{Chart, Shape, caption_ui, span_decades};
-use crate::widgets::equation::equation_ui;
+use crate::widgets::equation::{equation_ui, sentence_ui};
 
 /// Formulas with their parameters, and rows of others, at most.
 const MOST: usize = 4;
@@ -47,7 +47,8 @@ impl Compare {
             });
         } else if let Some(discovery) = self.discovery() {
             ui.strong(tr("The formula of the unknown"));
-            ui.label(tr(&discovery.text));
+            let known = discovery.formulas.iter().map(|f| f.formula.as_str());
+            sentence_ui(ui, &tr(&discovery.text), &known.collect::<Vec<_>>());
             if !discovery.formulas.is_empty() {
                 self.class_ui(discovery, ui, targets, commands);
                 front_ui(discovery, ui);

@@ -45,8 +45,8 @@ const RESTARTED: &str = "The model starts afresh from an estimated state in each
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
 
-/// Least width of the labels of y, so that the plots line up.
-const AXIS_WIDTH: f32 = 76.0;
+/// Least width of the labels of y, so that the plots line up: that of a name on two lines with long numbers, points.
+const AXIS_WIDTH: f32 = 86.0;
 
 /// Height of a signal, of that of both: what the model leaves is what the page is about, the signal where it is.
 const SIGNAL: f32 = 0.75;

@@ -3,7 +3,7 @@
 use egui::RichText;
 use hysteron_core::diagnosis::{Candidate, StepReport};
 use hysteron_core::effect;
-use hysteron_core::effect::name_of;
+use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
 use hysteron_core::uncertain::with_error;
 
@@ -188,6 +188,19 @@ fn candidates_ui(
     }
 }
 
+/// What an effect is: a sentence, its equation, and where that is from.
+fn described(page: &Compare, id: EffectId) -> Option<(&'static str, String, &'static str)> {
+    if let Some(e) = effect::find(id) {
+        return Some((e.sentence(), e.equation().to_owned(), e.source()));
+    }
+    let formula = page.model.as_ref()?.formula(id)?;
+    let equation = match page.measurement.as_ref().map(|m| m.kind) {
+        Some(Kind::Process) => format!("Input = {formula}"),
+        _ => format!("F = {formula}"),
+    };
+    Some(("An effect of your own.", equation, "your own formula"))
+}
+
 fn card_ui(
     page: &Compare,
     report: &StepReport,
@@ -199,43 +212,13 @@ fn card_ui(
     let Some(id) = candidate.effects.first().copied() else {
         return;
     };
-    let formula = page.model.as_ref().and_then(|m| m.formula(id));
-    let (sentence, equation, source) = match (effect::find(id), formula) {
-        (Some(e), _) => (e.sentence(), e.equation().to_owned(), e.source()),
-        (None, Some(f)) => (
-            "An effect of your own.",
-            match page.measurement.as_ref().map(|m| m.kind) {
-                Some(Kind::Process) => format!("Input = {f}"),
-                _ => format!("F = {f}"),
-            },
-            "your own formula",
-        ),
-        (None, None) => return,
+    let Some((sentence, equation, source)) = described(page, id) else {
+        return;
     };
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal_wrapped(|ui| {
-            let add = ui.add_enabled(
-                page.job.is_none(),
-                egui::Button::new(tr(format!("Add {}", name_of(id)))),
-            );
-            targets.note(format!("add:{id}"), ui, &add);
-            if add.clicked() {
-                commands.push(Command::Add(id));
-            }
-            ui.label(
-                RichText::new(tr(format!("leaves {} × noise", times_noise(candidate.error)))).strong(),
-            );
-            if report.fingerprints.iter().any(|f| f.effect == id) {
-                let chosen = page.look == Look::Fingerprint && page.chosen() == Some(id);
-                let show = ui
-                    .selectable_label(chosen, tr("Fingerprint"))
-                    .on_hover_text(tr("The residual that it would leave if it were missing, beside the present one"));
-                targets.note(format!("fingerprint:{id}"), ui, &show);
-                if show.clicked() {
-                    commands.push(Command::Fingerprint(id));
-                }
-            }
+            choice_ui(page, report, (id, candidate.error), ui, targets, commands);
         });
         bar_ui(
             ui,
@@ -274,4 +257,36 @@ fn card_ui(
                 }
             });
     });
+}
+
+/// Adds an effect that would leave this error, or shows its fingerprint.
+fn choice_ui(
+    page: &Compare,
+    report: &StepReport,
+    (id, error): (EffectId, f64),
+    ui: &mut egui::Ui,
+    targets: &mut Targets,
+    commands: &mut Vec<Command>,
+) {
+    let add = ui.add_enabled(
+        page.job.is_none(),
+        egui::Button::new(tr(format!("Add {}", name_of(id)))),
+    );
+    targets.note(format!("add:{id}"), ui, &add);
+    if add.clicked() {
+        commands.push(Command::Add(id));
+    }
+    ui.label(RichText::new(tr(format!("leaves {} × noise", times_noise(error)))).strong());
+    if report.fingerprints.iter().any(|f| f.effect == id) {
+        let chosen = page.look == Look::Fingerprint && page.chosen() == Some(id);
+        let show = ui
+            .selectable_label(chosen, tr("Fingerprint"))
+            .on_hover_text(tr(
+                "The residual that it would leave if it were missing, beside the present one",
+            ));
+        targets.note(format!("fingerprint:{id}"), ui, &show);
+        if show.clicked() {
+            commands.push(Command::Fingerprint(id));
+        }
+    }
 }

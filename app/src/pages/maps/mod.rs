@@ -21,6 +21,9 @@ use hysteron_work::tasks::MapTask;
 use picture::Picture;
 use words::{axis_title, number, with_unit};
 
+/// Share of a narrow window that the map has where it stays in view.
+const PINNED: f32 = 0.42;
+
 /// The page: what is asked for, what is known of it, and what is drawn.
 #[derive(Default)]
 pub struct Maps {
@@ -182,18 +185,7 @@ impl View for Maps {
         let commands = &mut desk.commands;
         let narrow = ui.available_width() < layout::NARROW;
         if narrow {
-            egui::CentralPanel::default().show(ui, |ui| {
-                theme::scroll("maps").show(ui, |ui| {
-                    self.update(ui.ctx());
-                    self.answer_ui(ui);
-                    let height = ui.available_width() + 40.0;
-                    self.picture_ui(ui, height, commands);
-                    self.choices_ui(ui);
-                    ui.separator();
-                    self.point_ui(ui, commands);
-                    self.update(ui.ctx());
-                });
-            });
+            self.narrow_ui(ui, commands);
             return;
         }
         egui::Panel::left("map choices")
@@ -234,6 +226,36 @@ impl View for Maps {
 }
 
 impl Maps {
+    fn narrow_ui(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        self.update(ui.ctx());
+        // The answer and the map stay in view while a slider below them is turned.
+        let pinned = layout::pins(ui);
+        let square = ui.available_width() + 40.0;
+        if pinned {
+            let height = square.min(PINNED * ui.available_height());
+            egui::Panel::top("maps_answer").show(ui, |ui| {
+                self.answer_ui(ui);
+                self.picture_ui(ui, height, commands);
+            });
+        }
+        egui::CentralPanel::default().show(ui, |ui| {
+            theme::scroll("maps").show(ui, |ui| {
+                if pinned {
+                    self.point_ui(ui, commands);
+                    ui.separator();
+                    self.choices_ui(ui);
+                } else {
+                    self.answer_ui(ui);
+                    self.picture_ui(ui, square, commands);
+                    self.choices_ui(ui);
+                    ui.separator();
+                    self.point_ui(ui, commands);
+                }
+                self.update(ui.ctx());
+            });
+        });
+    }
+
     /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
         let size = self.map.size();

@@ -18,6 +18,7 @@ pub const STAGE: Stage = Stage {
     question: "Which proportional gain gives the wanted phase margin?",
     answer,
     next: "One test with an asymmetric relay gives a whole model: step 4.",
+    plot: errors_ui,
     ui,
 };
 
@@ -54,9 +55,19 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     beside(
         ui,
         height,
-        |ui, height| convergence_ui(ui, found, height),
+        |ui, height| {
+            if !seen.pinned {
+                convergence_ui(ui, found, height);
+            }
+        },
         |ui, _| table_ui(ui, found),
     );
+}
+
+fn errors_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
+    if let Ok(found) = &seen.report.phase_margin {
+        convergence_ui(ui, found, height);
+    }
 }
 
 fn convergence_ui(ui: &mut egui::Ui, found: &PhaseMarginReport, height: f32) {

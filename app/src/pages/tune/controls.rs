@@ -147,7 +147,7 @@ fn equations_ui(ui: &mut egui::Ui) {
         }
         ui.small(tr(format!("Convention: {AMPLITUDE_CONVENTION}.")));
         ui.small(tr(
-            "φ: phase margin, M: identified point of the Nyquist curve, S: where it shall go.",
+            "φ: phase margin, M: identified point of the Nyquist curve, S: where it should go.",
         ));
     });
 }

@@ -18,6 +18,7 @@ pub const STAGE: Stage = Stage {
     question: "Is the loop better now?",
     answer,
     next: "Could the machine have backlash? Find the gap from the motor alone.",
+    plot: step_ui,
     ui,
 };
 
@@ -56,8 +57,9 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
         ui,
         half,
         |ui, height| {
-            let name = ["step response", "output y, set point 1"];
-            response_ui(ui, name, &report.before, after, |l| &l.set_point, height);
+            if !seen.pinned {
+                step_ui(ui, seen, height);
+            }
         },
         |ui, height| {
             let name = ["load response", "output y, load 1"];
@@ -70,6 +72,14 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
         |ui, height| nyquist_ui(ui, &report.before, after, height),
         |ui, _| table_ui(ui, &report.before, after, report.horizon),
     );
+}
+
+/// The response to a step of the set point, before and after.
+pub fn step_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
+    let name = ["step response", "output y, set point 1"];
+    let after = seen.report.after.as_ref().ok();
+    let before = &seen.report.before;
+    response_ui(ui, name, before, after, |l| &l.set_point, height);
 }
 
 /// Names of [`tables`]; the last two where a tuned loop is there.

@@ -78,18 +78,7 @@ impl View for Tune {
 
     fn ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         if ui.available_width() < layout::NARROW {
-            egui::CentralPanel::default().show(ui, |ui| {
-                theme::scroll("tune").show(ui, |ui| {
-                    self.measured.source_ui(ui, desk);
-                    let name = if self.is_measured() {
-                        "Test and gains"
-                    } else {
-                        "Plant, relay and wishes"
-                    };
-                    egui::CollapsingHeader::new(tr(name)).show(ui, |ui| self.side_ui(ui, desk));
-                    self.main_ui(ui, desk, 520.0);
-                });
-            });
+            self.narrow_ui(ui, desk);
             return;
         }
         egui::Panel::left("tuning")
@@ -106,7 +95,7 @@ impl View for Tune {
         egui::CentralPanel::default().show(ui, |ui| {
             theme::scroll("tune").show(ui, |ui| {
                 let height = (ui.max_rect().bottom() - ui.cursor().top() - 190.0).max(280.0);
-                self.main_ui(ui, desk, height);
+                self.main_ui(ui, desk, false, height);
             });
         });
     }
@@ -150,7 +139,7 @@ impl Tune {
 
     /// Names of the tables that can be given now.
     fn table_names(&self) -> Vec<&'static str> {
-        match self.seen() {
+        match self.seen(false) {
             None => Vec::new(),
             Some(seen) if self.shows_loops() => loops::table_names(seen.report),
             Some(_) => vec!["relay test", "relay input", "true Nyquist curve"],
@@ -159,7 +148,7 @@ impl Tune {
 
     /// The numbers behind what is shown.
     fn tables(&self) -> Vec<Table> {
-        let Some(seen) = self.seen() else {
+        let Some(seen) = self.seen(false) else {
             return Vec::new();
         };
         if self.shows_loops() {
@@ -187,6 +176,44 @@ impl Tune {
         self.measured.from != From::Simulation
     }
 
+    fn narrow_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        // The answer and one plot stay in view while a slider below them is turned.
+        let measured = self.is_measured();
+        let shows = if measured {
+            self.measured.has_plot()
+        } else {
+            self.seen(true).is_some()
+        };
+        let room = layout::pins(ui);
+        let pinned = room && shows;
+        if pinned {
+            egui::Panel::top("tune_answer").show(ui, |ui| {
+                if measured {
+                    self.measured.pinned_ui(ui, layout::PINNED);
+                } else {
+                    self.pinned_ui(ui, layout::PINNED);
+                }
+            });
+        }
+        egui::CentralPanel::default().show(ui, |ui| {
+            theme::scroll("tune").show(ui, |ui| {
+                self.measured.source_ui(ui, desk);
+                let name = if measured {
+                    "Test and gains"
+                } else {
+                    "Plant, relay and wishes"
+                };
+                if pinned && !measured {
+                    self.steps_ui(ui, desk);
+                }
+                egui::CollapsingHeader::new(tr(name))
+                    .default_open(room)
+                    .show(ui, |ui| self.side_ui(ui, desk));
+                self.main_ui(ui, desk, pinned, 520.0);
+            });
+        });
+    }
+
     fn side_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         if self.is_measured() {
             self.measured.side_ui(ui, desk);
@@ -195,15 +222,17 @@ impl Tune {
         }
     }
 
-    fn main_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk, height: f32) {
+    fn main_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk, pinned: bool, height: f32) {
         if self.is_measured() {
             self.measured.ask(ui.ctx());
-            self.measured.ui(ui, height);
+            self.measured.ui(ui, pinned, height);
             return;
         }
         self.ask(ui.ctx(), desk);
-        self.steps_ui(ui, desk);
-        self.stage_ui(ui, height);
+        if !pinned {
+            self.steps_ui(ui, desk);
+        }
+        self.stage_ui(ui, pinned, height);
     }
 
     /// Whether the step in view is that of the closed loops.
@@ -223,14 +252,18 @@ impl Tune {
         self.live.ask(ctx, &self.input, TuneTask);
     }
 
-    fn seen(&self) -> Option<Seen<'_>> {
+    fn seen(&self, pinned: bool) -> Option<Seen<'_>> {
         let (input, report) = self.live.shown()?;
-        Some(Seen { input, report })
+        Some(Seen {
+            input,
+            report,
+            pinned,
+        })
     }
 
     fn answer(&self) -> Option<String> {
         let stage = STAGES.get(self.stage)?;
-        self.seen().map(stage.answer)
+        self.seen(false).map(stage.answer)
     }
 
     /// The steps as buttons, and the one to the next.
@@ -253,7 +286,25 @@ impl Tune {
         });
     }
 
-    fn stage_ui(&mut self, ui: &mut egui::Ui, height: f32) {
+    /// The answer and the plot of the step that stay in view.
+    fn pinned_ui(&self, ui: &mut egui::Ui, height: f32) {
+        let stage = STAGES.get(self.stage);
+        if let Some((stage, seen)) = stage.zip(self.seen(true)) {
+            self.answer_ui(ui, stage, seen);
+            (stage.plot)(ui, seen, height);
+        }
+    }
+
+    fn answer_ui(&self, ui: &mut egui::Ui, stage: &Stage, seen: Seen<'_>) {
+        let answer = (stage.answer)(seen);
+        if self.live.is_busy() && *seen.input != self.input {
+            theme::answer_of_before_ui(ui, &answer);
+        } else {
+            theme::answer_ui(ui, &answer);
+        }
+    }
+
+    fn stage_ui(&mut self, ui: &mut egui::Ui, pinned: bool, height: f32) {
         if let Some(message) = self.live.message() {
             ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
@@ -271,12 +322,13 @@ impl Tune {
             theme::answer_ui(ui, text);
             return;
         };
-        let seen = Seen { input, report };
-        let answer = (stage.answer)(seen);
-        if self.live.is_busy() && *input != self.input {
-            theme::answer_of_before_ui(ui, &answer);
-        } else {
-            theme::answer_ui(ui, &answer);
+        let seen = Seen {
+            input,
+            report,
+            pinned,
+        };
+        if !pinned {
+            self.answer_ui(ui, stage, seen);
         }
         (stage.ui)(ui, seen, height, &mut self.input.rule);
     }

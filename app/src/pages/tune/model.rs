@@ -12,6 +12,7 @@ pub const STAGE: Stage = Stage {
     question: "What does one test reveal if the relay pushes harder one way?",
     answer,
     next: "A rule turns it into a controller: step 5.",
+    plot,
     ui,
 };
 
@@ -62,9 +63,19 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     beside(
         ui,
         height,
-        |ui, height| run_ui(ui, "asymmetric run", &found.test, height),
+        |ui, height| {
+            if !seen.pinned {
+                plot(ui, seen, height);
+            }
+        },
         |ui, _| table_ui(ui, found),
     );
+}
+
+fn plot(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
+    if let Ok(found) = &seen.report.asymmetric {
+        run_ui(ui, "asymmetric run", &found.test, height);
+    }
 }
 
 fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {

@@ -10,6 +10,7 @@ pub const STAGE: Stage = Stage {
     question: "What does the loop do with a relay instead of the controller?",
     answer,
     next: "The swing reveals at which gain the loop would oscillate on its own: step 2.",
+    plot,
     ui,
 };
 
@@ -24,5 +25,11 @@ fn answer(seen: Seen<'_>) -> String {
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     ui.label(tr("From rest to the settled cycle. No model is needed: these two numbers are the whole measurement. Amplitude: half of peak to peak."));
+    if !seen.pinned {
+        plot(ui, seen, height);
+    }
+}
+
+fn plot(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
     run_ui(ui, "relay run", &seen.report.test, height);
 }

@@ -3,6 +3,7 @@
 use hysteron_core::tuning::{LoopReport, rule};
 
 use super::draw::{cell, controller, maybe, number, set_table};
+use super::loops;
 use super::stage::{Seen, Stage};
 use crate::language::{tr, tr_number};
 
@@ -16,6 +17,7 @@ pub const STAGE: Stage = Stage {
     question: "Which controller follows from the experiment?",
     answer,
     next: "Is the loop better with it? Step 6 compares.",
+    plot: loops::step_ui,
     ui,
 };
 

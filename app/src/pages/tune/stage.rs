@@ -7,6 +7,8 @@ use hysteron_core::tuning::{TuningInput, TuningReport};
 pub struct Seen<'a> {
     pub input: &'a TuningInput,
     pub report: &'a TuningReport,
+    /// Whether the plot of the step stands in view above the rest, so that it is not drawn again.
+    pub pinned: bool,
 }
 
 /// A step of the experiment: one file each.
@@ -19,6 +21,8 @@ pub struct Stage {
     pub answer: fn(Seen<'_>) -> String,
     /// What the next step does.
     pub next: &'static str,
+    /// The plot that stays in view in a narrow window.
+    pub plot: fn(&mut egui::Ui, Seen<'_>, f32),
     /// Draws it in about this height; may choose another rule.
     pub ui: fn(&mut egui::Ui, Seen<'_>, f32, &mut String),
 }

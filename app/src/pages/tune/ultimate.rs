@@ -17,6 +17,7 @@ pub const STAGE: Stage = Stage {
     question: "At which gain would the loop oscillate on its own?",
     answer,
     next: "Ask the relay for a gain with a phase margin instead: step 3.",
+    plot: nyquist_ui,
     ui,
 };
 
@@ -42,7 +43,11 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     beside(
         ui,
         height,
-        |ui, height| nyquist_ui(ui, seen, height),
+        |ui, height| {
+            if !seen.pinned {
+                nyquist_ui(ui, seen, height);
+            }
+        },
         |ui, _| table_ui(ui, seen),
     );
 }

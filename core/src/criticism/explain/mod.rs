@@ -6,6 +6,7 @@
 mod heat;
 mod hidden_body;
 mod judge;
+mod levels;
 mod rival;
 mod seldom;
 mod sketch;
@@ -18,9 +19,8 @@ mod weigh;
 use std::collections::VecDeque;
 
 use super::contradicted::released;
-use super::screen::{Screened, Start};
+use super::screen::Screened;
 use super::session::Session;
-use crate::diagnosis::InputVerdict;
 use crate::effect::{Effect, EffectId};
 use heat::Heat;
 use hidden_body::is_hidden_body;
@@ -30,9 +30,7 @@ use sketch::{Sketch, first_guess};
 pub(super) use swap::may_replace;
 use task::Task;
 pub(super) use trial::Trial;
-use tuning::{
-    ALIKE, FITTED, FITTED_HIDDEN, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS,
-};
+use tuning::{FITTED, FITTED_HIDDEN};
 
 /// The model with these effects, to which others are added.
 pub(super) fn begun(
@@ -112,8 +110,11 @@ pub(super) struct Explain {
     stage: Stage,
     /// The subset of each size that leads; and of those with a hidden body.
     leads: [Vec<Option<usize>>; 2],
-    /// Leads of the present size that were looked at.
+    /// Leads that were looked at; and how many of them before the present level.
     looked_at: Vec<usize>,
+    looked_before: usize,
+    /// The best before the present level.
+    best_before: usize,
     pub best: usize,
     /// Sizes in a row that brought nothing; and of those with a hidden body.
     misses: [usize; 2],
@@ -138,6 +139,8 @@ impl Explain {
             stage: Stage::Base,
             leads: [Vec::new(), Vec::new()],
             looked_at: Vec::new(),
+            looked_before: 0,
+            best_before: 0,
             best: 0,
             misses: [0, 0],
             rivals: Vec::new(),
@@ -181,16 +184,6 @@ impl Explain {
     fn gives_up(&self, session: &Session) -> bool {
         let hidden = matches!(self.stage, Stage::Fit(level) if level.hidden);
         hidden && session.data.tried_enough(true)
-    }
-
-    /// Whether too many sizes in a row brought nothing, of models with a hidden body or without.
-    fn gives_up_on(&self, hidden: bool) -> bool {
-        let most = if hidden {
-            MOST_HIDDEN_MISSES
-        } else {
-            MOST_MISSES
-        };
-        self.misses[usize::from(hidden)] > most
     }
 
     /// Places of the model for which effects race.
@@ -300,64 +293,6 @@ impl Explain {
         }
     }
 
-    /// Tasks of the subsets of a level.
-    fn open_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
-        let Level { size, hidden } = level;
-        self.stage = Stage::Fit(level);
-        self.looked_at.clear();
-        // Where the input is not what acted, an effect would be one of another machine.
-        let other = matches!(
-            session.input_check.verdict,
-            InputVerdict::Sign | InputVerdict::ClosedLoop
-        );
-        // A hidden body is free: what acts on the measured one, with an effect more, may do as well with fewer values.
-        let doubted =
-            !hidden && self.has_hidden_body(self.best) && size == self.size(self.best) + 1;
-        let explained =
-            self.is_noise(session, self.best) && !doubted || self.knows_wrongly(session);
-        let enough = |hidden: bool| size > 1 && session.data.tried_enough(hidden);
-        if other
-            || explained
-            || enough(false)
-            || size > MOST_SIZE
-            || [false, true].iter().all(|hidden| self.gives_up_on(*hidden))
-        {
-            self.open_seldom(session, screened);
-            return;
-        }
-        if self.gives_up_on(hidden) || hidden && enough(true) {
-            self.open_level(session, screened, level.next());
-            return;
-        }
-        let lead = |hidden: bool| {
-            let leads = &self.leads[usize::from(hidden)];
-            leads.get(size - 2).copied().flatten()
-        };
-        let (visible, with_hidden) = if size > 1 {
-            (lead(false), lead(true))
-        } else {
-            (Some(0), None)
-        };
-        if let Some(from) = visible.or(with_hidden) {
-            session.look_where_left(&self.trials[from].scored.fit);
-        }
-        self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
-        let held = self.held_ids();
-        let starts = screened.starts(&held, held.len() + size);
-        let of_level = |start: &Start| start.effects.iter().any(|e| is_hidden_body(*e)) == hidden;
-        let sketches = starts
-            .filter(of_level)
-            .filter_map(|start| Sketch::of(session, &start));
-        let sketches: Vec<Sketch> = sketches.take(STARTS).collect();
-        self.take(session, sketches);
-        if let Some(from) = visible {
-            self.extend(session, screened, from, hidden);
-        }
-        if let Some(from) = with_hidden.filter(|_| hidden) {
-            self.extend(session, screened, from, false);
-        }
-    }
-
     /// Whether the model that effects are added to leaves noise as soon as it gives up what the user knows of it.
     fn knows_wrongly(&self, session: &Session) -> bool {
         if self.best != 0 || session.knowledge.is_free() {
@@ -374,56 +309,6 @@ impl Explain {
         })
     }
 
-    /// Whether a trial belongs to a level.
-    fn is_of(&self, trial: usize, level: Level) -> bool {
-        let mut added = self.trials[trial]
-            .effects()
-            .iter()
-            .filter(|e| !self.held.iter().any(|own| own.id() == e.id()));
-        self.size(trial) == level.size
-            && self.holds(trial)
-            && added.any(|e| is_hidden_body(*e)) == level.hidden
-    }
-
-    fn has_hidden_body(&self, trial: usize) -> bool {
-        let mut effects = self.trials[trial].effects().iter();
-        effects.any(|e| is_hidden_body(*e))
-    }
-
-    fn judge_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
-        let Level { size, hidden } = level;
-        if self.looked_at.is_empty() {
-            let of_level: Vec<usize> = (0..self.trials.len())
-                .filter(|t| self.is_of(*t, level))
-                .collect();
-            let lead = self.lead(session, &of_level);
-            self.leads[usize::from(hidden)].push(lead);
-        }
-        // A smaller one may have come up as a part of one that was looked at.
-        let open =
-            |t: &usize| self.size(*t) <= size && !self.looked_at.contains(t) && self.holds(*t);
-        let better = |t: &usize| {
-            let difference = self.difference(session, self.best, *t);
-            difference.is_better()
-                || difference.is_met_once() && self.explains(session, self.best, *t)
-                || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best)
-        };
-        let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
-        let lead = self
-            .lead(session, &better)
-            .filter(|_| self.looked_at.len() < MOST_LEADS);
-        let Some(lead) = lead else {
-            let taken = self.looked_at.contains(&self.best);
-            let misses = &mut self.misses[usize::from(hidden)];
-            *misses = if taken { 0 } else { *misses + 1 };
-            self.open_level(session, screened, level.next());
-            return;
-        };
-        self.looked_at.push(lead);
-        self.stage = Stage::Check(level);
-        self.take_out_of(lead, size > 1);
-    }
-
     /// Has a trial fitted without each of the effects that were added; `again` where there is one: it may not have found the
     /// valley in which this one is.
     fn take_out_of(&mut self, lead: usize, again: bool) {
@@ -432,14 +317,6 @@ impl Explain {
                 self.tasks.push_back(Task::Without { from: lead, place });
             }
         }
-    }
-
-    fn judge_check(&mut self, session: &mut Session, screened: &Screened, level: Level) {
-        let lead = self.looked_at.last().copied();
-        if let Some(lead) = lead.filter(|lead| self.is_needed(session, *lead)) {
-            self.best = lead;
-        }
-        self.judge_level(session, screened, level);
     }
 
     fn holds(&self, trial: usize) -> bool {

@@ -81,12 +81,32 @@ pub(super) fn controller(signals: &Signals) -> Option<Controller> {
             .map(|t| term(t.symbol, &changes(&t.values)))
             .collect();
         let (_, of_changes) = regressed(&changes(&signals.input), &rest)?;
-        (explained >= CONTROLLED && of_changes >= CONTROLLED / 2.0).then(|| Controller {
+        let made = explained >= CONTROLLED && of_changes >= CONTROLLED / 2.0;
+        (made && is_control(signals, &gains, &terms, explained)).then(|| Controller {
             law: law(&gains, &terms),
             kind,
             explained,
         })
     })
+}
+
+/// Whether a law that the input follows was made by a controller, and not by the plant itself. A drive is controlled by what opposes
+/// its motion: what grows with it holds a spring or drags through a liquid. The output of a process that settles within a sample
+/// follows the input, and tells the one of the sample before better than its own.
+fn is_control(signals: &Signals, gains: &[f64], terms: &[Term], explained: f64) -> bool {
+    match signals.kind {
+        Kind::Drive => gains.get(1).is_some_and(|gain| *gain < 0.0),
+        Kind::Process => {
+            let n = signals.len();
+            let late = terms.iter().map(|t| Term {
+                symbol: t.symbol,
+                values: t.values[1..].to_vec(),
+            });
+            let late: Vec<Term> = late.collect();
+            let before = regressed(&signals.input[..n - 1], &late);
+            before.is_none_or(|(_, of_late)| explained > of_late)
+        }
+    }
 }
 
 fn law(gains: &[f64], terms: &[Term]) -> String {

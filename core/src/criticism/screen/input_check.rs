@@ -4,9 +4,10 @@ use super::closed_loop::{Controller, controller};
 use super::gram::{Gram, Reduced};
 use super::model::{ACCELERATION, Fit, INPUT, ONE, VELOCITY};
 use super::prepare::Prepared;
+use super::response::{left_by_lags, left_of_forecast, work};
 use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
-use super::tuning::{BLOCKS, CHANCE, LATE, LATEST, TOLD, UNEXPLAINED};
+use super::tuning::{BLOCKS, CHANCE, DRIVEN, LATE, LATEST, TOLD, UNEXPLAINED};
 use super::window::Width;
 use crate::diagnosis::{InputCheck, InputVerdict};
 use crate::measurement::Kind;
@@ -42,8 +43,12 @@ pub(super) fn checked(
             format!("The input explains the motion; {share:.1} % of it is left."),
         );
     }
+    let follows = || left_by_lags(signals, widths) < UNEXPLAINED;
     if signals.kind == Kind::Drive {
-        if let Some(turned) = turned(signals, widths).filter(|turned| *turned < 0.7 * left.min(1.0))
+        let [given, taken] = work(signals);
+        let driven = given > DRIVEN * taken;
+        if let Some(turned) =
+            turned(signals, widths).filter(|turned| !driven && *turned < 0.7 * left.min(1.0))
         {
             let share = 100.0 * turned;
             return say(
@@ -60,7 +65,14 @@ pub(super) fn checked(
         if body_while_calm(signals, widths).is_some() {
             return say(InputVerdict::Ok, AT_TIMES.to_owned());
         }
-    } else if changes_seldom(signals, bench) || may_explain(bench) {
+        if driven || follows() {
+            return say(InputVerdict::InertiaNotTold, NOT_BY_INERTIA.to_owned());
+        }
+    } else if changes_seldom(signals, bench) {
+        return say(InputVerdict::InertiaNotTold, TOO_LITTLE.to_owned());
+    } else if follows() || left_of_forecast(signals) < UNEXPLAINED {
+        return say(InputVerdict::Ok, NOT_AS_A_LAG.to_owned());
+    } else if may_explain(bench) {
         return say(InputVerdict::InertiaNotTold, TOO_LITTLE.to_owned());
     }
     let reason = late(signals, widths, left).map_or_else(
@@ -78,6 +90,13 @@ pub(super) fn checked(
 /// Where the input explains the motion most of the time.
 const AT_TIMES: &str = "The input explains the motion most of the time. At other times something else acts that is far \
     stronger, such as a stop.";
+
+/// Where the input moves a drive, and what it takes to accelerate the body is not seen.
+const NOT_BY_INERTIA: &str = "The input moves the body, but this record hardly tells its inertia: the body sticks, a spring holds \
+    it, or the position is read too coarsely to show an acceleration. Let the input jump further, and sample the run-up finely.";
+
+/// Where the output of a process follows the input, but not as a first-order lag and the library would have it.
+const NOT_AS_A_LAG: &str = "The output follows the input, but not in the way of a first-order lag.";
 
 /// Where a process did too little to tell what its input does.
 const TOO_LITTLE: &str = "This record does not tell what the input does to the output: it may make all of the motion, or \

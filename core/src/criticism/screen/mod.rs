@@ -9,6 +9,8 @@ mod gram;
 mod input_check;
 mod model;
 mod prepare;
+mod refine;
+mod response;
 mod say;
 mod signals;
 mod subsets;

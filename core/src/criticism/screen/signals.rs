@@ -1,6 +1,7 @@
 //! A record at equal time steps, with the velocity, its sign and the rests that atoms need.
 
 use super::tuning::{REST, SIGN_SIGMAS, SMOOTH, WIDEST_SMOOTHING};
+use crate::criticism::cut::pauses;
 use crate::criticism::noise::noise_level;
 use crate::effect::{Extent, Moment, Track};
 use crate::measurement::{Kind, Measurement, Motion, Quantity};
@@ -19,6 +20,10 @@ pub(in crate::criticism) struct Seen {
 pub(in crate::criticism) struct Signals {
     pub kind: Kind,
     pub step: f64,
+    /// Time of each sample since the first, s.
+    time: Vec<f64>,
+    /// First samples of runs: a gap in time is before each but the first.
+    pub begins: Vec<usize>,
     /// Held from a sample to the next.
     pub input: Vec<f64>,
     /// Position of a drive as measured.
@@ -79,44 +84,88 @@ pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// Equal steps, and values there: outputs on straight lines, the input as it was held.
-fn resampled(measurement: &Measurement) -> (f64, Vec<f64>, Vec<Vec<f64>>) {
+/// A record at equal steps in each of its runs.
+#[derive(Default)]
+struct Resampled {
+    step: f64,
+    time: Vec<f64>,
+    begins: Vec<usize>,
+    input: Vec<f64>,
+    outputs: Vec<Vec<f64>>,
+}
+
+/// Equal steps, and values there: outputs on straight lines, the input as it was held. Nothing is said of a gap in time.
+fn resampled(measurement: &Measurement) -> Resampled {
     let time = &measurement.time;
-    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).collect();
+    let outputs: Vec<&[f64]> = measurement
+        .outputs
+        .iter()
+        .map(|o| o.values.as_slice())
+        .collect();
+    let begins = [vec![0], pauses(time)].concat();
+    let ends = begins[1..].iter().copied().chain([time.len()]);
+    let runs: Vec<(usize, usize)> = begins.iter().copied().zip(ends).collect();
+    let within = runs
+        .iter()
+        .flat_map(|(from, to)| time[*from..*to].windows(2));
+    let mut steps: Vec<f64> = within.map(|w| w[1] - w[0]).collect();
     let step = median(&mut steps);
-    let outputs = measurement.outputs.iter().map(|o| &o.values);
-    let even = time
-        .windows(2)
-        .all(|w| (w[1] - w[0] - step).abs() < 0.5 * step);
+    let even = steps.iter().all(|s| (s - step).abs() < 0.5 * step);
     if even {
-        let mean = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-        return (
-            mean,
-            measurement.input.values.clone(),
-            outputs.cloned().collect(),
-        );
+        let length: f64 = runs
+            .iter()
+            .map(|(from, to)| time[to - 1] - time[*from])
+            .sum();
+        let step = length / steps.len().max(1) as f64;
+        let at = |(from, to): &(usize, usize)| {
+            let begin = time[*from] - time[0];
+            (0..to - from).map(move |k| begin + step * k as f64)
+        };
+        return Resampled {
+            step,
+            time: runs.iter().flat_map(at).collect(),
+            begins,
+            input: measurement.input.values.clone(),
+            outputs: outputs.into_iter().map(<[f64]>::to_vec).collect(),
+        };
     }
-    let count = (((time[time.len() - 1] - time[0]) / step) as usize + 1).min(4 * time.len());
-    let mut before = 0;
-    let mut input = Vec::with_capacity(count);
-    let mut resampled: Vec<Vec<f64>> = outputs.clone().map(|_| Vec::with_capacity(count)).collect();
-    for k in 0..count {
-        let at = time[0] + step * k as f64;
-        while before + 2 < time.len() && time[before + 1] <= at {
-            before += 1;
-        }
-        let share = ((at - time[before]) / (time[before + 1] - time[before])).clamp(0.0, 1.0);
-        input.push(measurement.input.values[before]);
-        for (to, from) in resampled.iter_mut().zip(outputs.clone()) {
-            to.push(from[before] + share * (from[before + 1] - from[before]));
+    let mut all = Resampled {
+        step,
+        outputs: vec![Vec::new(); outputs.len()],
+        ..Resampled::default()
+    };
+    for (from, to) in runs {
+        let time = &time[from..to];
+        let span = time[time.len() - 1] - time[0];
+        let count = ((span / step) as usize + 1).min(4 * time.len());
+        all.begins.push(all.time.len());
+        let mut before = 0;
+        for k in 0..count {
+            let at = time[0] + step * k as f64;
+            while before + 2 < time.len() && time[before + 1] <= at {
+                before += 1;
+            }
+            let share = ((at - time[before]) / (time[before + 1] - time[before])).clamp(0.0, 1.0);
+            all.time.push(at - measurement.time[0]);
+            all.input.push(measurement.input.values[from + before]);
+            for (to, values) in all.outputs.iter_mut().zip(&outputs) {
+                let (a, b) = (values[from + before], values[from + before + 1]);
+                to.push(a + share * (b - a));
+            }
         }
     }
-    (step, input, resampled)
+    all
 }
 
 impl Signals {
     pub fn new(measurement: &Measurement) -> Self {
-        let (step, input, outputs) = resampled(measurement);
+        let Resampled {
+            step,
+            time,
+            begins,
+            input,
+            outputs,
+        } = resampled(measurement);
         let seen = |quantity: Quantity| {
             let at = measurement
                 .outputs
@@ -133,6 +182,8 @@ impl Signals {
         let mut signals = Self {
             kind: measurement.kind,
             step,
+            time,
+            begins,
             moving: vec![1.0; input.len()],
             direction: vec![0.0; input.len()],
             place: Vec::new(),
@@ -156,6 +207,25 @@ impl Signals {
         self.input.len()
     }
 
+    /// First sample and end of each run.
+    pub fn runs(&self) -> impl Iterator<Item = (usize, usize)> {
+        let ends = self.begins.iter().skip(1).copied().chain([self.len()]);
+        self.begins.iter().copied().zip(ends)
+    }
+
+    /// Whether no gap in time is between two samples.
+    pub fn is_one_run(&self, from: usize, to: usize) -> bool {
+        let run = |k: usize| self.begins.partition_point(|begin| *begin <= k);
+        run(from) == run(to)
+    }
+
+    /// What a function makes of a series, of each run by itself.
+    fn by_runs(&self, values: &[f64], of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+        self.runs()
+            .flat_map(|(from, to)| of(&values[from..to]))
+            .collect()
+    }
+
     /// Velocity by the sensor that is less noisy, smoothed until its noise is small; its sign; rests.
     fn follow_drive(&mut self) {
         let step = self.step;
@@ -170,10 +240,10 @@ impl Signals {
                 let wanted = (noise / (SMOOTH * rms(&v.values))).powi(2) / 2.0;
                 let reach = (wanted as usize).min(WIDEST_SMOOTHING);
                 let left = noise / (2.0 * reach as f64 + 1.0).sqrt();
-                (smoothed(&v.values, reach), left)
+                (self.by_runs(&v.values, |v| smoothed(v, reach)), left)
             }
             (_, Some((_, p))) => {
-                let coarse = slope(&p.values, 8, step);
+                let coarse = self.by_runs(&p.values, |x| slope(x, 8, step));
                 let wanted = SMOOTH * rms(&coarse);
                 let noise = |reach: usize| {
                     let m = reach as f64;
@@ -181,7 +251,10 @@ impl Signals {
                 };
                 let reach = (1..=WIDEST_SMOOTHING).find(|r| noise(*r) <= wanted);
                 let reach = reach.unwrap_or(WIDEST_SMOOTHING);
-                (slope(&p.values, reach, step), noise(reach))
+                (
+                    self.by_runs(&p.values, |x| slope(x, reach, step)),
+                    noise(reach),
+                )
             }
             _ => (vec![0.0; self.input.len()], 0.0),
         };
@@ -244,14 +317,14 @@ impl Signals {
             velocity: self.speed[k],
             direction: self.direction[k],
             input,
-            time: self.step * k as f64,
+            time: self.time[k],
         }
     }
 
     /// Sizes, with this longest window.
     pub fn extent(&self, window: f64) -> Extent {
         let input = self.input.iter().fold(0.0_f64, |a, u| a.max(u.abs()));
-        let rate: Vec<f64> = slope(&self.speed, 2, self.step);
+        let rate = self.by_runs(&self.speed, |v| slope(v, 2, self.step));
         let (low, high) = range(&self.place);
         let (least, most) = range(&self.speed);
         Extent {

@@ -86,6 +86,18 @@ pub(super) const CONTROLLED: f64 = 0.99;
 /// Step of a numerical derivative, in standard errors.
 pub(super) const DIFFERENCE: f64 = 1e-3;
 
+/// Lags that the input is put through to see whether the motion follows, from one sample to the record over this: a machine is seen
+/// to settle some times.
+pub(super) const LAGS: usize = 10;
+pub(super) const PATIENCE: f64 = 8.0;
+
+/// Samples of the past from which the next output is foretold: three resonances.
+pub(super) const PAST: usize = 6;
+
+/// Work that went in, in times of what came back, from which the input acted: of a random walk, which the work of an input of another
+/// record is, one in forty has as much.
+pub(super) const DRIVEN: f64 = 4.0;
+
 /// Levels of an input up to which it is switched and not computed.
 pub(super) const FEW_LEVELS: usize = 6;
 

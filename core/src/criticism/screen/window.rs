@@ -76,7 +76,9 @@ impl Width {
             |k: usize| (k as f64 / block) as usize == ((k + length) as f64 / block) as usize;
         // A window in two blocks would show the one to a fit that is judged by the other.
         let apart = 2 * length <= block as usize;
-        let starts = (0..=last).step_by(stride).filter(|k| !apart || in_one(*k));
+        let starts = (0..=last)
+            .step_by(stride)
+            .filter(|k| (!apart || in_one(*k)) && signals.is_one_run(*k, *k + length));
         Self {
             length,
             starts: starts.collect(),

@@ -337,6 +337,7 @@ mod tests {
         let travel = position.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         Probe::new(&ProbeInput {
             kind: Kind::Drive,
+            rotates: false,
             scales: Scales {
                 step: STEP,
                 duration: STEP * SAMPLES as f64,

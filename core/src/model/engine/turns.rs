@@ -6,16 +6,13 @@
 
 use super::Engine;
 use crate::model::state::State;
+use crate::root::falsi;
 
 /// Turns in one step after which the rest of it is one piece.
 const MAX_TURNS: usize = 4;
 
 /// Share of the forces that act from which a difference between both sides of rest is a jump.
 const JUMP: f64 = 1e-6;
-
-/// Trials of the time of a turn at most, and how exact it is, as a share of the step.
-const TRIALS: usize = 40;
-const EXACT: f64 = 1e-12;
 
 impl Engine<'_> {
     /// Whether a turn matters: a user's own force acts, and no friction of the library holds the body.
@@ -59,24 +56,11 @@ impl Engine<'_> {
 
     /// Time within `h` seconds after which the body turns; it has the velocity `end` after all of them.
     fn turn(&self, from: &State, w: f64, h: f64, end: f64) -> f64 {
-        let (mut a, mut b) = ((0.0, from.motion.v), (h, end));
-        for _ in 0..TRIALS {
-            let time = a.0 - a.1 * (b.0 - a.0) / (b.1 - a.1);
+        falsi(h, from.motion.v, end, |time| {
             let mut state = *from;
             self.one_way_step(&mut state, w, time);
-            let v = state.motion.v;
-            if v == 0.0 || (b.0 - a.0).abs() <= EXACT * h || !v.is_finite() {
-                return time;
-            }
-            // Regula falsi with halving (Illinois).
-            if v * b.1 < 0.0 {
-                a = b;
-            } else {
-                a.1 *= 0.5;
-            }
-            b = (time, v);
-        }
-        b.0
+            state.motion.v
+        })
     }
 
     /// The net force just below and just above rest.

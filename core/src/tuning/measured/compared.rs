@@ -13,7 +13,7 @@ const COMPARED: usize = 3000;
 const COARSE: usize = 2000;
 
 /// Weights of the single lags in the response of several in a row: `Ti^(n-1)/prod_(j != i) (Ti - Tj)`.
-fn partial_fractions(lags: &[f64]) -> Vec<f64> {
+pub(super) fn partial_fractions(lags: &[f64]) -> Vec<f64> {
     let others = |i: usize| {
         lags.iter()
             .enumerate()
@@ -48,6 +48,8 @@ pub(super) struct Compared {
     pub scale: f64,
     /// Whether the load may change steadily.
     pub drifts: bool,
+    /// Whether everything was at rest at the first input before the record.
+    pub rests: bool,
     /// How fast a wandering level is followed before anything is compared; 0: not at all.
     following: f64,
 }
@@ -71,6 +73,7 @@ impl Compared {
             span: record.span(),
             scale,
             drifts: false,
+            rests: false,
             following: 0.0,
         }
     }
@@ -124,11 +127,13 @@ impl Compared {
         if structure.integrates() {
             columns.push(since().map(|s| s / self.span).collect());
         }
-        columns.extend(
-            lags.iter()
-                .map(|t| since().map(|s| libm::exp(-s / t)).collect::<Vec<f64>>()),
-        );
-        if self.time.partition_point(|t| t - start < dead_time) > 2 {
+        if !self.rests {
+            columns.extend(
+                lags.iter()
+                    .map(|t| since().map(|s| libm::exp(-s / t)).collect::<Vec<f64>>()),
+            );
+        }
+        if !self.rests && self.time.partition_point(|t| t - start < dead_time) > 2 {
             columns.push(acted);
         }
         // A steady change of the load: behind lags a slope, behind an integrator a parabola.
@@ -140,6 +145,11 @@ impl Compared {
             wander::follow(column, self.following);
         }
         columns
+    }
+
+    /// The last input, less the mean.
+    pub fn last_input(&self) -> f64 {
+        self.time.last().map_or(0.0, |t| self.held.at(*t)) - self.origin
     }
 
     /// Coefficients and residuals at the searched parameters.

@@ -28,6 +28,8 @@ pub struct Cycle {
     pub periods: usize,
     /// From where to where they are used, s.
     pub window: [f64; 2],
+    /// Starts of these periods, and the end of the last one, s.
+    pub marks: Vec<f64>,
     /// Mean input while down and up.
     pub levels: [f64; 2],
     /// Half the distance between the outputs at which the relay went down and up, as recorded; below 0 where noise or a
@@ -103,10 +105,19 @@ fn without_flicker(mut switches: Vec<(f64, bool)>) -> (Vec<(f64, bool)>, usize) 
     }
 }
 
+/// Samples of the warm-up: those up to the second switch, where a whole period follows it.
+fn warm_up(record: &Record) -> usize {
+    let all = threshold(record).map_or_else(Vec::new, |middle| switches(record, middle));
+    match all.as_slice() {
+        [_, second, _, _, ..] => record.time.partition_point(|t| *t < second.0),
+        _ => 0,
+    }
+}
+
 /// Times at which the output passes its middle upwards, after it was well below: whole rounds, whatever the input does
-/// in between.
+/// in between. The middle is that of the cycle: a warm-up goes through a much wider range.
 pub(super) fn rounds(record: &Record) -> Vec<f64> {
-    let mut sorted = record.output.clone();
+    let mut sorted = record.output[warm_up(record)..].to_vec();
     let (low, high) = (quantile(&mut sorted, 0.05), quantile(&mut sorted, 0.95));
     let [below, above] = BETWEEN.map(|share| low + share * (high - low));
     let mut was_below = false;
@@ -182,6 +193,7 @@ pub(super) fn find(record: &Record) -> Option<Cycle> {
         half_periods: [up, period - up],
         periods,
         window: [from, to],
+        marks: marks.to_vec(),
         levels: [sums[0] / time_down, sums[1] / time_up],
         hysteresis,
         middle,

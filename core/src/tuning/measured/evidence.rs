@@ -58,6 +58,10 @@ pub(super) struct Evidence<'a> {
     pub noise: f64,
     /// Set point, if it is known.
     pub target: Option<f64>,
+    /// Half the distance of the thresholds, if it is known.
+    pub hysteresis: Option<f64>,
+    /// Whether the ultimate gain or the gain of a model is known well enough to be told.
+    pub told: bool,
 }
 
 /// A cause.

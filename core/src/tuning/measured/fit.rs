@@ -12,6 +12,7 @@ use num_complex::Complex;
 use super::compared::Compared;
 use super::least_squares::{coherence, damped, inverse_gram};
 use super::structure::{FittedModel, LARGEST_SHARE, Structure, Value, physical, response, times};
+use super::ultimate::MISSED;
 use super::wander;
 use crate::simplex::minimise;
 use crate::sums::dot;
@@ -58,6 +59,8 @@ pub(super) struct Fit {
     /// Output of the model at the compared samples, and the record's there.
     pub simulated: Vec<f64>,
     pub score: f64,
+    /// Where the output goes with the last input; none where it goes on for ever.
+    pub settles: Option<Value>,
     /// Noise of the output: what changes from sample to sample of what the model leaves.
     pub noise: f64,
     motion: f64,
@@ -222,20 +225,7 @@ impl Compared {
         let rss = dot(&residuals, &residuals);
         let n = residuals.len();
         let parameters = columns.len() + p.len();
-        // Full Jacobian: linear columns, and how the model moves with the searched parameters.
-        let mut jacobian = columns.clone();
-        for i in 0..p.len() {
-            let mut moved = p.to_vec();
-            moved[i] += DERIVATIVE;
-            let others = self.columns(structure, &moved);
-            let mut change = vec![0.0; n];
-            for ((c, a), b) in coefficients.iter().zip(&others).zip(&columns) {
-                for (d, (a, b)) in change.iter_mut().zip(a.iter().zip(b)) {
-                    *d += c * (a - b) / DERIVATIVE;
-                }
-            }
-            jacobian.push(change);
-        }
+        let jacobian = self.jacobian(structure, p, &columns, &coefficients);
         // Residuals that hang together are few samples, and every parameter uses one of them up.
         let free = n as f64 / coherence(&residuals) - parameters as f64;
         let variance = rss / free.max(1.0);
@@ -252,6 +242,17 @@ impl Compared {
                 DVector::from_iterator(theta.len(), (theta.iter().zip(&other)).map(|(a, b)| b - a));
             covariance += &moved * moved.transpose();
         }
+        let last = self.last_input();
+        let settles = (!structure.integrates()).then(|| {
+            // Each forced column goes to the input, and the next one stays.
+            let by = |i: usize| if i < forced { last } else { 1.0 };
+            let pairs = || (0..=forced).flat_map(|i| (0..=forced).map(move |j| (i, j)));
+            let variance: f64 = pairs().map(|(i, j)| by(i) * by(j) * full[(i, j)]).sum();
+            Value {
+                value: (0..=forced).map(|i| by(i) * coefficients[i]).sum(),
+                std_error: variance.max(0.0).sqrt(),
+            }
+        });
         let values = physical(structure, &theta, self.scale);
         let errors = errors(structure, &theta, self.scale, &covariance);
         let value = |i: usize| Value {
@@ -284,18 +285,37 @@ impl Compared {
             covariance,
             simulated,
             score: f64::INFINITY,
-            noise: (0.5
-                * residuals
-                    .windows(2)
-                    .map(|r| (r[1] - r[0]).powi(2))
-                    .sum::<f64>()
-                / n as f64)
-                .sqrt(),
+            settles,
+            noise: noise(&residuals),
             motion: self.motion,
             rss,
             scale: self.scale,
             parameters,
         })
+    }
+
+    /// The linear columns, and how the model moves with the searched parameters.
+    fn jacobian(
+        &self,
+        structure: Structure,
+        p: &[f64],
+        columns: &[Vec<f64>],
+        coefficients: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut jacobian = columns.to_vec();
+        for i in 0..p.len() {
+            let mut moved = p.to_vec();
+            moved[i] += DERIVATIVE;
+            let others = self.columns(structure, &moved);
+            let mut change = vec![0.0; self.output.len()];
+            for ((c, a), b) in coefficients.iter().zip(&others).zip(columns) {
+                for (d, (a, b)) in change.iter_mut().zip(a.iter().zip(b)) {
+                    *d += c * (a - b) / DERIVATIVE;
+                }
+            }
+            jacobian.push(change);
+        }
+        jacobian
     }
 
     /// Forced coefficients and searched parameters where the residuals' wandering is taken off first. A model that is right
@@ -321,6 +341,35 @@ impl Compared {
     /// Fits all structures, the one that the data prefer first: by Schwarz's criterion, where residuals that hang together
     /// count as fewer samples. A drift is allowed where the data ask for it.
     pub fn fit_all(&mut self) -> Vec<Fit> {
+        self.fit_moving()
+    }
+
+    /// The same for a record without a cycle. A single step tells only where it begins and ends, as long as any motion may
+    /// have been under way before it: rest is taken where the data do not speak against it. What remains is known no better
+    /// than the models agree that follow the record alike.
+    pub fn fit_all_without_cycle(&mut self) -> Vec<Fit> {
+        let moving = self.fit_moving();
+        let drifted = std::mem::replace(&mut self.drifts, false);
+        self.rests = true;
+        let resting = self.fit_each(&Structure::ALL);
+        let rests = match (moving.first(), resting.first()) {
+            (Some(free), Some(rest)) => {
+                let independent = self.independent(free);
+                let saved = free.parameters as f64 - rest.parameters as f64;
+                let floor = self.output.len() as f64 * (ROUND_OFF * self.motion).powi(2);
+                independent * libm::log((rest.rss + floor) / (free.rss + floor))
+                    < saved * libm::log(independent.max(2.0))
+            }
+            (None, rest) => rest.is_some(),
+            _ => false,
+        };
+        if !rests {
+            (self.rests, self.drifts) = (false, drifted);
+        }
+        with_disagreement(if rests { resting } else { moving })
+    }
+
+    fn fit_moving(&mut self) -> Vec<Fit> {
         let steady = self.fit_each(&Structure::ALL);
         let Some(best) = steady.first() else {
             return steady;
@@ -372,6 +421,37 @@ impl Compared {
     }
 }
 
+/// Adds to the errors of gain and final level how far the models disagree that follow the record alike, beyond what their
+/// own errors explain.
+fn with_disagreement(mut fits: Vec<Fit>) -> Vec<Fit> {
+    let beyond = |own: Value, other: Value| {
+        ((other.value - own.value).powi(2) - other.std_error.powi(2)).max(0.0)
+    };
+    let widened = |own: Value, others: &mut dyn Iterator<Item = Value>| Value {
+        std_error: (own.std_error.powi(2) + others.map(|o| beyond(own, o)).fold(0.0, f64::max))
+            .sqrt(),
+        ..own
+    };
+    let Some(least) = (fits.iter().map(|f| f.model.left)).min_by(f64::total_cmp) else {
+        return fits;
+    };
+    let alike: Vec<(Value, Value)> = (fits.iter())
+        .filter(|f| f.model.left <= MISSED * least)
+        .filter_map(|f| Some((f.model.gain, f.settles?)))
+        .collect();
+    for fit in fits.iter_mut().filter(|f| f.settles.is_some()) {
+        fit.model.gain = widened(fit.model.gain, &mut alike.iter().map(|a| a.0));
+        fit.settles = (fit.settles).map(|s| widened(s, &mut alike.iter().map(|a| a.1)));
+    }
+    let vague = |f: &Fit| !f.model.gain.is_known();
+    // A stable sort: by score among those that are known.
+    fits.sort_by_key(vague);
+    for (i, fit) in fits.iter_mut().enumerate() {
+        fit.model.preferred = i == 0;
+    }
+    fits
+}
+
 /// Starts of the search.
 fn grid(structure: Structure) -> Vec<Vec<f64>> {
     let mut grid = Vec::new();
@@ -411,4 +491,10 @@ fn errors(structure: Structure, theta: &[f64], scale: f64, covariance: &DMatrix<
         let g = DVector::from_iterator(theta.len(), gradients.iter().map(|g| g[k]));
         (covariance * &g).dot(&g).max(0.0).sqrt()
     })
+}
+
+/// Standard deviation of what changes from one sample to the next, from the differences of neighbours.
+fn noise(residuals: &[f64]) -> f64 {
+    let squares: f64 = residuals.windows(2).map(|r| (r[1] - r[0]).powi(2)).sum();
+    (0.5 * squares / residuals.len() as f64).sqrt()
 }

@@ -61,6 +61,22 @@ impl Point {
         magnitude.is_known()
     }
 
+    /// Degrees by which its phase lies above -180, from -180 to 180; of a plant of negative gain (`sign` -1) with the
+    /// input turned, as its controller turns it.
+    pub(super) fn beyond(&self, sign: f64) -> f64 {
+        let turned = if sign < 0.0 { 0.0 } else { 180.0 };
+        let wrapped = (self.phase_deg + turned + 180.0).rem_euclid(360.0);
+        wrapped - 180.0
+    }
+
+    /// The point of the plant with the input turned.
+    pub(super) fn turned(&self) -> Self {
+        Self {
+            phase_deg: self.beyond(-1.0) - 180.0,
+            ..*self
+        }
+    }
+
     /// As a complex number.
     pub fn value(&self) -> Complex<f64> {
         let (sin, cos) = libm::sincos(self.phase_deg.to_radians());

@@ -16,6 +16,9 @@ use crate::tuning::{
 /// Full scale of the output of Klipper's and Marlin's controllers.
 const FIRMWARE_SCALE: f64 = 255.0;
 
+/// Largest standard error of the phase, degrees, with which a point is moved: twice of it is half of a phase margin.
+const MOVED: f64 = 15.0;
+
 /// The form in which a controller takes its gains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -221,22 +224,36 @@ pub(super) fn all(basis: &Basis<'_>, form: Form, full_scale: f64) -> Vec<TunedGa
     }
     // Without a model the point alone is moved.
     if reduced.is_none()
-        && let Some(point) = basis.point.filter(|p| p.is_known())
+        && let Some(point) = basis
+            .point
+            .filter(|p| p.is_known() && p.std_error_phase_deg <= MOVED)
     {
-        let from = identified(None, None, Some(point)).point;
+        // A plant of negative gain is moved with the input turned, and its gains are turned back.
+        let turned = basis.model.is_some_and(|m| m.gain.value < 0.0);
+        let seen = if turned { point.turned() } else { *point };
+        let back = |pid: Result<Pid, TuningError>| {
+            pid.map(|p| {
+                if turned {
+                    Pid { gain: -p.gain, ..p }
+                } else {
+                    p
+                }
+            })
+        };
+        let from = identified(None, None, Some(&seen)).point;
         let target = Target::PhaseMargin(Wish::default().phase_margin).point();
         add(
             "moving_point",
             "Moving point",
             "pi",
-            move_with_pi(&from, target),
+            back(move_with_pi(&from, target)),
         );
         let wish = Wish::default();
         add(
             "moving_point",
             "Moving point",
             "pid",
-            move_with_pid(&from, target, wish.time_ratio, wish.filter),
+            back(move_with_pid(&from, target, wish.time_ratio, wish.filter)),
         );
     }
     if let Some(reduced) = reduced {

@@ -1,4 +1,7 @@
 //! Whether a least time on or off holds the relay.
+//!
+//! A relay switches at the first sample beyond its threshold: whatever the noise, no output before a switch is beyond the
+//! output of any switch of the same kind. Where some are, and the times are all alike, it is the time that switches.
 
 use super::cycle::Cycle;
 use super::evidence::{Evidence, Trouble, TroubleKind, sensor_step, trouble};
@@ -6,9 +9,11 @@ use super::number::number as n;
 use super::record::Record;
 use crate::order::{median, range};
 
-/// So many half periods or more are held by a minimum time, where they agree within the first share of a sample, those of the
-/// other side differ by more than the second, and the outputs at their ends by more than the third of what chance makes.
+/// So many half periods or more are held by a minimum time, where they agree within the first share of a sample and the
+/// outputs before their ends pass those at their ends; or within the second, those of the other side differ by more than the
+/// third, and the outputs at their ends by more than the fourth of what chance makes.
 const FEWEST_HELD: usize = 4;
+const EQUAL_LENGTH: f64 = 0.01;
 const SAME_LENGTH: f64 = 1.01;
 const VARIES: f64 = 2.0;
 const SCATTERS: f64 = 3.0;
@@ -18,6 +23,9 @@ struct Halves {
     lengths: Vec<f64>,
     ends: Vec<f64>,
     slopes: Vec<f64>,
+    /// The output farthest towards the switch among the samples before each end, and at it; both rise to the switch.
+    before: f64,
+    at: f64,
 }
 
 impl Halves {
@@ -26,6 +34,14 @@ impl Halves {
             lengths: Vec::new(),
             ends: Vec::new(),
             slopes: Vec::new(),
+            before: f64::NEG_INFINITY,
+            at: f64::INFINITY,
+        };
+        // Of a plant with negative gain the relay goes down at a low output.
+        let sign = if up == (cycle.hysteresis >= 0.0) {
+            1.0
+        } else {
+            -1.0
         };
         // The first one belongs to the start.
         let all = cycle.switches.windows(2).filter(|s| s[0].1 == up);
@@ -39,7 +55,11 @@ impl Halves {
             {
                 halves.ends.push(*at);
                 halves.slopes.push((at - before).abs());
+                halves.at = halves.at.min(sign * at);
             }
+            // After a switch the output is still beyond the other threshold, and far from this one only later.
+            let own = &record.output[record.between(0.5 * (s[0].0 + s[1].0), s[1].0)];
+            halves.before = own.iter().fold(halves.before, |most, y| most.max(sign * y));
         }
         halves
     }
@@ -62,10 +82,14 @@ pub(super) fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
         let chance = median(&mut own.slopes.clone())
             .max(e.noise)
             .max(sensor_step(&e.record.output));
+        let (same, shown) = (spread(&own.lengths), own.before > own.at);
+        // By thresholds that are known the output passes none by more than it moves in a sample.
+        let beyond = (e.hysteresis).is_some_and(|h| cycle.hysteresis > h + SCATTERS * chance);
         let held = own.lengths.len() >= FEWEST_HELD
-            && spread(&own.lengths) <= SAME_LENGTH * sampling
-            && spread(&other.lengths) > VARIES * sampling
-            && spread(&own.ends) > SCATTERS * chance;
+            && ((same <= EQUAL_LENGTH * sampling && (shown || beyond))
+                || (same <= SAME_LENGTH * sampling
+                    && spread(&other.lengths) > VARIES * sampling
+                    && spread(&own.ends) > SCATTERS * chance));
         held.then(|| {
             let (least, (low, high)) = (range(&own.lengths).0, range(&own.ends));
             trouble(

@@ -20,8 +20,10 @@
 //! | `gains` | rules, forms, margins achieved |
 //! | `evidence` | causes, and what they are looked for in |
 //! | `minimum_time` | whether a least time holds the relay |
+//! | `ending` | why the input no longer changes at the end |
 //! | `trouble` | why a test stalls or misleads |
 //! | `readings` | from a few numbers, without a record |
+//! | `family` | the plants whose cycle shows the same numbers |
 //! | `log` | logs of firmwares |
 //! | `opened` | what is in a file |
 //! | `wishes` | what the user wants besides |
@@ -31,7 +33,9 @@
 
 mod compared;
 mod cycle;
+mod ending;
 mod evidence;
+mod family;
 mod fit;
 mod fourier;
 mod gains;

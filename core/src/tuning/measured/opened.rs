@@ -80,7 +80,8 @@ impl Opened {
     /// A record or numbers that cannot be used.
     pub fn tune(self, wishes: &Wishes) -> Result<MeasuredTuning, LogError> {
         match self {
-            Self::Log(log) => log.with(wishes).tune(wishes.form),
+            Self::Log(log) => log.with(wishes)?.tune(wishes.form),
+            Self::Record(..) if wishes.levels.is_some() => Err(LogError::Levels),
             Self::Record(record, notes) => Ok(tune_record(&record, &wishes.settings(notes))?),
         }
     }

@@ -1,15 +1,16 @@
 //! From a few numbers read off a relay test, without its record.
 //!
 //! Amplitude, period, levels and hysteresis do not tell the waveform. By the describing function the output is a sine;
-//! the cycles of a lag with dead time, which can be computed exactly, go from a triangle (an integrator) to a square (a
-//! dead time) of the same amplitude. How far these disagree is the error that is told.
+//! the cycles of lags with dead time, which can be computed exactly, go from a triangle (an integrator) to a square (a
+//! dead time) of the same amplitude. How far these disagree is the error that is told: little in a symmetric cycle, much
+//! in another.
 
 use std::f64::consts::PI;
 
-use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::evidence::{Trouble, TroubleKind};
+use super::family::{Member, Seen};
 use super::fourier::Point;
 use super::gains::{self, Basis};
 use super::number::{full_scale, number};
@@ -17,12 +18,11 @@ use super::record::RecordError;
 use super::report::{Conventional, MeasuredTuning, Settings, Summary};
 use super::ultimate::MeasuredUltimate;
 
-/// Dead times over time constants of the lags whose cycles are compared.
-const RATIOS: [f64; 2] = [0.02, 8.0];
-const RATIOS_TRIED: usize = 60;
-
 /// The phase counts as -180 degrees up to this many degrees beside it.
 const NEAR: f64 = 3.0;
+
+/// Half periods that are said to differ have a ratio below this.
+const UNEQUAL: f64 = 0.66;
 
 /// How an amplitude was read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,6 +50,9 @@ pub struct Readings {
     pub hysteresis: f64,
     /// Times up and down, s; equal where they are not known.
     pub half_periods: Option<[f64; 2]>,
+    /// Whether they are known to differ, though not by how much.
+    #[serde(default)]
+    pub unequal: bool,
 }
 
 fn check(name: &str, value: f64, fits: bool, range: &str) -> Result<(), RecordError> {
@@ -116,61 +119,87 @@ impl Readings {
     }
 
     fn symmetric(&self) -> bool {
-        self.half_periods
-            .is_none_or(|[up, down]| (up - down).abs() < 0.02 * self.period)
+        self.half_periods.map_or(!self.unequal, |[up, down]| {
+            (up - down).abs() < 0.02 * self.period
+        })
     }
 
-    /// The point by the describing function, with the error of not knowing the waveform.
-    fn point(&self) -> Point {
-        let a = self.half_amplitude();
-        let omega = 2.0 * PI / self.period;
-        let up = self.half_periods.map_or(0.5, |[up, _]| up / self.period);
-        let push = (self.levels[1] - self.levels[0]).abs() * libm::sin(PI * up);
-        let magnitude = PI * a / (2.0 * push);
-        let phase = -180.0 + libm::asin(self.hysteresis / a).to_degrees();
-        let family: Vec<(f64, f64)> = (0..RATIOS_TRIED)
-            .filter_map(|i| {
-                let share = i as f64 / (RATIOS_TRIED - 1) as f64;
-                let ratio = RATIOS[0] * libm::pow(RATIOS[1] / RATIOS[0], share);
-                let p = lag_with_dead_time(ratio, a, self.hysteresis, self.period)?;
-                let arg = libm::atan2(p.im, p.re).to_degrees();
-                let arg = if arg > 0.0 { arg - 360.0 } else { arg };
-                // For an input of +-1; a sine of the amplitude would have pi a/4.
-                Some((p.norm() / (0.25 * PI * a), arg - phase))
-            })
-            .collect();
-        let spread = |of: fn(&(f64, f64)) -> f64, middle: f64| {
-            // Between the ends of the range every value is as likely.
-            family
-                .iter()
-                .map(|p| (of(p) - middle).abs())
-                .fold(0.0, f64::max)
-                / 3.0_f64.sqrt()
-        };
-        Point {
-            omega,
-            magnitude,
-            phase_deg: phase,
-            std_error_magnitude: magnitude * spread(|p| p.0, 1.0),
-            std_error_phase_deg: spread(|p| p.1, 0.0),
+    fn seen(&self) -> Seen {
+        Seen {
+            amplitude: self.half_amplitude(),
+            period: self.period,
+            up: self.half_periods.map_or(0.5 * self.period, |[up, _]| up),
+            hysteresis: self.hysteresis,
+            swing: (self.levels[1] - self.levels[0]).abs(),
         }
     }
-}
 
-/// `P(jw)` of the lag with dead time, `L/T = ratio`, that oscillates with amplitude `a` and this period under a symmetric
-/// relay of +-1 with hysteresis `eps`: `a/K = 1 - (1 - eps/K) e^(-L/T)`, `period/2 = T ln((2 e^(L/T) - 1 + eps/K)/(1 - eps/K))`.
-fn lag_with_dead_time(ratio: f64, a: f64, eps: f64, period: f64) -> Option<Complex<f64>> {
-    let decay = libm::exp(-ratio);
-    let amplitude = |e: f64| 1.0 - (1.0 - e) * decay;
-    // eps/a = e/amplitude(e) is linear in e: e (1 - (eps/a) decay) = (eps/a)(1 - decay).
-    let share = eps / a;
-    let e = share * (1.0 - decay) / (1.0 - share * decay);
-    let time_constant = 0.5 * period / libm::log((2.0 / decay - 1.0 + e) / (1.0 - e));
-    let gain = a / amplitude(e);
-    let omega = 2.0 * PI / period;
-    let (sin, cos) = libm::sincos(-omega * ratio * time_constant);
-    let p = Complex::new(cos, sin) * gain / Complex::new(1.0, omega * time_constant);
-    p.norm().is_finite().then_some(p)
+    /// The point, with the error of not knowing the waveform: of a symmetric cycle by the describing function, of another
+    /// in the middle of all that its numbers leave open.
+    fn point(&self) -> Option<Point> {
+        if self.unequal && self.half_periods.is_none() {
+            return None;
+        }
+        let seen = self.seen();
+        let (family, sine) = (seen.family(), seen.sine());
+        let span = |of: fn(&Member) -> f64| {
+            family
+                .iter()
+                .chain(&sine)
+                .map(of)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                    (low.min(v), high.max(v))
+                })
+        };
+        let (magnitudes, phases) = (span(|m| m.magnitude), span(|m| m.phase_deg));
+        let middle = match sine {
+            Some(sine) if self.symmetric() => sine,
+            _ if family.is_empty() => return None,
+            _ => Member {
+                magnitude: (magnitudes.0 * magnitudes.1).sqrt(),
+                phase_deg: 0.5 * (phases.0 + phases.1),
+            },
+        };
+        // Between the ends of the span every value is as likely.
+        let error =
+            |middle: f64, ends: (f64, f64)| (middle - ends.0).max(ends.1 - middle) / 3.0_f64.sqrt();
+        Some(Point {
+            omega: 2.0 * PI / self.period,
+            magnitude: middle.magnitude,
+            phase_deg: middle.phase_deg,
+            std_error_magnitude: error(middle.magnitude, magnitudes),
+            std_error_phase_deg: error(middle.phase_deg, phases),
+        })
+    }
+
+    /// What the half periods do to it.
+    fn asymmetric(&self) -> Option<Trouble> {
+        let (number, text) = match self.half_periods {
+            Some([up, down]) if !self.symmetric() => (
+                up.min(down) / up.max(down),
+                format!(
+                    "The half periods of {} s and {} s differ: 4d/(πa) does not hold for such a cycle. Lags with dead time \
+                     that have this very cycle lie all over the error of the point; the record of the test narrows it.",
+                    number(up),
+                    number(down)
+                ),
+            ),
+            None if self.unequal => (
+                UNEQUAL,
+                "The half periods are known to differ, but not by how much: without them amplitude and period do not tell \
+                 the phase of the cycle, so no point and no gains follow. Give the times up and down, or the record of the \
+                 test."
+                    .to_owned(),
+            ),
+            _ => return None,
+        };
+        Some(Trouble {
+            kind: TroubleKind::Asymmetric,
+            fatal: false,
+            number,
+            text,
+        })
+    }
 }
 
 /// What the numbers tell.
@@ -185,8 +214,8 @@ pub fn tune_readings(
     let point = readings.point();
     let a = readings.half_amplitude();
     let swing = (readings.levels[1] - readings.levels[0]).abs();
-    let near = (point.phase_deg + 180.0).abs() <= NEAR && readings.symmetric();
-    let ultimate = near.then(|| MeasuredUltimate {
+    let near = |p: &&Point| (p.phase_deg + 180.0).abs() <= NEAR && readings.symmetric();
+    let ultimate = point.as_ref().filter(near).map(|point| MeasuredUltimate {
         gain: 1.0 / point.magnitude,
         period: readings.period,
         std_error_gain: point.std_error_magnitude / point.magnitude.powi(2),
@@ -196,30 +225,13 @@ pub fn tune_readings(
         model: None,
         models: &[],
         ultimate: ultimate.as_ref(),
-        point: Some(&point),
+        point: point.as_ref(),
         sampling: 0.0,
     };
     let scale = settings
         .full_scale
         .unwrap_or_else(|| full_scale(readings.levels[1]));
     let gains = gains::all(&basis, settings.form, scale);
-    let mut troubles = Vec::new();
-    if !readings.symmetric()
-        && let Some([up, down]) = readings.half_periods
-    {
-        let ratio = up.min(down) / up.max(down);
-        troubles.push(Trouble {
-            kind: TroubleKind::Asymmetric,
-            fatal: false,
-            number: ratio,
-            text: format!(
-                "The half periods of {} s and {} s differ: 4d/(pi a) does not hold for such a cycle, and its phase is \
-                 not that of the describing function; give the record of the test instead.",
-                number(up),
-                number(down)
-            ),
-        });
-    }
     let half_periods = readings.half_periods.unwrap_or([0.5 * readings.period; 2]);
     let mut result = MeasuredTuning {
         name: "the numbers".to_owned(),
@@ -231,7 +243,7 @@ pub fn tune_readings(
             hysteresis: readings.hysteresis,
             periods: 0,
         }),
-        point: Some(point),
+        point,
         ultimate,
         conventional: Some(Conventional {
             gain: 2.0 * swing / (PI * a),
@@ -240,12 +252,17 @@ pub fn tune_readings(
         static_gain: None,
         models: Vec::new(),
         gains,
-        troubles,
+        troubles: readings.asymmetric().into_iter().collect(),
         notes: settings.notes.clone(),
         input_unit: "1".to_owned(),
         output_unit: "1".to_owned(),
         text: String::new(),
     };
+    if readings.half_periods.is_none() && !readings.unequal {
+        result.notes.push(
+            "The half periods were taken as equal; where they are not, give them: the point is another then.".to_owned(),
+        );
+    }
     result.notes.push(
         "From numbers alone the waveform is not known: the errors are those of not knowing it. The record of the test \
          tells more, and gives models."

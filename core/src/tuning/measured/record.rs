@@ -152,6 +152,17 @@ impl Record {
         }
     }
 
+    /// Its first samples.
+    pub(super) fn first(&self, count: usize) -> Self {
+        let of = |values: &[f64]| values.iter().copied().take(count).collect();
+        Self {
+            time: of(&self.time),
+            input: of(&self.input),
+            output: of(&self.output),
+            ..self.clone()
+        }
+    }
+
     /// Samples from a time up to another.
     pub(super) fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
         let at = |t: f64| self.time.partition_point(|s| *s < t);

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::compared::Compared;
 use super::cycle::{self, Cycle};
-use super::evidence::{Evidence, Trouble};
+use super::ending;
+use super::evidence::{Evidence, Trouble, TroubleKind};
 use super::fourier::{self, Point};
 use super::gains::{self, Basis, Form, TunedGains};
 use super::number::{full_scale, number};
@@ -15,7 +16,7 @@ use super::structure::{FittedModel, Value};
 use super::trouble;
 use super::ultimate::{self, MeasuredUltimate};
 use crate::order::range;
-use crate::uncertain::{with_error, with_uncertainty};
+use crate::uncertain::{NOT_TOLD, with_error, with_uncertainty};
 
 /// Part of the record that is taken for the plant's time where there is no cycle.
 const PART: f64 = 0.1;
@@ -33,6 +34,9 @@ const FOLLOWED: f64 = 0.5;
 const NO_GAINS: &str =
     "No gains follow: neither the gain of a model nor a point of the curve is known well enough.";
 
+const DENIED: &str = "No gains follow: a controller made the input, so that none of the models is that of the plant alone.";
+const UNDETERMINED: &str = "No gains follow: a rule needs gain, time constant and dead time, and this record does not determine all of them.";
+
 /// What the user wants besides.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
@@ -42,6 +46,8 @@ pub struct Settings {
     pub full_scale: Option<f64>,
     /// Set point of the test, in the unit of the output.
     pub target: Option<f64>,
+    /// Half the distance of the thresholds of the test, in the unit of the output.
+    pub hysteresis: Option<f64>,
     /// What else is to be said of it, as by the reader of a log.
     pub notes: Vec<String>,
 }
@@ -110,31 +116,59 @@ pub struct MeasuredTuning {
 /// A record that cannot be used.
 pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
     record.validate()?;
-    let found = cycle::find(record);
-    // Where noise makes the switches, output and input of the cycle are that of the noise: it shows nothing of the plant.
-    let chatters = found
-        .as_ref()
-        .is_some_and(|c| trouble::is_chatter(record, c));
-    let (cycle, chatter) = if chatters {
-        (None, found)
-    } else {
-        (found, None)
-    };
+    // A relay that stops switching is told; the cycle is that before.
+    let stop = cycle::find(record).and_then(|c| ending::stop(record, &c));
+    let kept = stop.map(|s| record.first(s.before));
+    let kept = kept.filter(|before| before.validate().is_ok());
+    let whole = record;
+    let record = kept.as_ref().unwrap_or(record);
+    let [mut cycle, chatter] = cycle_and_chatter(record);
     let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
-    let fits = compared.fit_all();
+    let fits = if cycle.is_some() {
+        compared.fit_all()
+    } else {
+        compared.fit_all_without_cycle()
+    };
+    // A plant of negative gain is the same loop with the input turned: its relay goes up where the output is high.
+    let sign = fits.first().map_or(1.0, |f| f.model.gain.value.signum());
+    if let Some(cycle) = &mut cycle {
+        cycle.hysteresis *= sign;
+    }
     let point = cycle
         .as_ref()
         .and_then(|c| fourier::point(record, c, &compared, fits.first()));
     let omega = point.map_or(2.0 * PI / scale, |p| p.omega);
     let ultimate = ultimate::ultimate(&fits, point.as_ref(), omega);
     let models: Vec<FittedModel> = fits.iter().map(|f| f.model.clone()).collect();
-    let followed = models.first().is_some_and(follows);
+    let static_gain = models.first().and_then(static_gain);
+    let mut troubles = trouble::find(&Evidence {
+        record,
+        cycle: cycle.as_ref(),
+        chatter: chatter.as_ref(),
+        fit: fits.first(),
+        noise: fits.first().map_or(0.0, |f| f.noise),
+        target: settings.target,
+        hysteresis: settings.hysteresis,
+        told: ultimate.is_some() || static_gain.is_some(),
+    });
+    if let Some(stop) = stop.filter(|_| kept.is_some()) {
+        troubles.insert(0, ending::stopped(whole, &stop));
+        troubles.sort_by_key(|t| !t.fatal);
+    }
+    // What a controller made is as much of it as of the plant.
+    let denied = troubles.iter().any(|t| t.kind == TroubleKind::Controller);
+    let (ultimate, static_gain) = if denied {
+        (None, None)
+    } else {
+        (ultimate, static_gain)
+    };
+    let followed = !denied && models.first().is_some_and(follows);
     let basis = Basis {
         model: models.first(),
         models: if followed { &models } else { &[] },
         ultimate: ultimate.as_ref(),
-        point: point.as_ref(),
+        point: point.as_ref().filter(|_| !denied),
         sampling: record.sampling(),
     };
     let (_, high) = range(&record.input);
@@ -143,23 +177,10 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         settings.form,
         settings.full_scale.unwrap_or_else(|| full_scale(high)),
     );
-    let troubles = trouble::find(&Evidence {
-        record,
-        cycle: cycle.as_ref(),
-        chatter: chatter.as_ref(),
-        fit: fits.first(),
-        noise: fits.first().map_or(0.0, |f| f.noise),
-        target: settings.target,
-    });
     let conventional = cycle.as_ref().map(|c| Conventional {
-        gain: 2.0 * (c.levels[1] - c.levels[0]) / (PI * c.amplitude),
+        gain: sign * 2.0 * (c.levels[1] - c.levels[0]) / (PI * c.amplitude),
         period: c.period,
     });
-    let static_gain = models
-        .first()
-        .filter(|m| !m.structure.integrates())
-        .map(|m| m.gain)
-        .filter(is_told);
     let mut result = MeasuredTuning {
         name: record.name.clone(),
         cycle: cycle.as_ref().map(summary),
@@ -177,6 +198,22 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
     };
     result.tell();
     Ok(result)
+}
+
+/// The cycle of a record, or in its place that which noise makes: its output and input show nothing of the plant.
+fn cycle_and_chatter(record: &Record) -> [Option<Cycle>; 2] {
+    let found = cycle::find(record);
+    let chatters = (found.as_ref()).is_some_and(|c| trouble::is_chatter(record, c));
+    if chatters {
+        [None, found]
+    } else {
+        [found, None]
+    }
+}
+
+/// The static gain of a model, where it has one and the record tells it.
+fn static_gain(model: &FittedModel) -> Option<Value> {
+    Some(model.gain).filter(|gain| !model.structure.integrates() && is_told(gain))
 }
 
 fn is_told(gain: &Value) -> bool {
@@ -208,6 +245,12 @@ fn summary(cycle: &Cycle) -> Summary {
 }
 
 impl MeasuredTuning {
+    /// -1 where the output falls with a rising input, else 1.
+    fn sign(&self) -> f64 {
+        let falls = self.models.first().is_some_and(|m| m.gain.value < 0.0);
+        if falls { -1.0 } else { 1.0 }
+    }
+
     /// The first fatal cause, in words.
     pub fn stall(&self) -> Option<&str> {
         self.troubles
@@ -232,13 +275,14 @@ impl MeasuredTuning {
     /// The same, one by one: the point, the ultimate gain, the model, what went wrong, and notes.
     pub fn sentences(&self) -> Vec<String> {
         let mut sentences: Vec<String> = self.of_point().into_iter().collect();
+        sentences.extend(self.of_turned());
         sentences.extend(self.of_ultimate());
         sentences.extend(self.of_formula());
         if let Some(model) = self.models.first() {
             sentences.push(self.of_model(model));
         }
         if self.gains.is_empty() {
-            sentences.push(NO_GAINS.to_owned());
+            sentences.push(self.no_gains().to_owned());
         }
         sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
         sentences.extend(self.notes.iter().cloned());
@@ -272,6 +316,31 @@ impl MeasuredTuning {
         ))
     }
 
+    /// Why there are none.
+    fn no_gains(&self) -> &'static str {
+        let known = |m: &FittedModel| follows(m) && m.gain.is_known();
+        if self
+            .troubles
+            .iter()
+            .any(|t| t.kind == TroubleKind::Controller)
+        {
+            DENIED
+        } else if self.models.first().is_some_and(known) {
+            UNDETERMINED
+        } else {
+            NO_GAINS
+        }
+    }
+
+    /// Where the point is for a controller of a plant of negative gain.
+    fn of_turned(&self) -> Option<String> {
+        let point = self.point.filter(|p| self.sign() < 0.0 && p.is_known())?;
+        Some(format!(
+            "Its gain is negative: with the input turned, as its controller turns it, the phase is {} degrees.",
+            number(point.turned().phase_deg),
+        ))
+    }
+
     /// Ultimate gain and period, or why they do not follow and what would help.
     fn of_ultimate(&self) -> Option<String> {
         if let Some(u) = &self.ultimate {
@@ -285,8 +354,11 @@ impl MeasuredTuning {
         if !point.is_known() {
             return Some("The ultimate gain does not follow.".to_owned());
         }
-        let off = point.phase_deg + 180.0;
-        let remedy = if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
+        let off = point.beyond(self.sign());
+        let held = (self.troubles.iter()).any(|t| t.kind == TroubleKind::MinimumTime);
+        let remedy = if held {
+            "a relay without a minimum time brings the cycle nearer to it".to_owned()
+        } else if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
             format!(
                 "less hysteresis (it is {}, the amplitude {}) brings the cycle nearer to it",
                 number(cycle.hysteresis),
@@ -312,20 +384,25 @@ impl MeasuredTuning {
     fn of_formula(&self) -> Option<String> {
         let formula = self.conventional?;
         Some(format!(
-            "4d/(pi a), which is right for a symmetric cycle without hysteresis alone, would say {} at {} s.",
+            "4d/(πa), which holds only for a symmetric cycle without hysteresis, would give {} at {} s.",
             number(formula.gain),
             number(formula.period)
         ))
     }
 
     fn of_model(&self, model: &FittedModel) -> String {
-        let seconds = |v: &Value| with_error(v.value, v.std_error, "s");
-        let gain = with_error(model.gain.value, model.gain.std_error, &self.gain_unit());
-        let mut parts = vec![format!("gain {gain}")];
+        let unit = self.gain_unit();
         let lags = model.time_constants.iter();
-        parts.extend(lags.map(|t| format!("time constant {}", seconds(t))));
-        parts.extend(model.zero.iter().map(|z| format!("zero {}", seconds(z))));
-        parts.push(format!("dead time {}", seconds(&model.dead_time)));
+        let all = std::iter::once(("gain", model.gain, unit.as_str()))
+            .chain(lags.map(|t| ("time constant", *t, "s")))
+            .chain(model.zero.iter().map(|z| ("zero", *z, "s")))
+            .chain([("dead time", model.dead_time, "s")]);
+        let (told, untold): (Vec<_>, Vec<_>) =
+            all.partition(|(_, v, _)| with_error(v.value, v.std_error, "1") != NOT_TOLD);
+        let parts: Vec<String> = told
+            .iter()
+            .map(|(name, v, unit)| format!("{name} {}", with_error(v.value, v.std_error, unit)))
+            .collect();
         if !follows(model) {
             return format!(
                 "No model follows the record: the one that comes nearest, {}, misses {} % of the motion of the output.",
@@ -333,11 +410,27 @@ impl MeasuredTuning {
                 number(100.0 * model.left),
             );
         }
+        let (name, left) = (model.structure.name(), number(100.0 * model.left));
+        if told.is_empty() {
+            return format!(
+                "The record prefers {name}, but determines none of its numbers. It misses {left} % of the motion of the \
+                 output."
+            );
+        }
+        if untold.is_empty() {
+            return format!(
+                "The record prefers {name}: {}. It misses {left} % of the motion of the output.",
+                parts.join(", ")
+            );
+        }
+        // Each name once, however many time constants there are.
+        let mut names: Vec<&str> = untold.iter().map(|u| u.0).collect();
+        names.dedup();
         format!(
-            "The record prefers {}: {}. It misses {} % of the motion of the output.",
-            model.structure.name(),
+            "The record prefers {name}: {}; not determined by this record: {}. It misses {left} % of the motion of the \
+             output.",
             parts.join(", "),
-            number(100.0 * model.left),
+            names.join(", ")
         )
     }
 }

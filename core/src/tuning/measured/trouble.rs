@@ -1,6 +1,7 @@
 //! Why a relay test stalls, or misleads: each cause recognised from the record, with the number that shows it.
 
 use super::cycle::{Cycle, rounds, threshold};
+use super::ending::stalled;
 use super::evidence::{Evidence, Trouble, TroubleKind, of_unit, sensor_step, trouble};
 use super::minimum_time::minimum_time;
 use super::number::number;
@@ -23,7 +24,7 @@ const DRIFT: f64 = 0.1;
 /// Noise, as a share of the hysteresis, from which the relay switches on noise.
 const NOISY: f64 = 0.5;
 
-/// Flicker pulses for each half period that show that noise switches the relay.
+/// Flicker pulses for each half period from which they are told by the half period.
 const FLICKERS: f64 = 0.25;
 
 /// Scatter of the periods, as a share of their mean, from which they come at random.
@@ -87,12 +88,13 @@ fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
             false,
             ratio,
             format!(
-                "The {slower} takes {} times as long as the {faster} ({} s against {} s): 4d/(pi a) does not hold for \
-                 such a cycle; a mean input nearer to {} would make it symmetric.",
+                "The {slower} takes {} times as long as the {faster} ({} s against {} s): 4d/(πa) does not hold for \
+                 such a cycle; levels whose middle is {} instead of {} would make it symmetric.",
                 n(1.0 / ratio),
                 n(up.max(down)),
                 n(up.min(down)),
                 n(cycle.levels[0] + share * (cycle.levels[1] - cycle.levels[0])),
+                n(0.5 * (cycle.levels[0] + cycle.levels[1])),
             ),
         )
     });
@@ -110,19 +112,27 @@ fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     let level = e.noise;
     let half_periods = 2.0 * cycle.periods as f64;
     let flickers = cycle.flicker as f64 / half_periods;
-    (flickers > FLICKERS && level > NOISY * cycle.hysteresis.max(0.0)).then(|| {
-        trouble(
-            TroubleKind::NoiseLargerThanHysteresis,
-            false,
-            level,
+    let shown = cycle.flicker > 0 && level > NOISY * cycle.hysteresis.max(0.0);
+    shown.then(|| {
+        let (noise, hysteresis) = (
+            of_unit(level, &e.record.output_unit),
+            n(cycle.hysteresis.max(0.0)),
+        );
+        let text = if flickers > FLICKERS {
             format!(
-                "The relay flickers {} times at each switch: the noise ({}) is of the size of the hysteresis ({}). \
-                 Three times the noise as hysteresis, or a filter, ends it.",
+                "The relay flickers {} times at each switch: the noise ({noise}) is of the size of the hysteresis \
+                 ({hysteresis}). Three times the noise as hysteresis, or a filter, ends it.",
                 n(flickers),
-                of_unit(level, &e.record.output_unit),
-                n(cycle.hysteresis.max(0.0)),
-            ),
-        )
+            )
+        } else {
+            format!(
+                "The relay flickers {} in {} half periods: the noise ({noise}) is of the size of the hysteresis \
+                 ({hysteresis}). Three times the noise as hysteresis, or a filter, ends it.",
+                counted(cycle.flicker, "time"),
+                n(half_periods),
+            )
+        };
+        trouble(TroubleKind::NoiseLargerThanHysteresis, false, level, text)
     })
 }
 
@@ -184,16 +194,16 @@ fn quantised(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
 
 /// Mean of a column in each period.
 fn means(record: &Record, column: &[f64], cycle: &Cycle) -> Vec<f64> {
-    (0..cycle.periods)
-        .filter_map(|k| {
-            let from = cycle.window[0] + k as f64 * cycle.period;
-            let inside = &column[record.between(from, from + cycle.period)];
+    (cycle.marks.windows(2))
+        .filter_map(|ends| {
+            let inside = &column[record.between(ends[0], ends[1])];
             (!inside.is_empty()).then(|| inside.iter().sum::<f64>() / inside.len() as f64)
         })
         .collect()
 }
 
-/// A relay keeps the output where it is: what drifts is the input that this takes, and seldom the output too.
+/// A relay keeps the output where it is: what drifts is the input that this takes, and seldom the output too. As the half
+/// periods change, so does the shape of the output, and with it its mean: that tells nothing more.
 fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     let ends = |column: &[f64]| {
         let means = means(e.record, column, cycle);
@@ -204,7 +214,7 @@ fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     let (u, y) = (ends(&e.record.input)?, ends(&e.record.output)?);
     let swing = (cycle.levels[1] - cycle.levels[0]).abs();
     let shares = [(u.1 - u.0) / swing, (y.1 - y.0) / (2.0 * cycle.amplitude)];
-    let (word, unit, ends, share) = if shares[0].abs() >= shares[1].abs() {
+    let (word, unit, ends, share) = if shares[0].abs() > DRIFT {
         ("mean input", &e.record.input_unit, u, shares[0])
     } else {
         ("mean output", &e.record.output_unit, y, shares[1])
@@ -298,48 +308,6 @@ fn controller(record: &Record) -> Option<Trouble> {
     })
 }
 
-/// The input no longer changes: where does the output go?
-fn stalled(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
-    let record = e.record;
-    let last = record.input.len() - 1;
-    let model = &e.fit?.model;
-    if model.structure.integrates() {
-        return None;
-    }
-    let ends = model.operating_point + model.gain.value * record.input[last];
-    let (low, high) = range(&record.output[since..]);
-    let reached = if up { high } else { low };
-    let word = if up { "up" } else { "down" };
-    let where_to = e.target.map_or_else(
-        || n(ends),
-        |t| {
-            format!(
-                "{}, {} short of the target of {}",
-                n(ends),
-                n((t - ends).abs()),
-                n(t)
-            )
-        },
-    );
-    if let Some(target) = e.target
-        && ((up && ends > target) || (!up && ends < target))
-    {
-        return None;
-    }
-    let seconds = n(record.time[last] - record.time[since]);
-    Some(trouble(
-        TroubleKind::TargetUnreachable,
-        true,
-        ends,
-        format!(
-            "The input stays {word} for the last {seconds} s while the output has reached {} and levels off at {where_to}: \
-             the relay waits for a threshold that this input cannot reach. A lower target, or a stronger input, lets it \
-             switch.",
-            n(reached),
-        ),
-    ))
-}
-
 fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
     let middle = threshold(e.record)?;
     let switched = e
@@ -350,17 +318,23 @@ fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
         .count();
     let rounds = rounds(e.record).len().saturating_sub(1).min(switched / 2);
     (rounds <= WHOLE_PERIODS).then(|| {
-        trouble(
-            TroubleKind::WindowTooShort,
-            true,
-            rounds as f64,
+        let (seconds, switched, went) = (
+            n(e.record.span()),
+            counted(switched, "time"),
+            counted(rounds, "time"),
+        );
+        let text = if e.told {
             format!(
-                "In {} s the input switches {} and the output goes round {}: the window is too short, at least \
-                 {WHOLE_PERIODS} whole periods after the first are needed.",
-                n(e.record.span()),
-                counted(switched, "time"),
-                counted(rounds, "time"),
-            ),
-        )
+                "In {seconds} s the input switches {switched} and the output goes round {went}: there is no cycle to read, \
+                 for which at least {WHOLE_PERIODS} whole periods after the first are needed; what is told here is by the \
+                 models, fitted to the record as it is."
+            )
+        } else {
+            format!(
+                "In {seconds} s the input switches {switched} and the output goes round {went}: the window is too short, at \
+                 least {WHOLE_PERIODS} whole periods after the first are needed."
+            )
+        };
+        trouble(TroubleKind::WindowTooShort, !e.told, rounds as f64, text)
     })
 }

@@ -18,7 +18,7 @@ const TOLD: f64 = 0.025;
 /// A model is not ruled out while its score is worse than the best by no more than this, or it misses no more than this
 /// multiple of what the best one misses.
 const SCORE: f64 = 10.0;
-const MISSED: f64 = 1.15;
+pub(super) const MISSED: f64 = 1.15;
 
 /// How far from the cycle's frequency the ultimate one is looked for, as a factor either way.
 const FAR: f64 = 30.0;
@@ -64,7 +64,8 @@ pub(super) fn ultimate(
     omega: f64,
 ) -> Option<MeasuredUltimate> {
     let all = candidate(fits, point, omega)?;
-    let told = all.std_error_gain <= TOLD * all.gain && all.std_error_period <= TOLD * all.period;
+    let told =
+        all.std_error_gain <= TOLD * all.gain.abs() && all.std_error_period <= TOLD * all.period;
     told.then_some(all)
 }
 
@@ -115,7 +116,7 @@ pub(super) fn candidate(
         add(1, turned.1 - period);
     }
     // What the best model misses beyond noise it may get wrong on the way from the cycle to -180 degrees as well.
-    let way = point.map_or(1.0, |p| ((p.phase_deg + 180.0).abs() / 90.0).min(1.0));
+    let way = point.map_or(1.0, |p| (p.beyond(sign).abs() / 90.0).min(1.0));
     add(0, gain * best.misfit() * way);
     add(1, period * best.misfit() * way);
     for (index, middle) in [gain, period].into_iter().enumerate() {

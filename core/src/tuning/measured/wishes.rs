@@ -13,8 +13,10 @@ pub struct Wishes {
     pub full_scale: Option<f64>,
     /// Set point of the test, in the unit of the output.
     pub target: Option<f64>,
-    /// Half the distance between the outputs at which the relay switches, where a log does not tell it.
+    /// Half the distance between the outputs at which the relay switches, where a record or a log does not tell it.
     pub hysteresis: Option<f64>,
+    /// Input while the relay is down and up, where a log does not tell it.
+    pub levels: Option<[f64; 2]>,
 }
 
 impl Wishes {
@@ -24,6 +26,7 @@ impl Wishes {
             form: self.form.unwrap_or_default(),
             full_scale: self.full_scale,
             target: self.target,
+            hysteresis: self.hysteresis,
             notes,
         }
     }

@@ -144,7 +144,7 @@ impl Controls {
             -output..=output,
             "reference r",
         )
-        .on_hover_text(tr("What the output shall be"));
+        .on_hover_text(tr("What the output should be"));
         let name = "hysteresis ε";
         slider(ui, &mut relay.hysteresis, 0.1, 1.0, 0.0..=output, name).on_hover_text(tr(
             "How far past its threshold the output must go before the relay switches",

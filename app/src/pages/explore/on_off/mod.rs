@@ -143,7 +143,7 @@ impl OnOff {
             "Widen the dead zone: where does the oscillation end?"
         } else if next.sampling > 0.0 {
             next.sampling *= 0.25;
-            "Look more often: how much of the oscillation was the sampling?"
+            "Sample more often: how much of the oscillation came from the sampling?"
         } else {
             let period = words::cycle(data)?.period;
             (next.min_on, next.min_off) = (period, period);

@@ -32,7 +32,7 @@ impl Default for Discrete {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// What the output shall be.
+    /// What the output should be.
     pub reference: f64,
     /// Half the zone in which it is off, where there are three positions.
     pub dead_zone: f64,

@@ -122,7 +122,7 @@ fn first_harmonic(input: &OnOffInput, data: &OnOffData) -> Option<String> {
     }
     let (found, cycle) = (balance(data)?, cycle(data)?);
     Some(format!(
-        "The describing function says period {} ({}) and amplitude {} ({}).",
+        "The describing function predicts a period of {} ({}) and an amplitude of {} ({}).",
         quantity(found.period, "s"),
         difference(found.period, cycle.period),
         brief(found.amplitude),

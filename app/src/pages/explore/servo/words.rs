@@ -140,14 +140,14 @@ fn first_harmonic(servo: &Servo, data: &HuntingData) -> Option<String> {
         (Some(found), Some(cycle)) => {
             let [frequency, amplitude] = swing(found.period, found.amplitude);
             format!(
-                "The describing function says {frequency} Hz ({}) and ±{amplitude}° ({}).",
+                "The describing function predicts {frequency} Hz ({}) and ±{amplitude}° ({}).",
                 difference(cycle.period, found.period),
                 difference(found.amplitude, cycle.amplitude),
             )
         }
         (Some(found), None) => {
             let [frequency, amplitude] = swing(found.period, found.amplitude);
-            format!("The describing function says that it hunts with {frequency} Hz and ±{amplitude}°.")
+            format!("The describing function predicts hunting at {frequency} Hz and ±{amplitude}°.")
         }
     })
 }

@@ -78,6 +78,7 @@ impl Default for Measured {
                 levels: [0.0, 100.0],
                 hysteresis: 0.5,
                 half_periods: None,
+                unequal: false,
             },
             wishes: Wishes::default(),
             pasted: String::new(),
@@ -176,7 +177,24 @@ impl Measured {
         self.job = Some(Job::run(ctx, MeasuredTask { test, wishes }));
     }
 
-    pub fn ui(&mut self, ui: &mut egui::Ui, height: f32) {
+    /// Whether there is a plot that can stay in view.
+    pub fn has_plot(&self) -> bool {
+        self.shown.is_some()
+    }
+
+    /// The answer and a plot that stay in view in a narrow window.
+    pub fn pinned_ui(&self, ui: &mut egui::Ui, height: f32) {
+        if let Some(report) = &self.shown {
+            theme::answer_ui(ui, &answer(&report.tuning));
+            match &report.record {
+                Some(record) => plots::record_ui(ui, record, &report.tuning, height),
+                None => plots::nyquist_ui(ui, report, height),
+            }
+        }
+    }
+
+    /// All that the test tells; the answer and the plot not again where they are `pinned`.
+    pub fn ui(&mut self, ui: &mut egui::Ui, pinned: bool, height: f32) {
         if let Some(message) = &self.message {
             theme::tell(&ui.colored_label(ui.visuals().warn_fg_color, tr(message)));
         }
@@ -189,7 +207,9 @@ impl Measured {
             theme::answer_ui(ui, text);
             return;
         };
-        theme::answer_ui(ui, &answer(&report.tuning));
+        if !pinned {
+            theme::answer_ui(ui, &answer(&report.tuning));
+        }
         if self.job.is_some() {
             motion::busy_ui(ui);
         }
@@ -198,12 +218,14 @@ impl Measured {
         }
         let half = (0.4 * height).max(200.0);
         match &report.record {
+            Some(_) if pinned => plots::nyquist_ui(ui, report, half),
             Some(record) => beside(
                 ui,
                 half,
                 |ui, height| plots::nyquist_ui(ui, report, height),
                 |ui, height| plots::record_ui(ui, record, &report.tuning, height),
             ),
+            None if pinned => {}
             None => plots::nyquist_ui(ui, report, half),
         }
         tables::gains_ui(ui, &report.tuning, &mut self.chosen);

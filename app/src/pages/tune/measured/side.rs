@@ -117,13 +117,26 @@ impl Measured {
                 }
             });
             ui.end_row();
-            number_ui(ui, "period [s]", &mut readings.period, "s");
+            if let Some([up, down]) = &mut readings.half_periods {
+                number_ui(ui, "time up [s]", up, "s");
+                number_ui(ui, "time down [s]", down, "s");
+                readings.period = *up + *down;
+            } else {
+                number_ui(ui, "period [s]", &mut readings.period, "s");
+            }
             number_ui(ui, "input while down", &mut readings.levels[0], "");
             number_ui(ui, "input while up", &mut readings.levels[1], "");
             number_ui(ui, "hysteresis", &mut readings.hysteresis, "");
         });
+        let mut differ = readings.half_periods.is_some();
+        if ui
+            .checkbox(&mut differ, tr("it is up longer than down, or shorter"))
+            .changed()
+        {
+            readings.half_periods = differ.then_some([0.5 * readings.period; 2]);
+        }
         ui.small(tr("The hysteresis is half the distance between the outputs at which the relay switches. Tuners differ in what they \
-                     call amplitude: two much-used ones are wrong by a factor of two, in opposite directions."));
+                     call amplitude: two much-used ones come to an ultimate gain that is twice too large."));
     }
 
     fn wishes_ui(&mut self, ui: &mut egui::Ui) {

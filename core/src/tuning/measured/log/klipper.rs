@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::lines::{after, leading};
-use super::source::{Held, LogError, Source};
+use super::source::{Held, Levels, LogError, Source};
 use crate::order::median;
 use crate::tuning::measured::gains::Form;
 use crate::tuning::measured::readings::{AmplitudeConvention, Readings};
@@ -35,28 +35,40 @@ pub(super) fn has_stats(text: &str) -> bool {
         .any(|l| l.contains("Stats ") && l.contains(" pwm="))
 }
 
-pub(super) fn read(name: &str, text: &str) -> Result<(Held, Settings), LogError> {
+pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), LogError> {
     let settings = |notes: Vec<String>, target: Option<f64>| Settings {
         form: Form::Klipper,
         full_scale: Some(1.0),
         target,
+        hysteresis: None,
         notes,
     };
     if let Some(record) = written(name, text) {
-        return Ok((Held::Record(record), settings(Vec::new(), None)));
+        return Ok((
+            Held::Record(record),
+            Levels::Told,
+            settings(Vec::new(), None),
+        ));
     }
     if let Some((record, target)) = of_stats(name, text) {
-        return Ok((Held::Record(record), settings(Vec::new(), Some(target))));
+        return Ok((
+            Held::Record(record),
+            Levels::Told,
+            settings(Vec::new(), Some(target)),
+        ));
     }
-    let readings = raw(text)
-        .or_else(|| of_gains(text))
+    // The gains alone do not say MAX_POWER.
+    let (readings, levels) = raw(text)
+        .map(|r| (r, Levels::Told))
+        .or_else(|| Some((of_gains(text)?, Levels::AssumedByGain)))
         .ok_or(LogError::Garbled(Source::Klipper))?;
     let note = "Klipper switches 5 degrees below the target and at it: with this hysteresis its cycle is not at the \
                 ultimate point. Its formula leaves that out and takes the full power for half of the relay's swing, so that \
-                its ultimate gain is twice 4d/(pi a). PID_CALIBRATE with WRITE_FILE=1 leaves /tmp/heattest.txt, which tells \
+                its ultimate gain is twice 4d/(πa). PID_CALIBRATE with WRITE_FILE=1 leaves /tmp/heattest.txt, which tells \
                 more.";
     Ok((
         Held::Readings(readings),
+        levels,
         settings(vec![note.to_owned()], None),
     ))
 }
@@ -177,6 +189,7 @@ fn raw(text: &str) -> Option<Readings> {
         levels: [0.0, median(&mut powers)],
         hysteresis: HYSTERESIS,
         half_periods: None,
+        unequal: false,
     })
 }
 
@@ -193,5 +206,6 @@ fn of_gains(text: &str) -> Option<Readings> {
         levels: [0.0, 1.0],
         hysteresis: HYSTERESIS,
         half_periods: None,
+        unequal: false,
     })
 }

@@ -1,7 +1,7 @@
 //! Marlin: the serial log of `M303`.
 
 use super::lines::{after, time, unwrapped};
-use super::source::{Held, LogError, Source};
+use super::source::{Held, Levels, LogError, Source};
 use crate::tuning::measured::gains::Form;
 use crate::tuning::measured::readings::{AmplitudeConvention, Readings};
 use crate::tuning::measured::record::Record;
@@ -16,6 +16,9 @@ const POWER: f64 = 2.0;
 
 /// Fewest reports that make a record.
 const FEWEST: usize = 60;
+
+/// Temperature and power of the hot end and of the bed in a report.
+const HEATERS: [[&str; 2]; 2] = [["T:", "@:"], ["B:", "B@:"]];
 
 /// What it says where it gives up, and what that means.
 const FAILURES: [(&str, &str); 3] = [
@@ -35,21 +38,28 @@ const FAILURES: [(&str, &str); 3] = [
     ),
 ];
 
-pub(super) fn read(name: &str, text: &str) -> Result<(Held, Settings), LogError> {
+pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), LogError> {
     let lines: Vec<&str> = text.lines().collect();
     let settings = |notes| Settings {
         form: Form::Marlin,
         full_scale: Some(SCALE),
         target: None,
+        hysteresis: None,
         notes,
     };
-    if let Some(record) = reported(name, &lines) {
-        return Ok((Held::Record(record), settings(Vec::new())));
+    // The heater that is tuned is the one whose power changes.
+    let record = HEATERS.iter().find_map(|h| reported(name, &lines, *h));
+    if let Some(record) = record {
+        return Ok((Held::Record(record), Levels::Told, settings(Vec::new())));
     }
     if let Some(readings) = cycle(&lines) {
         let note = "Marlin moves the bias from cycle to cycle until both half periods are alike, and keeps each of them at \
                     5 s or more; with the temperature reports of the log (T: and @:) the whole record could be used.";
-        return Ok((Held::Readings(readings), settings(vec![note.to_owned()])));
+        return Ok((
+            Held::Readings(readings),
+            Levels::Told,
+            settings(vec![note.to_owned()]),
+        ));
     }
     let failed = lines.iter().find_map(|l| {
         let found = FAILURES.iter().find(|f| l.contains(f.0))?;
@@ -78,18 +88,19 @@ fn cycle(lines: &[&str]) -> Option<Readings> {
         levels: [bias - d, bias + d],
         hysteresis: 0.0,
         half_periods: None,
+        unequal: false,
     })
 }
 
 /// Reports such as `T:201.2 /210.0 B:60.0 /60.0 @:127 B@:0`, with the host's time or every 2 s.
-fn reported(name: &str, lines: &[&str]) -> Option<Record> {
+fn reported(name: &str, lines: &[&str], [temperature, power]: [&str; 2]) -> Option<Record> {
     let begin = lines
         .iter()
         .position(|l| l.contains("PID Autotune start"))
         .unwrap_or(0);
     let (mut times, mut output, mut input) = (Vec::new(), Vec::new(), Vec::new());
     for line in &lines[begin..] {
-        if let (Some(y), Some(u)) = (after(line, "T:"), after(line, "@:")) {
+        if let (Some(y), Some(u)) = (after(line, temperature), after(line, power)) {
             times.push(time(line));
             output.push(y);
             input.push(POWER * u);

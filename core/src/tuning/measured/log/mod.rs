@@ -11,11 +11,12 @@ mod mycodo;
 mod source;
 
 use super::gains::Form;
+use super::number::number;
 use super::readings::tune_readings;
 use super::report::{MeasuredTuning, Settings, tune_record};
 use super::wishes::Wishes;
 
-pub use source::{Held, LogError, Source};
+pub use source::{Held, Levels, LogError, Source};
 
 /// A log that was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,8 @@ pub struct Log {
     pub source: Source,
     /// What it holds.
     pub held: Held,
+    /// Where its levels come from.
+    pub levels: Levels,
     /// Form in which its owner wants gains, full scale of the input, target, and what is to be said of it.
     pub settings: Settings,
 }
@@ -37,7 +40,13 @@ pub fn recognise(text: &str) -> Option<Source> {
     {
         return Some(Source::Klipper);
     }
-    if has(&["found peak:", "switched state: relay", "pid_autotune"]) {
+    if has(&[
+        "found peak:",
+        "state: relay step",
+        "pid_autotune",
+        "rule: ziegler-nichols",
+        mycodo::THERMOSTAT,
+    ]) {
         return Some(Source::Mycodo);
     }
     if has(&[
@@ -64,23 +73,38 @@ pub fn read(name: &str, text: &str) -> Option<Result<Log, LogError>> {
         Source::Esphome => esphome::read(text),
         Source::Mycodo => mycodo::read(text),
     };
-    Some(found.map(|(held, settings)| Log {
+    Some(found.map(|(held, levels, settings)| Log {
         source,
         held,
+        levels,
         settings,
     }))
 }
 
 impl Log {
     /// What the user says beats what a log does not know.
-    #[must_use]
-    pub fn with(mut self, wishes: &Wishes) -> Self {
+    ///
+    /// # Errors
+    /// [`LogError::Levels`] where levels are given that the log tells itself.
+    pub fn with(mut self, wishes: &Wishes) -> Result<Self, LogError> {
+        match (&mut self.held, wishes.levels) {
+            (Held::Readings(readings), Some(levels)) if self.levels != Levels::Told => {
+                if self.levels == Levels::AssumedByGain {
+                    readings.amplitude *= (levels[1] / readings.levels[1]).abs();
+                }
+                readings.levels = levels;
+                self.levels = Levels::Told;
+            }
+            (_, Some(_)) => return Err(LogError::Levels),
+            _ => {}
+        }
         if let (Held::Readings(readings), Some(hysteresis)) = (&mut self.held, wishes.hysteresis) {
             readings.hysteresis = hysteresis;
         }
+        self.settings.hysteresis = wishes.hysteresis.or(self.settings.hysteresis);
         self.settings.full_scale = wishes.full_scale.or(self.settings.full_scale);
         self.settings.target = wishes.target.or(self.settings.target);
-        self
+        Ok(self)
     }
 
     /// What it tells, with gains in `form`, or in that of its owner.
@@ -88,10 +112,17 @@ impl Log {
     /// # Errors
     /// Numbers that cannot be.
     pub fn tune(&self, form: Option<Form>) -> Result<MeasuredTuning, LogError> {
-        let settings = Settings {
+        let mut settings = Settings {
             form: form.unwrap_or(self.settings.form),
             ..self.settings.clone()
         };
+        if let (Held::Readings(readings), true) = (&self.held, self.levels != Levels::Told) {
+            let [low, high] = readings.levels.map(number);
+            settings.notes.push(format!(
+                "The log does not say the levels of the input: {low} and {high} were assumed, and every gain is in \
+                 proportion to them; give --levels where they are others."
+            ));
+        }
         let found = match &self.held {
             Held::Record(record) => tune_record(record, &settings),
             Held::Readings(readings) => tune_readings(readings, &settings),

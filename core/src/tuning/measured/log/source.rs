@@ -42,7 +42,7 @@ impl Source {
             }
             Self::Esphome => "the lines 'kp: ...' and 'ki: ...', or those of the oscillation",
             Self::Mycodo => {
-                "the lines 'found peak: ...' and 'switched state: ...' with their times"
+                "the lines 'found peak: ...' and 'switched state: ...' with their times, or the gains of the rule ziegler-nichols"
             }
         }
     }
@@ -54,6 +54,12 @@ pub enum LogError {
     /// Recognised, but what is needed is not whole.
     #[error("this looks like a log of {name}, but no cycle can be read from it: expected {needs}", name = .0.name(), needs = .0.needs())]
     Garbled(Source),
+    /// The tuner had not come to its end.
+    #[error("the log ends before the result: {0}")]
+    Unfinished(&'static str),
+    /// Levels were given where the log has them, or there is none.
+    #[error("levels are for numbers, and for a log that does not say them: leave --levels out")]
+    Levels,
     /// The tuner gave up.
     #[error("the tuner gave up: '{0}'; {1}")]
     Failed(String, &'static str),
@@ -68,6 +74,18 @@ pub enum LogError {
     /// The same of a record.
     #[error("{0}")]
     Numbers(#[from] RecordError),
+}
+
+/// Where the levels of the input come from, and what else follows from them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// The log tells them.
+    #[default]
+    Told,
+    /// They were taken as its owner has them where nothing else is set.
+    Assumed,
+    /// The same, and the amplitude was computed from a gain in proportion to the upper one.
+    AssumedByGain,
 }
 
 /// What a log holds.

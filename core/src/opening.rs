@@ -1,7 +1,6 @@
 //! A proposed relay and a fitted model as a loop that can be looked at.
 
-use super::experiment::{FittedModel, NextExperiment};
-use super::program::Program;
+use crate::diagnosis::{FittedModel, NextExperiment, Program};
 use crate::drive::{Adhesion, Body, Command, Contact, Drive, DriveInput, VelocityRelay};
 use crate::effect::baseline::Baseline;
 use crate::effect::{EffectId, find};

@@ -1,7 +1,7 @@
 //! Spaces at which no line breaks: a number stays with its unit and its error, a name with its value.
 
 /// A space at which no line breaks.
-const TIE: char = '\u{a0}';
+pub const TIE: char = '\u{a0}';
 
 /// What stands behind a number and belongs to it.
 const UNITS: [&str; 40] = [

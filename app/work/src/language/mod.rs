@@ -1,5 +1,6 @@
-//! The language of the interface. The app thinks in English; what it says is translated where it is drawn:
-//! `ui.label(tr("..."))`. So state, links, tests and files are the same in every language.
+//! The language of what is read. The app thinks in English; what it says is translated where it is drawn:
+//! `ui.label(tr("..."))`, and what the command line says where it is printed. So state, links, JSON, tests and files are
+//! the same in every language.
 //!
 //! A language is a folder of texts in `assets/` and a line in [`Language::ALL`]; see `docs/translation.md`.
 
@@ -12,7 +13,7 @@ use std::collections::{BTreeSet, HashMap};
 
 pub use catalogue::{Catalogue, is_plain};
 pub use number::typed_in;
-use tied::tied;
+use tied::{TIE, tied};
 
 /// A language that the app speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -24,17 +25,20 @@ pub enum Language {
     German,
 }
 
-/// The German texts, by the parts of the app.
-const GERMAN: [&str; 9] = [
-    include_str!("../../../assets/german/app.txt"),
-    include_str!("../../../assets/german/backlash.txt"),
-    include_str!("../../../assets/german/compare.txt"),
-    include_str!("../../../assets/german/controllers.txt"),
-    include_str!("../../../assets/german/effects.txt"),
-    include_str!("../../../assets/german/errors.txt"),
-    include_str!("../../../assets/german/loops.txt"),
-    include_str!("../../../assets/german/tune.txt"),
-    include_str!("../../../assets/german/mystery.txt"),
+/// The German texts, by the parts of the app. What only a terminal says is not part of the page.
+const GERMAN: &[&str] = &[
+    include_str!("../../../../assets/german/app.txt"),
+    include_str!("../../../../assets/german/backlash.txt"),
+    include_str!("../../../../assets/german/compare.txt"),
+    include_str!("../../../../assets/german/controllers.txt"),
+    include_str!("../../../../assets/german/effects.txt"),
+    include_str!("../../../../assets/german/errors.txt"),
+    include_str!("../../../../assets/german/loops.txt"),
+    include_str!("../../../../assets/german/tune.txt"),
+    include_str!("../../../../assets/german/mystery.txt"),
+    include_str!("../../../../assets/german/report.txt"),
+    #[cfg(not(target_arch = "wasm32"))]
+    include_str!("../../../../assets/german/terminal.txt"),
 ];
 
 impl Language {
@@ -75,7 +79,7 @@ impl Language {
     fn sources(self) -> &'static [&'static str] {
         match self {
             Self::English => &[],
-            Self::German => &GERMAN,
+            Self::German => GERMAN,
         }
     }
 
@@ -139,6 +143,14 @@ pub fn tr(text: impl AsRef<str>) -> String {
         return tied(text.to_owned());
     }
     SPEAKER.with_borrow_mut(|speaker| speaker.say(language, text))
+}
+
+/// The same with usual spaces, for a terminal and for files, where nothing breaks a line but who writes it.
+pub fn say(text: &str) -> String {
+    match spoken() {
+        Language::English => text.to_owned(),
+        Language::German => tr(text).replace(TIE, " "),
+    }
 }
 
 /// A text of the interface as a sentence of its own: on a terminal it goes on behind the name of a file.
