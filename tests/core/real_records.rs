@@ -52,13 +52,14 @@ fn an_arm_has_weight_and_its_gears_rub_the_more_the_more_they_carry() {
     check(&d, &[SPRING, &["load_dependent_friction"]]);
 }
 
-/// An electronic oscillator with a hardening spring, nine samples to a period: J 5.37e-6, d 2.25e-4, k 0.99, k3 3.9.
+/// An electronic oscillator with a hardening spring, nine samples to a period: J 5.37e-6, d 2.25e-4, k 0.99, k3 3.9. It moves in
+/// metres: the weight of an arm goes with the sine of an angle, and is not in the class of the spring.
 #[test]
 fn an_oscillator_has_its_hardening_spring() {
     let Some(d) = diagnose_shared("silverbox-as-drive.csv") else {
         return;
     };
-    check(&d, &[SPRING, &["hardening_spring"]]);
+    check(&d, &[&["hardening_spring"], &["return_spring"]]);
     check_near(&d, "J1", 5.37e-6, 0.05);
     check_near(&d, "k3", 3.9, 0.05);
 }

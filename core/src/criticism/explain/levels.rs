@@ -2,7 +2,7 @@
 
 use super::hidden_body::is_hidden_body;
 use super::sketch::Sketch;
-use super::tuning::{MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
+use super::tuning::{ALIKE, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZE, STARTS};
 use super::{Explain, Level, Stage};
 use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
@@ -13,8 +13,7 @@ impl Explain {
     pub(super) fn open_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let Level { size, hidden } = level;
         self.stage = Stage::Fit(level);
-        self.looked_before = self.looked_at.len();
-        self.best_before = self.best;
+        self.looked_at.clear();
         // Where the input is not what acted, an effect would be one of another machine.
         let other = matches!(
             session.input_check.verdict,
@@ -51,7 +50,7 @@ impl Explain {
         if let Some(from) = visible.or(with_hidden) {
             session.look_where_left(&self.trials[from].scored.fit);
         }
-        self.limit = session.scouted(&self.trials[self.best].scored.fit);
+        self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
         let held = self.held_ids();
         let starts = screened.starts(&held, held.len() + size);
         let of_level = |start: &Start| start.effects.iter().any(|e| is_hidden_body(*e)) == hidden;
@@ -97,7 +96,7 @@ impl Explain {
     /// Looks at the best subset of a level, if it is better than the best before; else goes on to the next level.
     pub(super) fn judge_level(&mut self, session: &mut Session, screened: &Screened, level: Level) {
         let Level { size, hidden } = level;
-        if self.looked_at.len() == self.looked_before {
+        if self.looked_at.is_empty() {
             let of_level: Vec<usize> = (0..self.trials.len())
                 .filter(|t| self.is_of(*t, level))
                 .collect();
@@ -116,14 +115,11 @@ impl Explain {
         let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self
             .lead(session, &better)
-            .filter(|_| self.looked_at.len() - self.looked_before < MOST_LEADS);
+            .filter(|_| self.looked_at.len() < MOST_LEADS);
         let Some(lead) = lead else {
+            let taken = self.looked_at.contains(&self.best);
             let misses = &mut self.misses[usize::from(hidden)];
-            *misses = if self.best == self.best_before {
-                *misses + 1
-            } else {
-                0
-            };
+            *misses = if taken { 0 } else { *misses + 1 };
             self.open_level(session, screened, level.next());
             return;
         };

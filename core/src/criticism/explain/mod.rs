@@ -110,11 +110,8 @@ pub(super) struct Explain {
     stage: Stage,
     /// The subset of each size that leads; and of those with a hidden body.
     leads: [Vec<Option<usize>>; 2],
-    /// Leads that were looked at; and how many of them before the present level.
+    /// Leads of the present size that were looked at.
     looked_at: Vec<usize>,
-    looked_before: usize,
-    /// The best before the present level.
-    best_before: usize,
     pub best: usize,
     /// Sizes in a row that brought nothing; and of those with a hidden body.
     misses: [usize; 2],
@@ -139,8 +136,6 @@ impl Explain {
             stage: Stage::Base,
             leads: [Vec::new(), Vec::new()],
             looked_at: Vec::new(),
-            looked_before: 0,
-            best_before: 0,
             best: 0,
             misses: [0, 0],
             rivals: Vec::new(),

@@ -59,8 +59,10 @@ impl Fit {
         }
     }
 
-    /// Improves the states of all windows with the values kept, window by window where it helps.
+    /// Improves the states of all windows with the values kept, window by window where it helps. That of a window which is held
+    /// back goes along with steps of the values that it has no say in, and may have gone astray: none is worse than the measured one.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
+        self.take_measured_starts(data);
         self.polish_until(f64::NEG_INFINITY, data, scales);
     }
 
