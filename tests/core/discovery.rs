@@ -118,6 +118,7 @@ fn where_nothing_is_missing_there_is_no_formula() {
 fn what_remembers_has_no_formula() {
     // A torque that follows the command along a loop: no function of the moment.
     let rig = DriveRig {
+        samples: 5000,
         excitation: Excitation::Multisine { amplitude: 0.08 },
         stranger: Some(Stranger::Hysteresis {
             share: 0.6,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use egui_plot::{Line, MarkerShape, Points};
+use egui_plot::{Line, MarkerShape, PlotPoint, Points, Text};
 use hysteron_core::tuning::measured::{MeasuredTuning, Point, Record};
 use hysteron_work::tasks::MeasuredReport;
 
@@ -16,6 +16,9 @@ const ERRORS: f64 = 2.0;
 
 /// How far the plot reaches, in magnitudes of the point.
 const REACH: f64 = 2.2;
+
+/// Radius of the arc of the phase, in magnitudes of the point.
+const ARC: f64 = 0.25;
 
 /// Where the plant is at the frequency of the cycle.
 pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
@@ -72,6 +75,27 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
                         .allow_band(false),
                 );
                 let value = point.value();
+                let [ray, arc] = phase(point);
+                for drawn in [ray, arc] {
+                    plot.line(
+                        Line::new(tr("phase"), curve(&drawn))
+                            .color(theme::MEASURED)
+                            .width(1.0)
+                            .allow_band(false)
+                            .allow_hover(false),
+                    );
+                }
+                let (sin, cos) = (0.5 * point.phase_deg).to_radians().sin_cos();
+                let beside = 1.5 * ARC * point.magnitude;
+                plot.text(
+                    Text::new(
+                        tr("phase"),
+                        PlotPoint::new(beside * cos, beside * sin),
+                        format!("{:.0}°", point.phase_deg),
+                    )
+                    .color(theme::MEASURED)
+                    .allow_hover(false),
+                );
                 plot.points(
                     Points::new(tr("measured point"), curve(&[[value.re, value.im]]))
                         .color(theme::MEASURED)
@@ -88,6 +112,18 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
                 );
             }
         });
+}
+
+/// The ray to the point, and the arc of its phase from the positive real axis.
+fn phase(point: &Point) -> [Vec<[f64; 2]>; 2] {
+    let value = point.value();
+    let arc = (0..=48).map(|i| {
+        let (sin, cos) = (point.phase_deg * f64::from(i) / 48.0)
+            .to_radians()
+            .sin_cos();
+        [ARC * point.magnitude * cos, ARC * point.magnitude * sin]
+    });
+    [vec![[0.0, 0.0], [value.re, value.im]], arc.collect()]
 }
 
 /// Within which magnitudes and phases it lies.
