@@ -596,6 +596,37 @@ fn what_is_not_determined_is_said_once() {
     );
 }
 
+#[test]
+fn a_coarse_sensor_is_in_the_error_of_the_point() {
+    let mut off = Vec::new();
+    for plant in &plants()[..6] {
+        for (seed, step) in [(1, 0.3), (2, 0.45), (3, 0.6)] {
+            let test = Test {
+                step,
+                hysteresis: 0.2,
+                holds: 0.4,
+                ..tests()[0].clone()
+            };
+            let record = relay_test(plant, &test, seed);
+            let point = tune_record(&record, &Settings::default())
+                .unwrap()
+                .point
+                .unwrap();
+            let [magnitude, _] = plant.response(point.omega);
+            off.push((point.magnitude - magnitude) / point.std_error_magnitude);
+            println!(
+                "{}, {step}: {point:?} {:.2}",
+                plant.name,
+                off[off.len() - 1]
+            );
+        }
+    }
+    // Within two errors in all but one of twenty, and not ten times too wide either.
+    let beyond = off.iter().filter(|o| o.abs() > 2.0).count();
+    let square = off.iter().map(|o| o * o).sum::<f64>() / off.len() as f64;
+    assert!(beyond <= 1 && square < 1.5 && square > 0.02, "{off:?}");
+}
+
 /// What a plant out of reach of its set point shows: a step that levels off.
 fn out_of_reach() -> Record {
     let time: Vec<f64> = (0..600).map(|i| 2.0 * f64::from(i)).collect();

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::compared::Compared;
 use super::cycle::Cycle;
+use super::evidence::sensor_step;
 use super::fit::Fit;
 use super::least_squares::{coherence, inverse_gram, least_squares};
 use super::record::Record;
@@ -22,6 +23,13 @@ use crate::sums::dot;
 /// Most harmonics that are fitted, and samples of a period for each.
 const HARMONICS: usize = 6;
 const SAMPLES_EACH: f64 = 4.0;
+
+/// Samples that a step of the sensor has at least; a sensor without steps has as many values as samples.
+const SAMPLES_OF_A_STEP: usize = 4;
+
+/// A sine of `n` steps keeps after rounding a first harmonic that is wrong by a share of at most `(2/(pi n)) sum
+/// |J1(2 pi k n)|/k`, some `0.53/n^1.5`; where the steps lie is not known, so that all up to there is as likely.
+const COARSE: f64 = 0.304;
 
 /// A point of the Nyquist curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -106,8 +114,22 @@ pub(super) fn point(
         }
     }
     let value = whole;
+    let error = libm::hypot(error, value.norm() * coarse(record, cycle));
     (value.norm() > 0.0 && error.is_finite())
         .then(|| Point::new(2.0 * PI / cycle.period, value, error))
+}
+
+/// Relative standard error of the wave that a sensor in steps shows: each period meets the same steps, so that no mean
+/// over the periods makes it smaller.
+fn coarse(record: &Record, cycle: &Cycle) -> f64 {
+    let mut values = record.output.clone();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    if values.len() * SAMPLES_OF_A_STEP > record.output.len() {
+        return 0.0;
+    }
+    let steps = cycle.amplitude / sensor_step(&record.output);
+    COARSE * libm::pow(steps, -1.5)
 }
 
 /// The point by whole periods from `from` to `to`, and its error from noise.
