@@ -6,7 +6,6 @@ use super::cycle::Cycle;
 use super::fit::Fit;
 use super::number::number;
 use super::record::Record;
-use crate::order::median;
 
 /// What went wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,13 +79,4 @@ pub(super) fn of_unit(value: f64, unit: &str) -> String {
         "1" => number(value),
         unit => format!("{} {unit}", number(value)),
     }
-}
-
-/// Least distance of two different values.
-pub(super) fn sensor_step(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
-    let mut steps: Vec<f64> = sorted.windows(2).map(|v| v[1] - v[0]).collect();
-    median(&mut steps)
 }

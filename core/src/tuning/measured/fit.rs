@@ -12,7 +12,6 @@ use num_complex::Complex;
 use super::compared::Compared;
 use super::least_squares::{coherence, damped, inverse_gram};
 use super::structure::{FittedModel, LARGEST_SHARE, Structure, Value, physical, response, times};
-use super::ultimate::MISSED;
 use super::wander;
 use crate::simplex::minimise;
 use crate::sums::dot;
@@ -45,6 +44,9 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// By how much the score must be better with a drift: strong evidence on Raftery's scale (1995).
 const DRIFT_EVIDENCE: f64 = 10.0;
+
+/// Multiple of what the best model misses up to which another one is not ruled out.
+pub(super) const MISSED: f64 = 1.15;
 
 /// Step of a numerical derivative.
 const DERIVATIVE: f64 = 1e-5;

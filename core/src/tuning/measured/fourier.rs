@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 
 use super::compared::Compared;
 use super::cycle::Cycle;
-use super::evidence::sensor_step;
 use super::fit::Fit;
 use super::least_squares::{coherence, inverse_gram, least_squares};
 use super::record::Record;
@@ -128,7 +127,7 @@ fn coarse(record: &Record, cycle: &Cycle) -> f64 {
     if values.len() * SAMPLES_OF_A_STEP > record.output.len() {
         return 0.0;
     }
-    let steps = cycle.amplitude / sensor_step(&record.output);
+    let steps = cycle.amplitude / record.sensor_step();
     COARSE * libm::pow(steps, -1.5)
 }
 

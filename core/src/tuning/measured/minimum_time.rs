@@ -4,7 +4,7 @@
 //! output of any switch of the same kind. Where some are, and the times are all alike, it is the time that switches.
 
 use super::cycle::Cycle;
-use super::evidence::{Evidence, Trouble, TroubleKind, sensor_step, trouble};
+use super::evidence::{Evidence, Trouble, TroubleKind, trouble};
 use super::number::number as n;
 use super::record::Record;
 use crate::order::{median, range};
@@ -81,7 +81,7 @@ pub(super) fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
         };
         let chance = median(&mut own.slopes.clone())
             .max(e.noise)
-            .max(sensor_step(&e.record.output));
+            .max(e.record.sensor_step());
         let (same, shown) = (spread(&own.lengths), own.before > own.at);
         // By thresholds that are known the output passes none by more than it moves in a sample.
         let beyond = (e.hysteresis).is_some_and(|h| cycle.hysteresis > h + SCATTERS * chance);

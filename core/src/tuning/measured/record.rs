@@ -144,6 +144,15 @@ impl Record {
         }
     }
 
+    /// Usual distance of neighbouring outputs that differ.
+    pub(super) fn sensor_step(&self) -> f64 {
+        let mut sorted = self.output.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.dedup();
+        let mut steps: Vec<f64> = sorted.windows(2).map(|v| v[1] - v[0]).collect();
+        median(&mut steps)
+    }
+
     /// Length, s.
     pub(super) fn span(&self) -> f64 {
         match (self.time.first(), self.time.last()) {

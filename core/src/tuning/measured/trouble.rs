@@ -2,7 +2,7 @@
 
 use super::cycle::{Cycle, rounds, threshold};
 use super::ending::stalled;
-use super::evidence::{Evidence, Trouble, TroubleKind, of_unit, sensor_step, trouble};
+use super::evidence::{Evidence, Trouble, TroubleKind, of_unit, trouble};
 use super::minimum_time::minimum_time;
 use super::number::number;
 use super::record::Record;
@@ -169,7 +169,7 @@ fn chatter(e: &Evidence<'_>, cycle: &Cycle) -> Trouble {
 }
 
 fn quantised(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
-    let step = sensor_step(&e.record.output);
+    let step = e.record.sensor_step();
     let steps = cycle.amplitude / step;
     // A sensor with fine steps has as many values as samples.
     let mut values = e.record.output.clone();

@@ -9,16 +9,15 @@ use std::f64::consts::PI;
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-use super::fit::Fit;
+use super::fit::{Fit, MISSED};
 use super::fourier::Point;
 
 /// Largest relative standard error of gain and period with which they are told.
 const TOLD: f64 = 0.025;
 
-/// A model is not ruled out while its score is worse than the best by no more than this, or it misses no more than this
-/// multiple of what the best one misses.
+/// A model is not ruled out while its score is worse than the best by no more than this, or it misses no more than
+/// [`MISSED`].
 const SCORE: f64 = 10.0;
-pub(super) const MISSED: f64 = 1.15;
 
 /// How far from the cycle's frequency the ultimate one is looked for, as a factor either way.
 const FAR: f64 = 30.0;
