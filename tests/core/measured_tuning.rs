@@ -213,6 +213,11 @@ fn has(result: &MeasuredTuning, kind: TroubleKind) -> f64 {
         .number
 }
 
+fn has_not(result: &MeasuredTuning, kind: TroubleKind) {
+    let found = result.troubles.iter().any(|t| t.kind == kind);
+    assert!(!found, "{kind:?}: {}", result.text);
+}
+
 #[test]
 fn a_good_test_has_no_trouble() {
     let result = tried(|_| ());
@@ -253,13 +258,7 @@ fn a_minimum_time_is_recognised() {
             })
         };
         let free = of(0.0);
-        assert!(
-            free.troubles
-                .iter()
-                .all(|t| t.kind != TroubleKind::MinimumTime),
-            "{}",
-            free.text
-        );
+        has_not(&free, TroubleKind::MinimumTime);
         // Half of the 25.65 s of the symmetric cycle without it.
         let held = of(0.5);
         let number = has(&held, TroubleKind::MinimumTime);
@@ -441,12 +440,8 @@ fn an_output_that_still_rises_is_not_said_to_level_off() {
             "{}",
             result.text
         );
-        assert!(
-            (result.troubles.iter()).all(|t| t.kind != TroubleKind::TargetUnreachable)
-                && !result.text.contains("levels off"),
-            "{}",
-            result.text
-        );
+        has_not(&result, TroubleKind::TargetUnreachable);
+        assert!(!result.text.contains("levels off"), "{}", result.text);
     }
 }
 
@@ -457,11 +452,7 @@ fn noise_is_named_after_a_warm_up_as_well() {
             let record = cold(|t| (t.hysteresis, t.noise) = (hysteresis, noise), seed);
             let result = told(&record);
             has(&result, TroubleKind::NoiseLargerThanHysteresis);
-            assert!(
-                (result.troubles.iter()).all(|t| t.kind != TroubleKind::WindowTooShort),
-                "{}",
-                result.text
-            );
+            has_not(&result, TroubleKind::WindowTooShort);
         }
     }
 }
@@ -502,11 +493,7 @@ fn a_test_that_is_over_has_not_stalled() {
     // What cools it is now that the input is off.
     record.input[last..].fill(0.0);
     let result = told(&record);
-    assert!(
-        (result.troubles.iter()).all(|t| t.kind != TroubleKind::TargetUnreachable),
-        "{}",
-        result.text
-    );
+    has_not(&result, TroubleKind::TargetUnreachable);
 }
 
 #[test]
@@ -536,12 +523,7 @@ fn a_minimum_time_is_recognised_in_a_regular_cycle() {
             )
         };
         let free = told(&of(0.0));
-        let none = |r: &MeasuredTuning| {
-            r.troubles
-                .iter()
-                .all(|t| t.kind != TroubleKind::MinimumTime)
-        };
-        assert!(none(&free), "{}", free.text);
+        has_not(&free, TroubleKind::MinimumTime);
         let held = told(&of(1.0));
         has(&held, TroubleKind::MinimumTime);
         assert!(!held.text.contains("less hysteresis"), "{}", held.text);

@@ -101,20 +101,19 @@ fn klippers_gains_alone_tell_what_it_read() {
     );
 }
 
+/// The reports of Marlin in a session, each as the power, 0 to 127, and the temperature make it; and by how much its 2 s
+/// slow the bench's plant down.
+fn reports(report: impl Fn(f64, f64) -> String) -> (f64, String) {
+    let record = heated(1);
+    let lines = record.input.iter().zip(&record.output);
+    let lines = lines.map(|(u, y)| report(127.0 * u, *y) + "\n");
+    let text = std::iter::once("PID Autotune start\n".to_owned()).chain(lines);
+    (2.0 / record.time[1], text.collect())
+}
+
 #[test]
 fn the_reports_of_marlin_are_a_record() {
-    let record = heated(1);
-    // Every 2 s, as Marlin does: the bench's plant runs faster or slower to fit.
-    let scale = 2.0 / record.time[1];
-    let mut text = String::from("PID Autotune start\n");
-    for (u, y) in record.input.iter().zip(&record.output) {
-        writeln!(
-            text,
-            " T:{y:.2} /200.00 B:24.10 /0.00 @:{:.0} B@:0",
-            127.0 * u
-        )
-        .unwrap();
-    }
+    let (scale, text) = reports(|u, y| format!(" T:{y:.2} /200.00 B:24.10 /0.00 @:{u:.0} B@:0"));
     let result = session(&text, Source::Marlin).tune(None).unwrap();
     let [gain, period] = plants()[3].ultimate();
     let told = result.ultimate.unwrap();
@@ -131,17 +130,7 @@ fn the_reports_of_marlin_are_a_record() {
 
 #[test]
 fn the_bed_is_read_where_marlin_tunes_the_bed() {
-    let record = heated(1);
-    let scale = 2.0 / record.time[1];
-    let mut text = String::from("PID Autotune start\n");
-    for (u, y) in record.input.iter().zip(&record.output) {
-        writeln!(
-            text,
-            " T:24.1 /0.00 B:{y:.2} /200.00 @:0 B@:{:.0}",
-            127.0 * u
-        )
-        .unwrap();
-    }
+    let (scale, text) = reports(|u, y| format!(" T:24.1 /0.00 B:{y:.2} /200.00 @:0 B@:{u:.0}"));
     let log = session(&text, Source::Marlin);
     assert!(matches!(log.held, Held::Record(_)));
     let [_, period] = plants()[3].ultimate();

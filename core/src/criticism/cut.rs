@@ -4,7 +4,7 @@
 //! state: where the body moves (while it sticks, the deflection of its friction contact cannot be seen, and decides
 //! when it breaks loose) and not inside a contact with a load.
 
-use crate::order::median;
+use crate::measurement::gaps;
 use crate::sums::deviation;
 
 /// Fewest samples in a window.
@@ -18,14 +18,6 @@ const SWINGS_BEFORE: usize = 4;
 
 /// Swings of the motor in a window without a contact that was felt.
 const MOST_SWINGS: usize = 6;
-
-/// A step in time this many times the usual one is a gap, if there is no more than one in so many.
-const PAUSE: f64 = 1.6;
-const RARE: usize = 50;
-
-/// Where the clock is so uneven that there are more, one is a gap that is this many times as long as the longest of the others:
-/// of intervals as random as those of a decay, one in a billion.
-const FAR_LONGER: f64 = 5.0;
 
 /// A run of samples that is used as a whole, either for fitting or for judging.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,16 +54,7 @@ pub(super) fn in_motion(velocity: &[f64], length: usize) -> Vec<usize> {
 
 /// First samples after gaps in `time`, where rows are missing or runs are joined: what the input did there is not known.
 pub(super) fn pauses(time: &[f64]) -> Vec<usize> {
-    let step = |k: usize| time[k] - time[k - 1];
-    let mut steps: Vec<f64> = (1..time.len()).map(step).collect();
-    let least = PAUSE * median(&mut steps);
-    let mut found: Vec<usize> = (1..time.len()).filter(|k| step(*k) > least).collect();
-    if found.len() * RARE > time.len() {
-        steps.sort_by(f64::total_cmp);
-        let often = steps.len() - time.len() / RARE;
-        let least = FAR_LONGER * steps[often.saturating_sub(1)];
-        found.retain(|k| step(*k) > least);
-    }
+    let mut found = gaps(time);
     // What stands between two of them may be too short for a window.
     let mut from = 0;
     found.retain(|k| {

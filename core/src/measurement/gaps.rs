@@ -6,8 +6,9 @@ use super::Kind;
 const GAP: f64 = 1.6;
 const RARE: usize = 50;
 
-/// Where there are more, the clock jitters, and a gap is so many times as long as all steps but one in so many.
-const BESIDE_JITTER: f64 = 4.0;
+/// Where the clock is so uneven that there are more, one is a gap that is this many times as long as the longest of the others:
+/// of intervals as random as those of a decay, one in a billion.
+const FAR_LONGER: f64 = 5.0;
 
 /// Average steps from which a gap of a process is said: over a shorter one hardly anything moves.
 const SAID: f64 = 5.0;
@@ -25,7 +26,8 @@ pub fn gaps(time: &[f64]) -> Vec<usize> {
     if found.len() * RARE <= time.len() {
         return found;
     }
-    longer(BESIDE_JITTER * steps[steps.len() - 1 - steps.len() / RARE])
+    let often = steps.len() - time.len() / RARE;
+    longer(FAR_LONGER * steps[often.saturating_sub(1)])
 }
 
 /// What is to be said of the gaps of a process, whose model runs on over them.

@@ -62,16 +62,12 @@ impl Fit {
     /// Improves the states of all windows with the values kept, window by window where it helps. That of a window which is held
     /// back goes along with steps of the values that it has no say in, and may have gone astray: none is worse than the measured one.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
-        self.take_measured_starts(data);
         self.polish_until(f64::NEG_INFINITY, data, scales);
     }
 
     /// The same until the cost is as low as that.
     pub(super) fn polish_until(&mut self, enough: f64, data: &Data, scales: &Scales) {
-        let model = self.structure.model(&self.values);
-        if data.excitation.sees_load_of(&model) {
-            self.take_measured_starts(data);
-        }
+        self.take_measured_starts(data);
         for round in 0..POLISHINGS {
             let before = self.cost;
             let sees_load = self.polish_once(data, scales);

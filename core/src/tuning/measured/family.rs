@@ -9,6 +9,8 @@ use std::f64::consts::PI;
 
 use num_complex::Complex;
 
+use crate::root::bisect;
+
 /// Largest time constants, in periods, and how many are tried.
 const LAGS: [f64; 2] = [0.02, 30.0];
 const LAGS_TRIED: usize = 40;
@@ -25,9 +27,6 @@ const OTHERS: [[f64; 2]; 6] = [
 
 /// Instants of a period at which the output is computed.
 const INSTANTS: usize = 400;
-
-/// Halvings of an interval of dead times.
-const HALVINGS: usize = 40;
 
 /// How far inside what the input reaches the thresholds lie at least, as a share of it: others are met by chance only.
 const REACH: f64 = 0.03;
@@ -110,16 +109,8 @@ impl Shape<'_> {
         }
         let at = |i: usize| self.period * i as f64 / INSTANTS as f64;
         let passed = (1..INSTANTS).find(|&i| excess(at(i)) < 0.0)?;
-        let (mut low, mut high) = (at(passed - 1), at(passed));
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if excess(middle) >= 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(low)
+        let side = |late: f64| 0.0_f64.total_cmp(&excess(late));
+        Some(bisect(at(passed - 1), at(passed), side))
     }
 }
 

@@ -17,6 +17,7 @@ use super::least_squares::{coherence, inverse_gram, least_squares};
 use super::record::Record;
 use super::response::Held;
 use super::structure::Value;
+use crate::order::median;
 use crate::sums::dot;
 
 /// Most harmonics that are fitted, and samples of a period for each.
@@ -121,13 +122,11 @@ pub(super) fn point(
 /// Relative standard error of the wave that a sensor in steps shows: each period meets the same steps, so that no mean
 /// over the periods makes it smaller.
 fn coarse(record: &Record, cycle: &Cycle) -> f64 {
-    let mut values = record.output.clone();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    if values.len() * SAMPLES_OF_A_STEP > record.output.len() {
+    let mut steps = record.sensor_steps();
+    if (steps.len() + 1) * SAMPLES_OF_A_STEP > record.output.len() {
         return 0.0;
     }
-    let steps = cycle.amplitude / record.sensor_step();
+    let steps = cycle.amplitude / median(&mut steps);
     COARSE * libm::pow(steps, -1.5)
 }
 

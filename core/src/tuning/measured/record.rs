@@ -146,11 +146,15 @@ impl Record {
 
     /// Usual distance of neighbouring outputs that differ.
     pub(super) fn sensor_step(&self) -> f64 {
+        median(&mut self.sensor_steps())
+    }
+
+    /// Distances of neighbouring outputs that differ: one fewer than there are values.
+    pub(super) fn sensor_steps(&self) -> Vec<f64> {
         let mut sorted = self.output.clone();
         sorted.sort_by(f64::total_cmp);
         sorted.dedup();
-        let mut steps: Vec<f64> = sorted.windows(2).map(|v| v[1] - v[0]).collect();
-        median(&mut steps)
+        sorted.windows(2).map(|v| v[1] - v[0]).collect()
     }
 
     /// Length, s.

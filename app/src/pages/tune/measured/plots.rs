@@ -85,12 +85,11 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
                             .allow_hover(false),
                     );
                 }
-                let (sin, cos) = (0.5 * point.phase_deg).to_radians().sin_cos();
-                let beside = 1.5 * ARC * point.magnitude;
+                let [x, y] = polar(1.5 * ARC * point.magnitude, 0.5 * point.phase_deg);
                 plot.text(
                     Text::new(
                         tr("phase"),
-                        PlotPoint::new(beside * cos, beside * sin),
+                        PlotPoint::new(x, y),
                         format!("{:.0}°", point.phase_deg),
                     )
                     .color(theme::MEASURED)
@@ -117,12 +116,7 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
 /// The ray to the point, and the arc of its phase from the positive real axis.
 fn phase(point: &Point) -> [Vec<[f64; 2]>; 2] {
     let value = point.value();
-    let arc = (0..=48).map(|i| {
-        let (sin, cos) = (point.phase_deg * f64::from(i) / 48.0)
-            .to_radians()
-            .sin_cos();
-        [ARC * point.magnitude * cos, ARC * point.magnitude * sin]
-    });
+    let arc = (0..=48).map(|i| polar(ARC * point.magnitude, point.phase_deg * f64::from(i) / 48.0));
     [vec![[0.0, 0.0], [value.re, value.im]], arc.collect()]
 }
 
@@ -133,10 +127,15 @@ fn region(point: &Point) -> Vec<[f64; 2]> {
         .map(|turn| {
             let magnitude = point.magnitude + ERRORS * point.std_error_magnitude * turn.cos();
             let phase = point.phase_deg + ERRORS * point.std_error_phase_deg * turn.sin();
-            let (sin, cos) = phase.to_radians().sin_cos();
-            [magnitude.max(0.0) * cos, magnitude.max(0.0) * sin]
+            polar(magnitude.max(0.0), phase)
         })
         .collect()
+}
+
+/// A complex number of this magnitude and phase.
+fn polar(magnitude: f64, phase_deg: f64) -> [f64; 2] {
+    let (sin, cos) = phase_deg.to_radians().sin_cos();
+    [magnitude * cos, magnitude * sin]
 }
 
 /// The largest part of any point.
