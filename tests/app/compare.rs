@@ -152,10 +152,10 @@ fn the_finding_that_is_shaded_lies_in_the_plots() {
         assert!(said.contains(&words), "{said:#?}");
     };
     // Seconds after the first periods.
-    harness
-        .get_by_label_contains("48\u{a0}% of the squared position error lies within 15.2\u{a0}ms");
+    let first = "48\u{a0}% of the position error comes from 8\u{a0}% of the samples, those within 15.2\u{a0}ms";
+    harness.get_by_label_contains(first);
     marked(&harness, "48");
-    let other = "41\u{a0}% of the squared velocity error lies between 1.80\u{a0}s and 3.00\u{a0}s";
+    let other = "41\u{a0}% of the velocity error comes from 10\u{a0}% of the samples, those between 1.80\u{a0}s";
     harness.get_by_label_contains(other).click();
     finish(&mut harness);
     marked(&harness, "41");

@@ -127,7 +127,7 @@ fn a_controller_may_be_faster_than_the_record() {
     let d = finish(DiagnosisJob::new(&record).unwrap());
     check(&d, &["coulomb_friction"], &[("c", FRICTION), ("h", 0.4)]);
     assert!(d.verdict.complete, "{}", d.verdict.text);
-    let said = "Of the record, not of the machine: Sampled input, share of the next sample ";
+    let said = "A logging effect, not the machine: Sampled input, share of the next sample ";
     assert!(d.verdict.text.starts_with(said), "{}", d.verdict.text);
 }
 

@@ -115,11 +115,11 @@ fn concentration(
         share_of_error,
         share_of_samples,
         text: format!(
-            "{:.0} % of the {} lies {}, which is {:.0} % of the samples.",
+            "{:.0} % of the {} comes from {:.0} % of the samples, those {}.",
             100.0 * share_of_error,
             error_name(data.kind, output),
-            axis.place(low, high),
-            100.0 * share_of_samples
+            100.0 * share_of_samples,
+            axis.place(low, high)
         ),
         spans: spans(data, axis, low, high),
     };
@@ -160,9 +160,9 @@ fn small_percentage(share: f64) -> String {
 
 fn error_name(kind: Kind, output: &Output) -> &'static str {
     match (kind, output.is_velocity) {
-        (Kind::Process, _) => "squared error",
-        (Kind::Drive, true) => "squared velocity error",
-        (Kind::Drive, false) => "squared position error",
+        (Kind::Process, _) => "output error",
+        (Kind::Drive, true) => "velocity error",
+        (Kind::Drive, false) => "position error",
     }
 }
 
@@ -281,8 +281,8 @@ mod tests {
         assert!(
             finding
                 .text
-                .contains("lies where the position is between -0.0")
-                && finding.text.contains(" rad, "),
+                .contains("those where the position is between -0.0")
+                && finding.text.ends_with(" rad."),
             "{}",
             finding.text
         );
@@ -319,7 +319,7 @@ mod tests {
         assert!(
             finding
                 .text
-                .contains("lies where the acceleration is negative, which is 50 % of the samples"),
+                .contains("comes from 50 % of the samples, those where the acceleration is negative."),
             "{}",
             finding.text
         );
@@ -346,7 +346,7 @@ mod tests {
         assert!(
             finding
                 .text
-                .contains("% of the squared velocity error lies between "),
+                .contains("% of the velocity error lies between "),
             "{}",
             finding.text
         );

@@ -46,7 +46,7 @@ pub(super) fn verdict(
     let of_machine = wanted.iter().enumerate().filter(|(_, w)| !w.1);
     let missing: Vec<Vec<EffectId>> = of_machine.map(class).collect();
     let ambiguous = missing.iter().any(|class| class.len() > 1);
-    let mut text = listed("Of the record, not of the machine", &of_record, parameters);
+    let mut text = listed("A logging effect, not the machine", &of_record, parameters);
     text.push_str(&listed("Missing", &missing, parameters));
     let complete = rest != Rest::More;
     if !contradicted.is_empty() {

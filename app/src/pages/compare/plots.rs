@@ -362,7 +362,7 @@ fn is_about(finding: &Finding, output: &Channel) -> bool {
         Quantity::Position => "position",
         _ => "velocity",
     };
-    finding.text.contains(&format!("squared {word} error"))
+    finding.text.contains(&format!("{word} error"))
 }
 
 /// Says at the first of its stretches on screen how much of the error is in the selected finding; on a `ground` that
