@@ -18,10 +18,9 @@ pub(super) fn cost_between(data: &Data, motion: &Motion, from: usize, to: usize)
     data.outputs
         .iter()
         .map(|o| {
-            let modelled = motion.of(o.is_velocity);
             (from..to)
                 .filter(|i| o.tells(*i))
-                .map(|i| ((o.values[i] - modelled[i]) / o.noise).powi(2))
+                .map(|i| (motion.left(o, i) / o.noise).powi(2))
                 .sum::<f64>()
         })
         .sum()

@@ -4,6 +4,7 @@
 //! state: where the body moves (while it sticks, the deflection of its friction contact cannot be seen, and decides
 //! when it breaks loose) and not inside a contact with a load.
 
+use super::parts::GOLDEN;
 use crate::measurement::gaps;
 use crate::sums::deviation;
 
@@ -138,16 +139,26 @@ pub(super) fn one_each(windows: &[usize], n: usize) -> Vec<Block> {
         .collect()
 }
 
-/// Blocks of `length` of `n` samples in these windows, every other one held back; a short rest joins the last block.
+/// Blocks of `length` of `n` samples in these windows; a short rest joins the last block. Of every pair one is held back, in an
+/// order that goes with no period: an input that steps every so many blocks would else show all of its steps to the fit, or to
+/// the judge.
 pub(super) fn blocks(n: usize, length: usize, windows: &[usize]) -> Vec<Block> {
     let begins = evenly(n, length);
     one_each(&begins, n)
         .into_iter()
-        .map(|block| Block {
+        .enumerate()
+        .map(|(k, block)| Block {
             window: windows.partition_point(|w| *w <= block.from) - 1,
+            held_back: (k % 2 == 1) != is_turned(k / 2),
             ..block
         })
         .collect()
+}
+
+/// Whether the first of a pair is held back: a square of its number times an irrational one falls alike into either half of a
+/// whole along every even distance (Weyl 1916).
+fn is_turned(pair: usize) -> bool {
+    ((pair * pair) as f64 * GOLDEN).fract() >= 0.5
 }
 
 #[cfg(test)]
@@ -184,6 +195,20 @@ mod tests {
         assert_eq!(in_motion(&velocity, 100), [0, 100, 200]);
         velocity[140] = 1e-3;
         assert_eq!(in_motion(&velocity, 100), [0, 140, 200]);
+    }
+
+    #[test]
+    fn steps_every_so_many_blocks_are_shown_to_either_half() {
+        let blocks = blocks(64 * 50, 50, &[0]);
+        for period in 2..=6 {
+            let steps = || blocks.iter().step_by(period);
+            let held = steps().filter(|b| b.held_back).count();
+            assert!(
+                4 * held >= steps().count() && 4 * held <= 3 * steps().count(),
+                "{period}: {held} of {}",
+                steps().count()
+            );
+        }
     }
 
     /// The load is met every 185 samples, and once more five samples later, as the contact presses and lets go.

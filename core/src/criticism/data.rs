@@ -47,6 +47,8 @@ pub(super) struct Data {
     pub baseline: Baseline,
     pub excitation: Excitation,
     pub input: Vec<f64>,
+    /// Of a process whose surroundings wander, the share by which each sample moves what is foretold of the next; 0 of others.
+    pub wander: f64,
     pub time: Vec<f64>,
     pub outputs: Vec<Output>,
     /// Values of the outputs that stood alone and were put where their neighbours are.
@@ -108,6 +110,7 @@ impl Data {
             },
             excitation: excitation(measurement, &outputs),
             input: input.clone(),
+            wander: 0.0,
             time: measurement.time.clone(),
             has_position: outputs.iter().any(|o| !o.is_velocity),
             outputs,

@@ -1,5 +1,6 @@
 //! What a model makes of a record: its motion, sample by sample.
 
+use super::output::Output;
 use crate::model::FollowedLoad;
 
 /// Position and velocity of the body at every sample.
@@ -7,6 +8,8 @@ use crate::model::FollowedLoad;
 pub(super) struct Motion {
     pub position: Vec<f64>,
     pub velocity: Vec<f64>,
+    /// Of a process whose surroundings wander, the news in what it says beyond what was measured; empty for others.
+    pub news: Vec<f64>,
     /// For each window, what its state costs by itself: how far a load is off where it is taken to be.
     pub priors: Vec<f64>,
     /// Where a load begins in the windows.
@@ -29,7 +32,28 @@ impl Motion {
     pub fn take_window(&mut self, other: &Self, window: usize, (from, to): (usize, usize)) {
         self.position[from..to].copy_from_slice(&other.position[from..to]);
         self.velocity[from..to].copy_from_slice(&other.velocity[from..to]);
+        if !self.news.is_empty() {
+            self.news[from..to].copy_from_slice(&other.news[from..to]);
+        }
         self.priors[window] = other.priors[window];
+    }
+
+    /// What it leaves of an output at a sample, by which models are fitted and compared.
+    pub fn left(&self, output: &Output, i: usize) -> f64 {
+        if output.is_velocity && !self.news.is_empty() {
+            -self.news[i]
+        } else {
+            output.values[i] - self.of(output.is_velocity)[i]
+        }
+    }
+
+    /// Of a derivative of a motion, the part that goes with what is left of an output.
+    pub fn compared(&self, is_velocity: bool) -> &[f64] {
+        if is_velocity && !self.news.is_empty() {
+            &self.news
+        } else {
+            self.of(is_velocity)
+        }
     }
 
     /// The part that an output shows.

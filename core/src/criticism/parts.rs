@@ -12,7 +12,7 @@ const SCOUT_PART: usize = 5;
 const SCOUT_SAMPLES: usize = 1250;
 
 /// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+pub(super) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Share of what is left that a scout must see, in times of its share of the record.
 const SEEN: f64 = 0.5;

@@ -6,6 +6,7 @@ use super::cut::Block;
 use super::data::Data;
 use super::fit::{Fit, residuals};
 use super::motion::Motion;
+use super::noise::news;
 use super::output::Output;
 use super::window::bend_between;
 
@@ -83,17 +84,31 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
 
 /// Share of the motion that a model with this score misses on held-back data: root mean square of the residuals over that
 /// of the motion, each channel in units of its noise.
-pub(super) fn share_left(data: &Data, score: &Score) -> f64 {
-    let motion = motion_square(data, |b| b.held_back);
-    if motion > 0.0 {
-        score.error / motion.sqrt()
+pub(super) fn share_left(data: &Data, score: &Score, motion: &Motion) -> f64 {
+    let mut all = data.clone();
+    all.wander = 0.0;
+    let error = if data.wander > 0.0 {
+        let said = Motion {
+            news: Vec::new(),
+            ..motion.clone()
+        };
+        let held = || data.blocks.iter().filter(|b| b.held_back);
+        let count: usize = held().map(|b| data.measured(b.from, b.to)).sum();
+        let cost = |b: &Block| cost_between(data, &said, b.from, b.to);
+        (held().map(cost).sum::<f64>() / count.max(1) as f64).sqrt()
+    } else {
+        score.error
+    };
+    let moves = motion_square(&all, |b| b.held_back);
+    if moves > 0.0 {
+        error / moves.sqrt()
     } else {
         0.0
     }
 }
 
 /// Mean square of the motion in these blocks, each channel in units of its noise. That of a velocity or of an output is
-/// about the mean, that of a position about a straight line in each block, since a drive may go anywhere.
+/// about the mean (where the surroundings wander the news in it), that of a position about a straight line in each block, since a drive may go anywhere.
 pub(super) fn motion_square(data: &Data, is_one: impl Fn(&Block) -> bool) -> f64 {
     let blocks = || data.blocks.iter().filter(|b| is_one(b));
     let motion = |o: &Output| -> f64 {
@@ -103,9 +118,9 @@ pub(super) fn motion_square(data: &Data, is_one: impl Fn(&Block) -> bool) -> f64
         let told = || blocks().flat_map(|b| (b.from..b.to).filter(|i| o.tells(*i)));
         let count = told().count().max(1) as f64;
         let mean = told().map(|i| o.values[i]).sum::<f64>() / count;
-        told()
-            .map(|i| ((o.values[i] - mean) / o.noise).powi(2))
-            .sum()
+        let about: Vec<f64> = o.values.iter().map(|y| y - mean).collect();
+        let about = news(data, o, &about, data.wander);
+        told().map(|i| (about[i] / o.noise).powi(2)).sum()
     };
     let count: usize = blocks().map(|b| data.measured(b.from, b.to)).sum();
     data.outputs.iter().map(motion).sum::<f64>() / count.max(1) as f64

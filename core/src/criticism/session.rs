@@ -7,7 +7,7 @@ use super::data::Data;
 use super::fit::Fit;
 use super::guess::guess;
 use super::knowledge::{self, Knowledge};
-use super::noise::{is_left_by_random_forces, is_noise_with_memory};
+use super::noise::{WANDER, is_left_by_random_forces, is_noise_with_memory};
 use super::probes::{Probed, Probes};
 use super::relay_loop::RelayLoop;
 use super::score::{Score, motion_square, score};
@@ -332,6 +332,21 @@ impl Session {
         }
     }
 
+    /// Has models fitted and compared by the news of each sample, beyond a level that moves towards each.
+    pub fn let_surroundings_wander(&mut self) {
+        let parts = [
+            Some(&mut self.data),
+            Some(&mut self.scout),
+            self.full.as_mut(),
+        ];
+        for data in parts.into_iter().flatten() {
+            data.wander = WANDER;
+        }
+        self.motion_square = motion_square(&self.data, |_| true);
+        self.probes = Probes::default();
+        self.baseline = None;
+    }
+
     /// Settles sizes by the fitted baseline: where the screen told another body, by that, since a body that rests for most of
     /// a record seems held by its own weight; where the guess had a far heavier one, by the fit, since a resonance turns a body
     /// against its input and tells a regression nothing.
@@ -447,7 +462,7 @@ impl Session {
         let remembers =
             || is_noise_with_memory(self.whole(), &scored.fit.motion, self.output_unit());
         let small = small_share(&scored.fit);
-        if self.is_too_heavy(&scored.fit) {
+        if self.is_too_heavy(&scored.fit) || self.data.wander > 0.0 {
             Rest::More
         } else if is_noise(&scored.score, self.first(scored), small) {
             Rest::Noise

@@ -16,7 +16,7 @@ use super::session::{Rest, Scored, Session, small_share};
 use super::verdict::{
     Class, PartOfTheWay, Refused, add_both_ways, add_dry_friction, add_experiments, add_hint,
     add_idle, add_input_check, add_integrating, add_other_experiment, add_overruled,
-    add_part_of_the_way, add_relay_loop, add_rest, verdict,
+    add_part_of_the_way, add_relay_loop, add_rest, add_wander, verdict,
 };
 use crate::diagnosis::{
     Candidate, Contradiction, Finding, Limits, NextExperiment, Parameter, Step, StepReport, Verdict,
@@ -108,8 +108,12 @@ impl Tell {
             Rest::More => session.findings(&whole),
             Rest::Noise | Rest::NoiseWithMemory | Rest::RandomForces => Vec::new(),
         };
+        // Of what the search took, a later trial may tell less surely that it is needed: it stays, with the error that it has.
         let needless = if suggestion.is_none() && self.contradicted.is_empty() {
-            needless(session, explain, place)
+            let held = explain.held_ids();
+            let mut needless = needless(session, explain, place);
+            needless.retain(|id| held.contains(id));
+            needless
         } else {
             Vec::new()
         };
@@ -150,7 +154,7 @@ impl Tell {
                 effects: session.effects(&model.fit),
                 error: whole.score.error,
                 error_fit: whole.score.error_fit,
-                left: share_left(session.whole(), &whole.score),
+                left: share_left(session.whole(), &whole.score, &whole.fit.motion),
                 relay_loop: trial.in_loop,
                 parameters,
                 findings,
@@ -173,6 +177,9 @@ impl Tell {
         let first = session.first(told.whole).error;
         let (rest, score) = (told.rest, &told.whole.score);
         add_rest(&mut verdict, rest, score, first, told.findings);
+        if session.data.wander > 0.0 {
+            add_wander(&mut verdict);
+        }
         add_integrating(&mut verdict, told.parameters);
         let dry = self.dry.as_ref().filter(|_| told.place == explain.best);
         match dry.filter(|_| verdict.contradicted.is_empty()) {

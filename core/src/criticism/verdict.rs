@@ -204,6 +204,14 @@ pub(super) fn add_rest(
     }
 }
 
+/// Says by what models were compared where the surroundings of a process wander.
+pub(super) fn add_wander(verdict: &mut Verdict) {
+    verdict.text.push_str(
+        " Most of what any model leaves wanders slowly, as if the surroundings changed: each model is judged by how well it \
+         foretells a sample from those before it.",
+    );
+}
+
 /// Says what would tell apart what a drive that turns one way only leaves alike.
 pub(super) fn add_both_ways(verdict: &mut Verdict) {
     verdict.text.push_str(" The drive turns one way only.");

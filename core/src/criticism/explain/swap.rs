@@ -7,9 +7,13 @@ use super::sketch::Sketch;
 use super::task::Task;
 use super::tuning::{ALIKE, MOST_SWAPS};
 use super::{Explain, Stage, Trial, difference};
+use crate::criticism::fit::Fit;
+use crate::criticism::noise::{WANDER, news_left};
 use crate::criticism::screen::Screened;
+use crate::criticism::select::outweighs;
 use crate::criticism::session::Session;
 use crate::effect::{Effect, EffectId, ParameterSpec};
+use crate::measurement::Kind;
 
 /// Whether the values of two effects have the same dimensions.
 fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
@@ -236,7 +240,10 @@ impl Explain {
             .into_iter()
             .filter(|r| alike.contains(&r.trial) && agree(best, r.trial))
             .collect();
-        if self.integrates(session) {
+        if self.wanders(session) {
+            session.let_surroundings_wander();
+            *self = Self::new(std::mem::take(&mut self.held));
+        } else if self.integrates(session) {
             session.integrate();
             *self = Self::new(std::mem::take(&mut self.held));
         } else {
@@ -244,7 +251,28 @@ impl Explain {
         }
     }
 
-    /// Whether a process whose output stays where the input leaves it does as well as the best.
+    /// Whether the surroundings of a process wander: of what the best of all models leaves, a level that moves towards each
+    /// sample explains more than it leaves once that model is fitted so.
+    fn wanders(&self, session: &Session) -> bool {
+        let data = &session.data;
+        if session.kind() != Kind::Process || data.wander > 0.0 || self.is_noise(session, self.best)
+        {
+            return false;
+        }
+        let news = |fit: &Fit| news_left(data, &fit.motion, WANDER);
+        let fits = self.trials.iter().map(|t| &t.scored.fit);
+        let best = fits.min_by(|a, b| news(a).total_cmp(&news(b)));
+        best.is_some_and(|fit| {
+            let all = news_left(data, &fit.motion, 0.0);
+            outweighs(
+                all,
+                news(&fit.among_surroundings(data, WANDER, &session.scales)),
+            )
+        })
+    }
+
+    /// Whether a process whose output stays where the input leaves it does as well as the best, and the record tells how fast the
+    /// input moves that.
     fn integrates(&self, session: &Session) -> bool {
         let best = &self.trials[self.best];
         if !session.may_integrate(&best.scored) {
@@ -252,6 +280,6 @@ impl Explain {
         }
         let fit = session.integrating(&best.scored.fit);
         let trial = fit.map(|fit| Trial::new(session, fit));
-        trial.is_some_and(|t| difference(session, &t, best).is_no_better())
+        trial.is_some_and(|t| t.tells_body() && difference(session, &t, best).is_no_better())
     }
 }

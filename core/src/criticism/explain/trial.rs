@@ -3,7 +3,7 @@
 use super::tuning::{OTHER_HALF, SAME_BODY};
 use crate::criticism::fit::Fit;
 use crate::criticism::score::score;
-use crate::criticism::session::{Scored, Session};
+use crate::criticism::session::{Scored, Session, TELLING};
 use crate::criticism::structure::Structure;
 use crate::diagnosis::LoopError;
 use crate::effect::{Effect, EffectId};
@@ -80,6 +80,12 @@ impl Trial {
         pairs
             .map(|(a, b)| (a - b).abs() * std::f64::consts::FRAC_1_SQRT_2)
             .collect()
+    }
+
+    /// Whether the first value of its body is not 0, by what either half tells.
+    pub fn tells_body(&self) -> bool {
+        let error = self.scored.standard_errors()[0].max(self.spreads()[0]);
+        self.scored.fit.values[0].abs() > TELLING * error
     }
 
     /// Root mean square of what is left of all blocks, in units of the noise.

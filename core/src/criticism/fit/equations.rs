@@ -108,10 +108,12 @@ impl Fit {
             let sums = &mut windows[block.window];
             for output in &data.outputs {
                 let weight = robust[block.window].sqrt() / output.noise;
-                let modelled = self.motion.of(output.is_velocity);
-                let parts: Vec<&[f64]> = columns.iter().map(|c| c.of(output.is_velocity)).collect();
+                let parts: Vec<&[f64]> = columns
+                    .iter()
+                    .map(|c| c.compared(output.is_velocity))
+                    .collect();
                 for i in (block.from..block.to).filter(|i| output.tells(*i)) {
-                    let r = (output.values[i] - modelled[i]) * weight;
+                    let r = self.motion.left(output, i) * weight;
                     for (value, part) in row.iter_mut().zip(&parts) {
                         *value = part[i] * weight;
                     }
@@ -279,8 +281,9 @@ fn difference(mut moved: Motion, base: &Motion, step: f64, spans: &[(usize, usiz
     let pairs = [
         (&mut moved.position, &base.position),
         (&mut moved.velocity, &base.velocity),
+        (&mut moved.news, &base.news),
     ];
-    for (moved, base) in pairs {
+    for (moved, base) in pairs.into_iter().filter(|(moved, _)| !moved.is_empty()) {
         for (from, to) in spans {
             for (value, base) in moved[*from..*to].iter_mut().zip(&base[*from..*to]) {
                 *value = (*value - base) / step;

@@ -13,6 +13,8 @@ use nalgebra::DMatrix;
 use super::cost::{ODD_MEAN_SQUARE, oddness, robust_cost, robust_share};
 use super::data::Data;
 use super::motion::Motion;
+use super::noise::news;
+use super::output::Output;
 use super::structure::Structure;
 use super::window_sums::reduced;
 use crate::effect::Scales;
@@ -204,6 +206,16 @@ impl Fit {
         }
     }
 
+    /// The same model fitted anew where the surroundings wander, so that each sample moves what is foretold by this share.
+    pub fn among_surroundings(&self, data: &Data, share: f64, scales: &Scales) -> Self {
+        let mut data = data.clone();
+        data.wander = share;
+        let (structure, values) = (self.structure.clone(), self.values.clone());
+        let mut fit = Self::new(&data, structure, values, self.starts.clone(), scales);
+        fit.finish(&data, scales);
+        fit
+    }
+
     /// Looks where an effect says that a lower valley may be, if the load behind a gap is hidden; true if one is.
     fn try_other_valleys(&mut self, data: &Data, scales: &Scales) -> bool {
         let model = self.structure.model(&self.values);
@@ -326,6 +338,12 @@ fn simulate(
         .excitation
         .replay(&model, starts, &motion.loads, position, velocity);
     data.count_moves(moves);
+    let wanders = |o: &&Output| o.is_velocity && data.wander > 0.0;
+    if let Some(output) = data.outputs.iter().find(wanders) {
+        let pairs = motion.velocity.iter().zip(&output.values);
+        let beyond: Vec<f64> = pairs.map(|(m, y)| m - y).collect();
+        motion.news = news(data, output, &beyond, data.wander);
+    }
     let doubts_load = data.excitation.doubts_load_of(&model, structure.load_begin);
     let prior = |s: &Start| {
         if doubts_load {
@@ -361,11 +379,8 @@ pub(super) fn residuals(data: &Data, motion: &Motion) -> Vec<Vec<f64>> {
     data.outputs
         .iter()
         .map(|o| {
-            let modelled = motion.of(o.is_velocity);
-            o.values
-                .iter()
-                .zip(modelled)
-                .map(|(y, m)| (y - m) / o.noise)
+            (0..data.len())
+                .map(|i| motion.left(o, i) / o.noise)
                 .collect()
         })
         .collect()

@@ -4,8 +4,11 @@ mod level;
 mod memory;
 mod pushes;
 mod tuning;
+mod wander;
 
 pub use level::noise_level;
 pub(super) use level::{Noise, noise_beside};
 pub(super) use memory::is_noise_with_memory;
 pub(super) use pushes::is_left_by_random_forces;
+pub(super) use tuning::WANDER;
+pub(super) use wander::{news, news_left};
