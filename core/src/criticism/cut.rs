@@ -4,9 +4,11 @@
 //! state: where the body moves (while it sticks, the deflection of its friction contact cannot be seen, and decides
 //! when it breaks loose) and not inside a contact with a load.
 
-use super::parts::GOLDEN;
 use crate::measurement::gaps;
 use crate::sums::deviation;
+
+/// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
+pub(super) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Fewest samples in a window.
 pub(super) const MIN_WINDOW: usize = 10;

@@ -317,9 +317,9 @@ mod tests {
         assert_eq!((finding.from, finding.to), (-1.0, -1.0));
         assert!((finding.share_of_samples - 0.5).abs() < 0.01, "{finding:?}");
         assert!(
-            finding
-                .text
-                .contains("comes from 50 % of the samples, those where the acceleration is negative."),
+            finding.text.contains(
+                "comes from 50 % of the samples, those where the acceleration is negative."
+            ),
             "{}",
             finding.text
         );

@@ -1,7 +1,7 @@
 //! Parts of a record on which models are compared and starting points are tried: windows spread over it, or its
 //! beginning.
 
-use super::cut::Block;
+use super::cut::{Block, GOLDEN};
 use super::data::Data;
 use crate::measurement::Kind;
 
@@ -10,9 +10,6 @@ const SCOUT_PART: usize = 5;
 
 /// ... and on at least this many samples.
 const SCOUT_SAMPLES: usize = 1250;
-
-/// Golden section: its multiples, without their whole part, are evenly spread and never repeat.
-pub(super) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Share of what is left that a scout must see, in times of its share of the record.
 const SEEN: f64 = 0.5;

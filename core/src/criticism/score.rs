@@ -108,7 +108,8 @@ pub(super) fn share_left(data: &Data, score: &Score, motion: &Motion) -> f64 {
 }
 
 /// Mean square of the motion in these blocks, each channel in units of its noise. That of a velocity or of an output is
-/// about the mean (where the surroundings wander the news in it), that of a position about a straight line in each block, since a drive may go anywhere.
+/// about the mean (where the surroundings wander, of the news in it), that of a position about a straight line in each
+/// block, since a drive may go anywhere.
 pub(super) fn motion_square(data: &Data, is_one: impl Fn(&Block) -> bool) -> f64 {
     let blocks = || data.blocks.iter().filter(|b| is_one(b));
     let motion = |o: &Output| -> f64 {
