@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::support::ui::{
-    App, TALL, WIDE, app, click, finish, finish_when, picture, state, texts, type_over,
+    App, TALL, WIDE, app, choose, click, finish, finish_when, picture, state, texts, type_over,
 };
-use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use hysteron::language::{self, Language};
 use serde_json::{Value, json};
@@ -66,20 +65,6 @@ fn form(harness: &App) -> Value {
 
 fn missing(harness: &App) -> Value {
     form(harness)["missing"].clone()
-}
-
-/// Chooses an entry of a list.
-fn choose(harness: &mut App, list: &str, entry: &str) {
-    let found = harness.get_by_role_and_label(Role::ComboBox, list);
-    found.click_accesskit();
-    harness.run_steps(3);
-    // What is drawn last lies on top.
-    let last = harness.query_all_by_label(entry).last();
-    last.unwrap_or_else(|| panic!("no {entry} in {list}"))
-        .click_accesskit();
-    harness.run_steps(2);
-    harness.key_press(egui::Key::Escape);
-    finish(harness);
 }
 
 fn press(harness: &mut App, label: &str) {

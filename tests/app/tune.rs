@@ -1,7 +1,7 @@
 //! The tuning page, as a user works it: from the relay to the tuned loop.
 
 use crate::support::ui::{
-    App, NARROW, WIDE, answer, app, click, finish, picture, show, state, texts, type_over,
+    App, NARROW, WIDE, answer, app, choose, click, finish, picture, show, state, texts, type_over,
 };
 use egui_kittest::kittest::Queryable as _;
 use hysteron::language::Language;
@@ -110,6 +110,69 @@ fn a_measured_test_shows_its_point_models_and_gains() {
     picture(&mut harness, "tune_measured");
     click(&mut harness, "Ziegler-Nichols PI");
     picture(&mut harness, "tune_measured_chosen");
+}
+
+/// A relay of 0 and 100 about 50 on a lag of 20 s and gain 0.3 that comes 5 s late, under names that say nothing.
+fn nameless() -> String {
+    use std::fmt::Write as _;
+    let mut text = String::from("alpha,beta,gamma\n");
+    let (mut late, mut output, mut up) = ([1.0; 20], 50.0, true);
+    for i in 0..1600_usize {
+        up = if up { output < 50.2 } else { output < 49.8 };
+        let u = if up { 100.0 } else { 0.0 };
+        writeln!(text, "{},{u},{output:.4}", 0.25 * i as f64).expect("a string takes it");
+        let end = 35.0 + 0.3 * late[i % 20];
+        output = end + (output - end) * (-0.25_f64 / 20.0).exp();
+        late[i % 20] = u;
+    }
+    text
+}
+
+#[test]
+fn a_table_that_does_not_say_what_its_columns_are_is_asked_about() {
+    let mut harness = app("tune", WIDE);
+    let ctx = harness.ctx.clone();
+    harness
+        .state_mut()
+        .open(&ctx, "nameless.csv", nameless().as_bytes());
+    finish(&mut harness);
+    let said = state(&harness);
+    assert_eq!(said["page"], "tune");
+    assert_eq!(said["mapping"]["file"], "nameless.csv", "{said}");
+    picture(&mut harness, "tune_mapping");
+    click(&mut harness, "A process");
+    for (channel, column) in [("Time", "alpha"), ("Input", "beta"), ("Output", "gamma")] {
+        choose(&mut harness, channel, column);
+    }
+    choose(&mut harness, "Unit of the time", "s");
+    click(&mut harness, "Open it");
+    finish(&mut harness);
+    let said = state(&harness);
+    assert!(
+        said["mapping"].is_null() && said["message"].is_null(),
+        "{said}"
+    );
+    // Phase -180 degrees of the lag and dead time at 0.3431 rad/s.
+    let ultimate = (20.0 * 0.343_101_f64).hypot(1.0) / 0.3;
+    assert!(
+        said["ultimate"]
+            .as_f64()
+            .is_some_and(|k| (k / ultimate - 1.0).abs() < 0.03),
+        "{said}"
+    );
+    // Left where it was, it leaves nothing behind.
+    harness
+        .state_mut()
+        .open(&ctx, "nameless.csv", nameless().as_bytes());
+    finish(&mut harness);
+    assert!(state(&harness)["mapping"].is_object());
+    click(&mut harness, "Cancel");
+    finish(&mut harness);
+    let said = state(&harness);
+    assert!(
+        said["mapping"].is_null() && said["file"].is_null(),
+        "{said}"
+    );
 }
 
 #[test]

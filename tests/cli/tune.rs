@@ -213,3 +213,88 @@ fn a_record_that_no_model_follows_gives_none() {
     assert_eq!(found["gains"].as_array().unwrap().len(), 0);
     assert_eq!(found["ultimate"], Value::Null);
 }
+
+/// All keys of objects in it, and words that stand for one of a few.
+fn keys(value: &Value, found: &mut std::collections::BTreeSet<String>) {
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                found.insert(key.clone());
+                if let (true, Some(word)) = (
+                    ["kind", "rule", "controller", "form"].contains(&key.as_str()),
+                    value.as_str(),
+                ) {
+                    found.insert(word.to_owned());
+                }
+                keys(value, found);
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|v| keys(v, found)),
+        _ => {}
+    }
+}
+
+/// A record by a step, by a controller, and by an input of all values: no cycle, a cause, an integrator.
+fn other_records() -> Vec<String> {
+    let head = || String::from("t [s],u [%],y [°C]\n");
+    let (mut step, mut ramp, mut looped) = (head(), head(), head());
+    let (mut level, mut tank, mut room) = (20.0, 0.0, 20.0);
+    for i in 0..600_usize {
+        let t = i as f64;
+        let u = if (50..).contains(&i) { 100.0 } else { 0.0 };
+        writeln!(step, "{t},{u},{level:.4}").unwrap();
+        level += (20.0 + 0.5 * u - level) / 60.0;
+        let pulse = if i / 60 % 2 == 0 { 100.0 } else { 0.0 };
+        writeln!(ramp, "{t},{pulse},{tank:.4}").unwrap();
+        tank += 0.01 * (pulse - 50.0);
+        let control = 180.0 - 2.0 * room;
+        writeln!(looped, "{t},{control:.4},{room:.4}").unwrap();
+        room += (20.0 + 0.6 * control - room) / 60.0;
+    }
+    vec![step, ramp, looped]
+}
+
+#[test]
+fn every_key_of_the_json_is_documented_and_every_documented_key_is_there() {
+    let document = include_str!("../../docs/tuning.md");
+    let section = document.split("## JSON").nth(1).unwrap();
+    let mut all = std::collections::BTreeSet::new();
+    let mut files = vec![record()];
+    files.extend(other_records());
+    for (i, text) in files.iter().enumerate() {
+        let file = written(&format!("documented-{i}.csv"), text);
+        keys(&json(&[&file, "--format", "json"]), &mut all);
+    }
+    let numbers = [
+        "--amplitude",
+        "1.2",
+        "--period",
+        "47",
+        "--levels",
+        "0,255",
+        "--hysteresis",
+        "0.5",
+    ];
+    let form = ["--form", "klipper", "--format", "json"];
+    let told = json(&[&numbers[..], &form].concat());
+    assert_eq!(told["gains"][0]["stable"], Value::Null);
+    keys(&told, &mut all);
+    for key in &all {
+        assert!(
+            section.contains(&format!("`{key}`")),
+            "{key} is not in the document"
+        );
+    }
+    // Keys stand in the first column.
+    let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
+    let named = rows.flat_map(|row| {
+        let first = row.split(" |").next().unwrap_or_default();
+        first
+            .split(", ")
+            .map(|key| key.trim_matches('`').to_owned())
+            .collect::<Vec<_>>()
+    });
+    for key in named {
+        assert!(all.contains(&key), "{key} is documented, but in no answer");
+    }
+}

@@ -5,7 +5,7 @@
 use std::time::Duration;
 
 use egui::epaint::{ClippedShape, Shape};
-use egui::{Event, Modifiers, PointerButton, Pos2, Rect, Role};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, SnapshotOptions};
 use hysteron::HysteronApp;
@@ -214,4 +214,18 @@ pub fn double_click(harness: &mut App, at: Pos2) {
         harness.input_mut().events.extend(click);
         harness.step();
     }
+}
+
+/// Chooses an entry of a list.
+pub fn choose(harness: &mut App, list: &str, entry: &str) {
+    let found = harness.get_by_role_and_label(Role::ComboBox, list);
+    found.click_accesskit();
+    harness.run_steps(3);
+    // What is drawn last lies on top.
+    let last = harness.query_all_by_label(entry).last();
+    last.unwrap_or_else(|| panic!("no {entry} in {list}"))
+        .click_accesskit();
+    harness.run_steps(2);
+    harness.key_press(Key::Escape);
+    finish(harness);
 }

@@ -237,7 +237,9 @@ fn json(result: &MeasuredTuning) -> serde_json::Value {
         "conventional": result.conventional.map(|c| json!({"gain": c.gain, "period": c.period})),
         "static_gain": result.static_gain.map(|k| json!({"value": k.value, "std_error": k.std_error})),
         "models": result.models.iter().map(model).collect::<Vec<_>>(),
-        "gains": result.gains.iter().map(gains).collect::<Vec<_>>(),
+        "gains": result.gains.iter()
+            .map(|g| gains(g, !result.models.is_empty()))
+            .collect::<Vec<_>>(),
         "stall": result.stall(),
         "troubles": result.troubles.iter()
             .map(|t| json!({"kind": t.kind, "fatal": t.fatal, "number": t.number, "text": t.text}))
@@ -259,7 +261,10 @@ fn model(model: &FittedModel) -> serde_json::Value {
         "std_error_time_constant": lag(0, |t| t.std_error),
         "second_time_constant": lag(1, |t| t.value),
         "std_error_second_time_constant": lag(1, |t| t.std_error),
+        "third_time_constant": lag(2, |t| t.value),
+        "std_error_third_time_constant": lag(2, |t| t.std_error),
         "zero": model.zero.map(|z| z.value),
+        "std_error_zero": model.zero.map(|z| z.std_error),
         "dead_time": model.dead_time.value,
         "std_error_dead_time": model.dead_time.std_error,
         "operating_point": model.operating_point,
@@ -268,7 +273,8 @@ fn model(model: &FittedModel) -> serde_json::Value {
     })
 }
 
-fn gains(gains: &TunedGains) -> serde_json::Value {
+/// Gains; without a model nobody knows whether their loop is stable.
+fn gains(gains: &TunedGains, judged: bool) -> serde_json::Value {
     json!({
         "rule": gains.rule,
         "controller": gains.controller,
@@ -278,7 +284,7 @@ fn gains(gains: &TunedGains) -> serde_json::Value {
         "kd": gains.kd,
         "ti": gains.ti,
         "td": gains.td,
-        "stable": gains.stable,
+        "stable": judged.then_some(gains.stable),
         "phase_margin_deg": gains.phase_margin_deg,
         "gain_margin": gains.gain_margin,
         "max_sensitivity": gains.max_sensitivity,

@@ -1,4 +1,4 @@
-//! What several pages draw with: plots, sliders and fields, a playback, and the plots of a relay loop.
+//! What several pages draw with: plots, sliders and fields, a form for columns, a playback, the plots of a relay loop.
 
 pub mod chart;
 mod chart_axes;
@@ -9,6 +9,7 @@ pub mod chart_menu;
 mod chart_pen;
 mod chart_reading;
 pub mod chart_zoom;
+pub mod columns;
 pub mod controls;
 pub mod equation;
 pub mod playback;

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 
 use hysteron_core::tuning::measured::{
-    FittedModel, MeasuredTuning, Record, alone, open, steps, tune_readings,
+    FittedModel, MeasuredTuning, OpenError, Record, alone, open, steps, tune_readings,
 };
 
-use crate::tasks::{MeasuredReport, MeasuredTask, MeasuredTest, News};
-use crate::work::{Say, Work, bytes_of};
+use crate::tasks::{MeasuredReport, MeasuredTask, MeasuredTest, News, ReadTest};
+use crate::work::{Say, Work, bytes_of, unclear};
 
 /// Most samples that are drawn.
 const DRAWN: usize = 4000;
@@ -21,7 +21,7 @@ const PERIODS: f64 = 8.0;
 const TIMES: f64 = 5.0;
 
 impl Work for MeasuredTask {
-    fn run(self, say: Say<'_, MeasuredReport>) {
+    fn run(self, say: Say<'_, ReadTest>) {
         say(match self.report() {
             Ok(report) => News::Report(Box::new(report)),
             Err(error) => News::Failed(error),
@@ -30,13 +30,21 @@ impl Work for MeasuredTask {
 }
 
 impl MeasuredTask {
-    fn report(self) -> Result<MeasuredReport, String> {
+    fn report(self) -> Result<ReadTest, String> {
         let wishes = self.wishes;
         let (tuning, record) = match self.test {
             MeasuredTest::File(task) => {
                 let options = task.reading.options()?;
-                let opened = open(&task.file, &bytes_of(&task.content), &options)
-                    .map_err(|e| e.to_string())?;
+                let bytes = bytes_of(&task.content);
+                let opened = match open(&task.file, &bytes, &options) {
+                    Ok(opened) => opened,
+                    Err(OpenError::Import(error)) => {
+                        return unclear(&task.file, &bytes, &error)
+                            .map(ReadTest::Unclear)
+                            .ok_or_else(|| error.to_string());
+                    }
+                    Err(error) => return Err(error.to_string()),
+                };
                 let record = opened.record().map(drawn);
                 (opened.tune(&wishes).map_err(|e| e.to_string())?, record)
             }
@@ -46,7 +54,7 @@ impl MeasuredTask {
                 (tuning, None)
             }
         };
-        Ok(with_pictures(tuning, record))
+        Ok(ReadTest::Told(Box::new(with_pictures(tuning, record))))
     }
 }
 

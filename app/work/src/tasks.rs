@@ -58,12 +58,16 @@ pub enum ReadReport {
     /// A measurement.
     Measurement(Box<Opened>),
     /// A table that does not say what its columns are.
-    Unclear {
-        /// What is not understood.
-        reason: String,
-        /// What there is.
-        columns: Vec<FoundColumn>,
-    },
+    Unclear(Unclear),
+}
+
+/// What is asked of a table that does not say what its columns are.
+#[derive(Serialize, Deserialize)]
+pub struct Unclear {
+    /// What is not understood.
+    pub reason: String,
+    /// What there is.
+    pub columns: Vec<FoundColumn>,
 }
 
 /// A measurement, and what else is known of its file.
@@ -259,9 +263,18 @@ pub struct MeasuredReport {
     pub alone: Option<Response>,
 }
 
+/// What was read of a relay test that was measured.
+#[derive(Serialize, Deserialize)]
+pub enum ReadTest {
+    /// What it tells.
+    Told(Box<MeasuredReport>),
+    /// A table that does not say what its columns are.
+    Unclear(Unclear),
+}
+
 impl Task for MeasuredTask {
     const NAME: &'static str = "measured";
-    type Report = MeasuredReport;
+    type Report = ReadTest;
 }
 
 /// Estimates a gap from the motor's columns alone.

@@ -28,7 +28,7 @@ mod tests {
     use crate::content::Content;
     use crate::enclosed;
     use crate::reading::Reading;
-    use crate::tasks::{News, ReadReport, ReadTask, StepTask};
+    use crate::tasks::{News, ReadReport, ReadTask, StepTask, Unclear};
     use crate::work::Work;
 
     /// What a task says at its end, sent there and back.
@@ -86,7 +86,7 @@ mod tests {
             content: Content::Plain(csv.into_bytes().into()),
             reading: Reading::default(),
         };
-        let ReadReport::Unclear { columns, .. } = sent(&task) else {
+        let ReadReport::Unclear(Unclear { columns, .. }) = sent(&task) else {
             panic!("it does not say what its columns are");
         };
         assert_eq!(columns.len(), 3);

@@ -21,7 +21,7 @@ use crate::content::Content;
 use crate::packed::unpack;
 use crate::tasks::{
     DiscoveryTask, ExperimentTask, GapReport, GapTask, HandTask, Made, MapTask, MysteryTask, News,
-    Opened, ReadReport, ReadTask, RevealTask, Source, StepTask, Task, TuneTask,
+    Opened, ReadReport, ReadTask, RevealTask, Source, StepTask, Task, TuneTask, Unclear,
 };
 
 /// Where a task says its news; false when nobody listens any more and it should end.
@@ -45,7 +45,11 @@ impl Work for ReadTask {
                 },
                 seal: seal_of(&bytes),
             }))),
-            Err(refused) => self.ask(&refused, &bytes).ok_or(refused),
+            Err(refused) => refused
+                .about_columns()
+                .and_then(|error| unclear(&self.file, &bytes, error))
+                .map(ReadReport::Unclear)
+                .ok_or(refused),
         };
         say(match report {
             Ok(report) => News::Report(Box::new(report)),
@@ -65,6 +69,26 @@ pub(crate) fn bytes_of(content: &Content) -> Cow<'_, [u8]> {
 
 /// Columns that a measurement has at least: input and output, and a period if no column has the times.
 const FEWEST: usize = 2;
+
+/// What is asked of a file that was refused for its columns, if that can help.
+pub(crate) fn unclear(file: &str, bytes: &[u8], error: &ImportError) -> Option<Unclear> {
+    if !error.problem.is_about_columns() {
+        return None;
+    }
+    let columns = columns(file, bytes).ok()?;
+    let reason = match error.problem {
+        // What the command line says goes on about options.
+        Problem::NotMapped { .. } => {
+            "A file of MATLAB does not say what its columns are.".to_owned()
+        }
+        _ => ImportError {
+            advice: None,
+            ..error.clone()
+        }
+        .to_string(),
+    };
+    (columns.len() >= FEWEST).then_some(Unclear { reason, columns })
+}
 
 /// Why a file is not read.
 enum Refused {
@@ -101,22 +125,6 @@ impl ReadTask {
                 advice: None,
                 ..error
             })
-        })
-    }
-
-    /// Asks for the columns of a file that was refused, if that can help.
-    fn ask(&self, refused: &Refused, bytes: &[u8]) -> Option<ReadReport> {
-        let error = refused.about_columns()?;
-        let columns = columns(&self.file, bytes).ok()?;
-        (columns.len() >= FEWEST).then(|| ReadReport::Unclear {
-            reason: match error.problem {
-                // What the command line says goes on about options.
-                Problem::NotMapped { .. } => {
-                    "A file of MATLAB does not say what its columns are.".to_owned()
-                }
-                _ => error.to_string(),
-            },
-            columns,
         })
     }
 

@@ -8,6 +8,7 @@ use hysteron_core::user_model::UserModel;
 
 use super::command::Command;
 use super::state::Compare;
+use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
 use crate::widgets::equation::sized_equation_ui;
@@ -24,6 +25,21 @@ impl Compare {
                 if ui.small_button(tr("Dismiss")).clicked() {
                     commands.push(Command::Dismiss);
                 }
+            });
+        }
+    }
+
+    /// The form for the columns of a file, in place of what is open.
+    pub(super) fn form_ui(
+        &self,
+        ui: &mut egui::Ui,
+        targets: &mut Targets,
+        commands: &mut Vec<Command>,
+    ) {
+        if let Some(form) = &self.form {
+            theme::scroll("compare_mapping").show(ui, |ui| {
+                commands.extend(form.ui(ui, targets).into_iter().map(Command::Map));
+                self.reading_ui(ui, commands);
             });
         }
     }

@@ -3,11 +3,11 @@
 use hysteron_core::diagnosis::Limits;
 use hysteron_core::effect::EffectId;
 
-use super::choice::Choice;
 use super::formula::Typed;
 use super::look::Look;
 use crate::command;
 use crate::recent::Recent;
+use crate::widgets::columns::Wanted;
 
 /// What a click asks for; carried out once, after drawing.
 #[derive(Clone)]
@@ -17,11 +17,8 @@ pub(super) enum Command {
     /// Opens a file once more.
     Reopen(Recent),
     Close,
-    /// Which column of a file is what.
-    Choose(Box<Choice>),
-    /// Opens the file with what was chosen, or leaves it.
-    OpenMapped,
-    CancelMapping,
+    /// Which column of a file is what, and the file with that, or without.
+    Map(Wanted),
     /// Leaves the file that is being read.
     CancelReading,
     Add(EffectId),

@@ -5,13 +5,11 @@ mod atlas;
 mod awaited;
 mod built_in;
 mod by_hand;
-mod choice;
 mod command;
 mod discover;
 mod experiment;
 mod export;
 mod fingerprint;
-mod form;
 mod formula;
 mod formulas;
 mod guess;
@@ -20,7 +18,6 @@ mod hint;
 mod hints;
 mod history;
 mod look;
-mod mapping;
 mod missing;
 mod open;
 mod opening;
@@ -49,9 +46,9 @@ use crate::layout;
 use crate::page::{Offer, Page, View};
 use crate::save::save;
 use crate::theme;
+use crate::widgets::columns::{Form, Wanted};
 use built_in::{BUILT_IN, BuiltIn};
 use command::Command;
-use form::Form;
 use look::Look;
 use opening::Opening;
 use sealed::Sealed;
@@ -248,13 +245,13 @@ impl Compare {
                 self.restart(ctx);
             }
             Command::Close => self.close(),
-            Command::Choose(choice) => {
+            Command::Map(Wanted::Choose(choice)) => {
                 if let Some(form) = &mut self.form {
                     form.choice = *choice;
                 }
             }
-            Command::OpenMapped => self.open_mapped(ctx),
-            Command::CancelMapping => (self.form, self.opening) = (None, None),
+            Command::Map(Wanted::Open) => self.open_mapped(ctx),
+            Command::Map(Wanted::Cancel) => (self.form, self.opening) = (None, None),
             Command::CancelReading => self.opening = None,
             Command::Add(effect) if !self.effects.contains(&effect) => {
                 let mut effects = self.effects.clone();

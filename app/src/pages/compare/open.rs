@@ -5,7 +5,6 @@ use std::sync::Arc;
 use hysteron_core::measurement::FoundColumn;
 use hysteron_core::user_model::UserModel;
 
-use super::form::Form;
 use super::formula::Typed;
 use super::hints::Guess;
 use super::look::Look;
@@ -15,6 +14,7 @@ use super::state::Compare;
 use super::unknown::Unknown;
 use crate::files::Held;
 use crate::jobs::Job;
+use crate::widgets::columns::Form;
 use hysteron_work::content::Content;
 use hysteron_work::reading::Reading;
 use hysteron_work::tasks::{Opened, ReadReport};
@@ -47,7 +47,9 @@ impl Compare {
             Some(Ok(ReadReport::Measurement(opened))) => {
                 self.take_measurement(ctx, *opened, opening);
             }
-            Some(Ok(ReadReport::Unclear { reason, columns })) => self.ask(opening, reason, columns),
+            Some(Ok(ReadReport::Unclear(unclear))) => {
+                self.ask(opening, unclear.reason, unclear.columns);
+            }
             Some(Err(error)) => self.refuse(error),
             None => self.opening = Some(opening),
         }
@@ -82,7 +84,7 @@ impl Compare {
     pub(super) fn open_mapped(&mut self, ctx: &egui::Context) {
         if let Some(form) = &mut self.form {
             form.error = None;
-            let reading = form.choice.reading(&form.columns);
+            let reading = form.reading();
             self.opening = Some(Opening {
                 origin: form.origin.clone(),
                 from_form: true,

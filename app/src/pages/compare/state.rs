@@ -12,7 +12,6 @@ use hysteron_work::reading::Reading;
 use hysteron_work::tasks::{ExperimentTask, Source};
 
 use super::by_hand::Hand;
-use super::form::Form;
 use super::formula::Typed;
 use super::hints::Guess;
 use super::look::Look;
@@ -22,6 +21,7 @@ use super::sealed::Sealed;
 use super::unknown::Unknown;
 use crate::files::Files;
 use crate::jobs::Job;
+use crate::widgets::columns::Form;
 
 /// The page.
 pub struct Compare {

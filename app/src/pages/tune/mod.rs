@@ -225,7 +225,7 @@ impl Tune {
     fn main_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk, pinned: bool, height: f32) {
         if self.is_measured() {
             self.measured.ask(ui.ctx());
-            self.measured.ui(ui, pinned, height);
+            self.measured.ui(ui, &mut desk.targets, pinned, height);
             return;
         }
         self.ask(ui.ctx(), desk);

@@ -15,16 +15,20 @@ use hysteron_core::uncertain::{with_error, with_uncertainty};
 use hysteron_work::content::Content;
 use hysteron_work::enclosed::{Enclosed, PROCESS_02};
 use hysteron_work::reading::Reading;
-use hysteron_work::tasks::{MeasuredReport, MeasuredTask, MeasuredTest, ReadTask};
+use hysteron_work::tasks::{
+    MeasuredReport, MeasuredTask, MeasuredTest, ReadTask, ReadTest, Unclear,
+};
 
 use super::draw::{beside, number};
 use crate::export::Table;
 use crate::files::{Files, Held};
+use crate::hook::Targets;
 use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::motion;
 use crate::page::{Hint, Offer};
 use crate::theme;
+use crate::widgets::columns::{Form, Wanted};
 
 pub use settings::{From, Settings};
 use tables::key;
@@ -62,6 +66,8 @@ pub struct Measured {
     job: Option<Job<MeasuredTask>>,
     shown: Option<Box<MeasuredReport>>,
     message: Option<String>,
+    /// The form for a file that does not say what its columns are.
+    form: Option<Form>,
 }
 
 impl Default for Measured {
@@ -87,6 +93,7 @@ impl Default for Measured {
             job: None,
             shown: None,
             message: None,
+            form: None,
         }
     }
 }
@@ -108,14 +115,51 @@ impl Measured {
             }
         }
         match ended(&mut self.job, |_, _| ()) {
-            Some(Ok(report)) => self.take_report(Box::new(report)),
-            Some(Err(text)) => self.message = Some(text),
+            Some(Ok(ReadTest::Told(report))) => self.take_report(report),
+            Some(Ok(ReadTest::Unclear(unclear))) => self.ask_columns(unclear),
+            Some(Err(text)) => match &mut self.form {
+                Some(form) => form.error = Some(text),
+                None => self.message = Some(text),
+            },
             None => {}
+        }
+    }
+
+    /// Asks which column of the file is what; where that was asked already, says what is wrong with the answer.
+    fn ask_columns(&mut self, unclear: Unclear) {
+        let Unclear { reason, columns } = unclear;
+        match (&mut self.form, &self.file) {
+            (Some(form), _) => form.error = Some(reason),
+            (form, Some(file)) => {
+                let (name, content) = (file.name.clone(), file.content.clone());
+                *form = Some(Form::new(name, content, None, reason, columns));
+            }
+            _ => self.message = Some(reason),
+        }
+    }
+
+    /// Does what was asked for in the form.
+    fn map(&mut self, wanted: Wanted) {
+        match (wanted, &mut self.form) {
+            (Wanted::Choose(choice), Some(form)) => form.choice = *choice,
+            (Wanted::Open, Some(form)) => {
+                form.error = None;
+                if let Some(file) = &mut self.file {
+                    file.reading = form.reading();
+                    self.opened += 1;
+                }
+            }
+            (Wanted::Cancel, _) => {
+                (self.form, self.file, self.job) = (None, None, None);
+                self.opened += 1;
+            }
+            (_, None) => {}
         }
     }
 
     fn take_report(&mut self, report: Box<MeasuredReport>) {
         self.message = None;
+        self.form = None;
         if let (From::Record, Some(file)) = (self.from, &self.file) {
             self.files.taken(&file.name, &file.reading);
             self.files.hold(file.clone());
@@ -129,6 +173,7 @@ impl Measured {
         self.file = Some(file);
         self.opened += 1;
         self.message = None;
+        self.form = None;
     }
 
     /// Opens what stands in the field.
@@ -194,7 +239,13 @@ impl Measured {
     }
 
     /// All that the test tells; the answer and the plot not again where they are `pinned`.
-    pub fn ui(&mut self, ui: &mut egui::Ui, pinned: bool, height: f32) {
+    pub fn ui(&mut self, ui: &mut egui::Ui, targets: &mut Targets, pinned: bool, height: f32) {
+        if let (From::Record, Some(form)) = (self.from, &self.form) {
+            for wanted in form.ui(ui, targets) {
+                self.map(wanted);
+            }
+            return;
+        }
         if let Some(message) = &self.message {
             theme::tell(&ui.colored_label(ui.visuals().warn_fg_color, tr(message)));
         }
@@ -245,6 +296,7 @@ impl Measured {
             "gains": tuning.map(|t| t.gains.len()),
             "file": self.file.as_ref().map(|f| &f.name),
             "message": self.message,
+            "mapping": self.form.as_ref().map(Form::hook_state),
         })
     }
 

@@ -99,7 +99,6 @@ impl Measured {
         {
             self.open_pasted();
         }
-        ui.small(tr("If the columns of a table are unclear, open it in Compare first: it asks what they are."));
     }
 
     fn numbers_ui(&mut self, ui: &mut egui::Ui) {

@@ -97,7 +97,7 @@ impl Channel {
 
 /// What was chosen for a channel.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Chosen {
+pub struct Chosen {
     /// Place of the column among those of the file.
     pub column: Option<usize>,
     pub unit: String,
@@ -109,7 +109,7 @@ pub(super) struct Chosen {
 
 /// What was chosen in the form.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Choice {
+pub struct Choice {
     pub kind: Kind,
     /// For each of [`CHANNELS`].
     pub chosen: [Chosen; CHANNELS.len()],
@@ -165,7 +165,7 @@ impl Choice {
     }
 
     /// The channels of such a system, with their places.
-    pub fn channels(&self) -> impl Iterator<Item = (usize, &'static Channel)> + use<> {
+    pub(super) fn channels(&self) -> impl Iterator<Item = (usize, &'static Channel)> + use<> {
         let kind = self.kind;
         let all = CHANNELS.iter().enumerate();
         all.filter(move |(_, channel)| channel.belongs_to(kind))

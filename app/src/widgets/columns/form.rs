@@ -2,19 +2,23 @@
 
 use hysteron_core::measurement::FoundColumn;
 use hysteron_work::content::Content;
+use hysteron_work::reading::Reading;
 
 use super::choice::Choice;
 use crate::recent::Recent;
 
 /// A file whose columns are to be understood.
-pub(super) struct Form {
+pub struct Form {
+    /// Its name.
     pub file: String,
+    /// What is in it.
     pub content: Content,
     /// Where the file is, if it can be opened again.
     pub origin: Option<Recent>,
     /// Why it is asked.
     pub(super) reason: String,
-    pub columns: Vec<FoundColumn>,
+    pub(super) columns: Vec<FoundColumn>,
+    /// What was chosen.
     pub choice: Choice,
     /// Why it cannot be read as was chosen, or why another file was refused meanwhile.
     pub error: Option<String>,
@@ -40,12 +44,18 @@ impl Form {
         }
     }
 
+    /// The file as it was chosen to be read.
+    pub fn reading(&self) -> Reading {
+        self.choice.reading(&self.columns)
+    }
+
+    /// For tests.
     pub fn hook_state(&self) -> serde_json::Value {
         serde_json::json!({
             "file": self.file,
             "reason": self.reason,
             "missing": self.choice.missing(),
-            "reading": self.choice.reading(&self.columns),
+            "reading": self.reading(),
             "error": self.error,
         })
     }

@@ -1,12 +1,10 @@
-//! A form for a file that does not say what its columns are: which column is what, in which unit.
+//! The form as it is drawn, and what is asked of it.
 
 use egui::Ui;
 use hysteron_core::measurement::{FoundColumn, Kind, Role};
 
 use super::choice::{Channel, Choice, Chosen};
-use super::command::Command;
 use super::form::Form;
-use super::state::Compare;
 use crate::hook::Targets;
 use crate::language::tr;
 use crate::theme;
@@ -27,8 +25,21 @@ const WIDEST: f32 = 940.0;
 /// Significant digits of the values that are shown.
 const DIGITS: i32 = 4;
 
+/// What a click in the form asks for.
+#[derive(Clone)]
+pub enum Wanted {
+    /// What was chosen.
+    Choose(Box<Choice>),
+    /// The file, read with what was chosen.
+    Open,
+    /// Nothing of it.
+    Cancel,
+}
+
 impl Form {
-    fn ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
+    /// The form, in place of what is open; what was chosen comes before what is asked of it.
+    pub fn ui(&self, ui: &mut Ui, targets: &mut Targets) -> Vec<Wanted> {
+        let mut wanted = Vec::new();
         ui.set_max_width(ui.available_width().min(WIDEST));
         theme::answer_ui(ui, "Which column is what?");
         ui.strong(&self.file);
@@ -65,21 +76,22 @@ impl Form {
             targets.note("map:open", ui, &open);
             let cancel = ui.button(tr("Cancel"));
             targets.note("map:cancel", ui, &cancel);
-            // Commands are carried out in their order: first what was typed, then what is asked of it.
+            // First what was typed, then what is asked of it.
             if choice != self.choice {
                 // What is being typed stays as it is.
                 if choice.columns() != self.choice.columns() {
                     choice.suit(&self.columns);
                 }
-                commands.push(Command::Choose(Box::new(choice)));
+                wanted.push(Wanted::Choose(Box::new(choice)));
             }
             if open.clicked() {
-                commands.push(Command::OpenMapped);
+                wanted.push(Wanted::Open);
             }
             if cancel.clicked() {
-                commands.push(Command::CancelMapping);
+                wanted.push(Wanted::Cancel);
             }
         });
+        wanted
     }
 
     /// A channel: its column, its unit, its direction, and what stands in the column.
@@ -313,16 +325,4 @@ fn course_ui(ui: &mut Ui, column: &FoundColumn, size: egui::Vec2) {
         }
     }
     ui.painter().line(line, stroke);
-}
-
-impl Compare {
-    /// The form, in place of what is open.
-    pub(super) fn form_ui(&self, ui: &mut Ui, targets: &mut Targets, commands: &mut Vec<Command>) {
-        if let Some(form) = &self.form {
-            theme::scroll("compare_mapping").show(ui, |ui| {
-                form.ui(ui, targets, commands);
-                self.reading_ui(ui, commands);
-            });
-        }
-    }
 }
