@@ -3,6 +3,7 @@
 #[path = "../support"]
 mod support {
     pub mod mat;
+    pub mod pulses;
     pub mod source;
     pub mod ui;
 }

@@ -1,5 +1,6 @@
 //! The pages, as a user sees and works them: pictures of fixed size, and the way from a file to the answer.
 
+use crate::support::pulses::reversed_twice;
 use crate::support::ui::{App, WIDE, finish, picture, state, type_over, wait};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::HysteronApp;
@@ -240,23 +241,15 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
     picture(&mut harness, "compare_formula_none");
 }
 
-/// Where two effects hide each other, either alone may be chance: it is offered as that, and the way goes on from there.
+/// Where a process does something else in two short moments only, that may be chance: what explains it is offered as that, and the
+/// way goes on from there.
 #[test]
 fn what_may_help_is_offered_though_chance_is_not_ruled_out() {
-    let rig = rig::process::ProcessRig {
-        time_constant: 120.0,
-        samples: 1000,
-        excitation: rig::process::Excitation::Staircase { top: 1.0 },
-        stranger: Some(rig::process::Stranger::Swing {
-            amplitude: 0.4,
-            period: 120.0,
-        }),
-        ..rig::process::ProcessRig::default()
-    };
     let mut harness = app("compare");
     let ctx = harness.ctx.clone();
-    let csv = rig.measure().to_csv();
-    harness.state_mut().open(&ctx, "rig.csv", csv.as_bytes());
+    harness
+        .state_mut()
+        .open(&ctx, "pulses.csv", reversed_twice().as_bytes());
     stop_looking(&mut harness);
     harness.get_by_label("Perhaps, but it may be chance");
     let state = state(&harness);

@@ -3,9 +3,10 @@
 
 use crate::support::diagnosis::{classes, finish, step};
 use crate::support::parameter::parameter;
+use crate::support::pulses::reversed_twice;
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::Diagnosis;
-use hysteron_core::measurement::Measurement;
+use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::rig::process::{Excitation, ProcessRig, Stranger};
 
 /// A process of two minutes that is watched for three, with a load that swings as slowly besides.
@@ -43,8 +44,24 @@ fn what_takes_away_nearly_all_is_named_though_the_rest_hangs_together() {
 }
 
 #[test]
-fn what_may_be_chance_is_said_as_that() {
+fn a_load_that_swings_once_or_twice_is_no_effect() {
     let d = diagnose(0.0, 0.4, 120.0);
+    assert!(
+        d.verdict.missing.is_empty() && d.verdict.unknown,
+        "{}",
+        d.verdict.text
+    );
+    assert!(
+        d.verdict.text.contains("wanders slowly"),
+        "{}",
+        d.verdict.text
+    );
+}
+
+#[test]
+fn what_may_be_chance_is_said_as_that() {
+    let record = import_csv("pulses", reversed_twice().as_bytes(), None).unwrap();
+    let d = finish(DiagnosisJob::new(&record).unwrap());
     assert!(
         d.verdict.missing.is_empty() && d.verdict.unknown,
         "{}",
@@ -59,7 +76,7 @@ fn what_may_be_chance_is_said_as_that() {
     let offered = candidates.iter().find(|c| c.promising && !c.significant);
     // What is offered can be added, and leaves what was said.
     let offered = offered.expect("an offer");
-    let with = step(StepJob::new(&record(0.0, 0.4, 120.0), &offered.effects).unwrap());
+    let with = step(StepJob::new(&record, &offered.effects).unwrap());
     let change = (with.step.error / offered.error - 1.0).abs();
     assert!(change < 0.05, "{} for {}", with.step.error, offered.error);
 }

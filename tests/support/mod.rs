@@ -20,6 +20,7 @@ pub mod mat;
 pub mod parameter;
 pub mod process_cases;
 pub mod proposed;
+pub mod pulses;
 pub mod record;
 pub mod relay_rig;
 pub mod rig;
