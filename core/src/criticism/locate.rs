@@ -393,9 +393,7 @@ mod tests {
         assert_eq!(finding.from, 0.0);
         assert!(finding.share_of_error > 0.95, "{finding:?}");
         assert!(
-            finding
-                .text
-                .contains(" after the motor felt the load, which is "),
+            finding.text.ends_with(" after the motor felt the load."),
             "{}",
             finding.text
         );
