@@ -23,9 +23,15 @@ use crate::model::{LoadBegin, Start};
 /// Iterations after which a fit ends in any case.
 const MAX_ITERATIONS: usize = 30;
 
-/// A relative fall of the cost below this, for the second time, ends a fit: a twentieth of the least that counts between two
-/// models, 3 % of the error. (A thousand times less takes a quarter more work, and names the same.)
-const COST_TOLERANCE: f64 = 3e-3;
+/// A fall of the cost by less than this share of what it has beyond the noise, for the second time, ends a fit: a twentieth of the
+/// least that counts between two models, 3 % of the error. (A thousand times less takes a quarter more work, and names the same.)
+const BEYOND_TOLERANCE: f64 = 3e-3;
+
+/// The same of the whole cost: a fit that leaves noise ends where its values are known far better than that tells them.
+const COST_TOLERANCE: f64 = 1e-6;
+
+/// The same where whole steps do not lower it: on rough ground short ones may go on to find a little for long.
+const CREEP: f64 = 1e-4;
 
 /// Damping of the first step.
 const FIRST_DAMPING: f64 = 1e-3;
@@ -57,6 +63,14 @@ const SAME_PLACE: f64 = 0.01;
 
 /// Standard deviations by which a load on a joint may be off where it follows the body.
 const FARTHEST: f64 = 3.0;
+
+/// Relative fall of the `present` cost below which it falls no more.
+fn tolerance(data: &Data, present: f64) -> f64 {
+    let fitted = data.blocks.iter().filter(|b| !b.held_back);
+    let noise: usize = fitted.map(|b| data.measured(b.from, b.to)).sum();
+    let beyond = (1.0 - noise as f64 / present).max(0.0);
+    COST_TOLERANCE.max(BEYOND_TOLERANCE * beyond)
+}
 
 /// The derivative of the motion with respect to where it starts, if that is all that changes.
 fn shifted(data: &Data) -> Motion {
@@ -135,6 +149,7 @@ impl Fit {
         let scale = oddness(data, &self.motion);
         let (mut matrix, mut gradient, windows) = self.normal_equations(data, &columns, p, scale);
         let present = self.objective(data, &self.motion, &self.values, scale);
+        let tolerance = tolerance(data, present);
         let priors = self.structure.priors();
         // The equations of the data stand for their cost divided by this.
         let share = robust_share(data, &self.motion, scale);
@@ -156,7 +171,7 @@ impl Fit {
             let hope = fall / present.max(f64::MIN_POSITIVE);
             if !shortened {
                 self.hope = hope;
-            } else if hope < COST_TOLERANCE {
+            } else if hope < tolerance {
                 break;
             }
             let (starts, motion) = self.motion_from(data, &values, starts, scale, present, scales);
@@ -167,7 +182,12 @@ impl Fit {
                 (self.values, self.starts, self.motion) = (values, starts, motion);
                 self.damping = (self.damping * 0.2).max(1e-9);
                 moved = true;
-                lowered = fall > COST_TOLERANCE;
+                lowered = fall
+                    > if shortened {
+                        tolerance.max(CREEP)
+                    } else {
+                        tolerance
+                    };
                 break;
             }
             self.damping *= growth;
