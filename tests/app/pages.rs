@@ -241,8 +241,8 @@ fn where_no_effect_explains_the_rest_the_missing_force_is_drawn() {
     picture(&mut harness, "compare_formula_none");
 }
 
-/// Where a process does something else in two short moments only, that may be chance: what explains it is offered as that, and the
-/// way goes on from there.
+/// Where a process does something else in two short moments only, that may be chance: what explains it is offered as
+/// that, and the way goes on from there.
 #[test]
 fn what_may_help_is_offered_though_chance_is_not_ruled_out() {
     let mut harness = app("compare");

@@ -141,9 +141,9 @@ pub(super) fn one_each(windows: &[usize], n: usize) -> Vec<Block> {
         .collect()
 }
 
-/// Blocks of `length` of `n` samples in these windows; a short rest joins the last block. Of every pair one is held back, in an
-/// order that goes with no period: an input that steps every so many blocks would else show all of its steps to the fit, or to
-/// the judge.
+/// Blocks of `length` of `n` samples in these windows; a short rest joins the last block. Of every pair one is held
+/// back, in an order that goes with no period: an input that steps every so many blocks would else show all of its
+/// steps to the fit, or to the judge.
 pub(super) fn blocks(n: usize, length: usize, windows: &[usize]) -> Vec<Block> {
     let begins = evenly(n, length);
     one_each(&begins, n)
@@ -157,8 +157,8 @@ pub(super) fn blocks(n: usize, length: usize, windows: &[usize]) -> Vec<Block> {
         .collect()
 }
 
-/// Whether the first of a pair is held back: a square of its number times an irrational one falls alike into either half of a
-/// whole along every even distance (Weyl 1916).
+/// Whether the first of a pair is held back: a square of its number times an irrational one falls alike into either
+/// half of a whole along every even distance (Weyl 1916).
 fn is_turned(pair: usize) -> bool {
     ((pair * pair) as f64 * GOLDEN).fract() >= 0.5
 }

@@ -47,7 +47,8 @@ pub(super) struct Data {
     pub baseline: Baseline,
     pub excitation: Excitation,
     pub input: Vec<f64>,
-    /// Of a process whose surroundings wander, the share by which each sample moves what is foretold of the next; 0 of others.
+    /// Of a process whose surroundings wander, the share by which each sample moves what is foretold of the next; 0 of
+    /// others.
     pub wander: f64,
     pub time: Vec<f64>,
     pub outputs: Vec<Output>,

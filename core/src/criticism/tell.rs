@@ -108,7 +108,8 @@ impl Tell {
             Rest::More => session.findings(&whole),
             Rest::Noise | Rest::NoiseWithMemory | Rest::RandomForces => Vec::new(),
         };
-        // Of what the search took, a later trial may tell less surely that it is needed: it stays, with the error that it has.
+        // Of what the search took, a later trial may tell less surely that it is needed: it stays, with the error that
+        // it has.
         let needless = if suggestion.is_none() && self.contradicted.is_empty() {
             let held = explain.held_ids();
             let mut needless = needless(session, explain, place);

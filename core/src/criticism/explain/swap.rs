@@ -251,8 +251,8 @@ impl Explain {
         }
     }
 
-    /// Whether the surroundings of a process wander: of what the best of all models leaves, a level that moves towards each
-    /// sample explains more than it leaves once that model is fitted so.
+    /// Whether the surroundings of a process wander: of what the best of all models leaves, a level that moves towards
+    /// each sample explains more than it leaves once that model is fitted so.
     fn wanders(&self, session: &Session) -> bool {
         let data = &session.data;
         if session.kind() != Kind::Process || data.wander > 0.0 || self.is_noise(session, self.best)
@@ -271,8 +271,8 @@ impl Explain {
         })
     }
 
-    /// Whether a process whose output stays where the input leaves it does as well as the best, and the record tells how fast the
-    /// input moves that.
+    /// Whether a process whose output stays where the input leaves it does as well as the best, and the record tells
+    /// how fast the input moves that.
     fn integrates(&self, session: &Session) -> bool {
         let best = &self.trials[self.best];
         if !session.may_integrate(&best.scored) {

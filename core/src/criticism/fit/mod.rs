@@ -23,8 +23,9 @@ use crate::model::{LoadBegin, Start};
 /// Iterations after which a fit ends in any case.
 const MAX_ITERATIONS: usize = 30;
 
-/// A fall of the cost by less than this share of what it has beyond the noise, for the second time, ends a fit: a twentieth of the
-/// least that counts between two models, 3 % of the error. (A thousand times less takes a quarter more work, and names the same.)
+/// A fall of the cost by less than this share of what it has beyond the noise, for the second time, ends a fit: a
+/// twentieth of the least that counts between two models, 3 % of the error. (A thousand times less takes a quarter more
+/// work, and names the same.)
 const BEYOND_TOLERANCE: f64 = 3e-3;
 
 /// The same of the whole cost: a fit that leaves noise ends where its values are known far better than that tells them.
@@ -224,7 +225,8 @@ impl Fit {
         }
     }
 
-    /// The same model fitted anew where the surroundings wander, so that each sample moves what is foretold by this share.
+    /// The same model fitted anew where the surroundings wander, so that each sample moves what is foretold by this
+    /// share.
     pub fn among_surroundings(&self, data: &Data, share: f64, scales: &Scales) -> Self {
         let mut data = data.clone();
         data.wander = share;

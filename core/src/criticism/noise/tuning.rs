@@ -34,7 +34,7 @@ pub(super) const STATES: usize = 5;
 pub(super) const STATE_ORDER: usize = 3;
 pub(super) const UNLIKE: f64 = 2.0;
 
-/// Share by which the level of surroundings that wander moves towards each sample, so that it remembers ten: what an output does
-/// in answer to the input within fewer is news, and what takes far longer may be the surroundings. (Half as
+/// Share by which the level of surroundings that wander moves towards each sample, so that it remembers ten: what an
+/// output does in answer to the input within fewer is news, and what takes far longer may be the surroundings. (Half as
 /// much names the same of an incubator and of heaters in a room on a random walk.)
 pub(in crate::criticism) const WANDER: f64 = 0.1;

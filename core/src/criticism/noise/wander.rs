@@ -1,17 +1,17 @@
 //! How far do the surroundings of a process wander?
 //!
-//! A room, a supply, a draught never stand still: beneath the noise, what the right model of a process leaves goes on a random
-//! walk. The next sample is then best foretold by a level that each sample moves a share of the way to itself (Muth 1960), and
-//! what is left beyond that, the news of each sample, is white again. So models are fitted and compared by it where it is most of
-//! what is left (generalised least squares): what explains how the output answers the input is in the news of few samples after
-//! each change, and what follows a slow wander is in none.
+//! A room, a supply, a draught never stand still: beneath the noise, what the right model of a process leaves goes on a
+//! random walk. The next sample is then best foretold by a level that each sample moves a share of the way to itself
+//! (Muth 1960), and what is left beyond that, the news of each sample, is white again. So models are fitted and
+//! compared by it where it is most of what is left (generalised least squares): what explains how the output answers
+//! the input is in the news of few samples after each change, and what follows a slow wander is in none.
 
 use crate::criticism::data::Data;
 use crate::criticism::motion::Motion;
 use crate::criticism::output::Output;
 
-/// What each sample of a series brings beyond a level that moves by this share towards each sample: the series itself for a
-/// share of 0. A sample that tells nothing moves no level.
+/// What each sample of a series brings beyond a level that moves by this share towards each sample: the series itself
+/// for a share of 0. A sample that tells nothing moves no level.
 pub(in crate::criticism) fn news(
     data: &Data,
     output: &Output,
