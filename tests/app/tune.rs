@@ -131,11 +131,14 @@ fn nameless() -> String {
 #[test]
 fn a_table_that_does_not_say_what_its_columns_are_is_asked_about() {
     let mut harness = app("tune", WIDE);
-    let ctx = harness.ctx.clone();
-    harness
-        .state_mut()
-        .open(&ctx, "nameless.csv", nameless().as_bytes());
-    finish(&mut harness);
+    let open = |harness: &mut App| {
+        let (ctx, text) = (harness.ctx.clone(), nameless());
+        harness
+            .state_mut()
+            .open(&ctx, "nameless.csv", text.as_bytes());
+        finish(harness);
+    };
+    open(&mut harness);
     let said = state(&harness);
     assert_eq!(said["page"], "tune");
     assert_eq!(said["mapping"]["file"], "nameless.csv", "{said}");
@@ -161,10 +164,7 @@ fn a_table_that_does_not_say_what_its_columns_are_is_asked_about() {
         "{said}"
     );
     // Left where it was, it leaves nothing behind.
-    harness
-        .state_mut()
-        .open(&ctx, "nameless.csv", nameless().as_bytes());
-    finish(&mut harness);
+    open(&mut harness);
     assert!(state(&harness)["mapping"].is_object());
     click(&mut harness, "Cancel");
     finish(&mut harness);

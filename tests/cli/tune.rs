@@ -135,19 +135,21 @@ fn a_record_without_times_takes_a_sampling_period_and_columns() {
     close("/models/0/time_constant");
 }
 
+/// What was read off a test with hysteresis.
+const NUMBERS: [&str; 8] = [
+    "--amplitude",
+    "1.2",
+    "--period",
+    "47",
+    "--levels",
+    "0,255",
+    "--hysteresis",
+    "0.5",
+];
+
 #[test]
 fn numbers_with_hysteresis_give_a_point_and_the_remedy() {
-    let numbers = [
-        "--amplitude",
-        "1.2",
-        "--period",
-        "47",
-        "--levels",
-        "0,255",
-        "--hysteresis",
-        "0.5",
-    ];
-    let found = json(&[&numbers[..], &["--format", "json"]].concat());
+    let found = json(&[&NUMBERS[..], &["--format", "json"]].concat());
     assert_eq!(found["ultimate"], Value::Null);
     assert!(
         (found["point"]["phase_deg"].as_f64().unwrap() + 155.376).abs() < 1e-3,
@@ -265,18 +267,8 @@ fn every_key_of_the_json_is_documented_and_every_documented_key_is_there() {
         let file = written(&format!("documented-{i}.csv"), text);
         keys(&json(&[&file, "--format", "json"]), &mut all);
     }
-    let numbers = [
-        "--amplitude",
-        "1.2",
-        "--period",
-        "47",
-        "--levels",
-        "0,255",
-        "--hysteresis",
-        "0.5",
-    ];
     let form = ["--form", "klipper", "--format", "json"];
-    let told = json(&[&numbers[..], &form].concat());
+    let told = json(&[&NUMBERS[..], &form].concat());
     assert_eq!(told["gains"][0]["stable"], Value::Null);
     keys(&told, &mut all);
     for key in &all {

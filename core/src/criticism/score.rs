@@ -6,7 +6,7 @@ use super::cut::Block;
 use super::data::Data;
 use super::fit::{Fit, residuals};
 use super::motion::Motion;
-use super::noise::news;
+use super::noise::{news, news_left};
 use super::output::Output;
 use super::window::bend_between;
 
@@ -85,21 +85,13 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
 /// Share of the motion that a model with this score misses on held-back data: root mean square of the residuals over that
 /// of the motion, each channel in units of its noise.
 pub(super) fn share_left(data: &Data, score: &Score, motion: &Motion) -> f64 {
-    let mut all = data.clone();
-    all.wander = 0.0;
+    let held = |b: &Block| b.held_back;
     let error = if data.wander > 0.0 {
-        let said = Motion {
-            news: Vec::new(),
-            ..motion.clone()
-        };
-        let held = || data.blocks.iter().filter(|b| b.held_back);
-        let count: usize = held().map(|b| data.measured(b.from, b.to)).sum();
-        let cost = |b: &Block| cost_between(data, &said, b.from, b.to);
-        (held().map(cost).sum::<f64>() / count.max(1) as f64).sqrt()
+        news_left(data, motion, 0.0, held)
     } else {
         score.error
     };
-    let moves = motion_square(&all, |b| b.held_back);
+    let moves = motion_square(data, 0.0, held);
     if moves > 0.0 {
         error / moves.sqrt()
     } else {
@@ -108,9 +100,9 @@ pub(super) fn share_left(data: &Data, score: &Score, motion: &Motion) -> f64 {
 }
 
 /// Mean square of the motion in these blocks, each channel in units of its noise. That of a velocity or of an output is
-/// about the mean (where the surroundings wander, of the news in it), that of a position about a straight line in each
-/// block, since a drive may go anywhere.
-pub(super) fn motion_square(data: &Data, is_one: impl Fn(&Block) -> bool) -> f64 {
+/// about the mean, the news of it beyond a level that moves by a share of `gain` towards each sample; that of a position
+/// about a straight line in each block, since a drive may go anywhere.
+pub(super) fn motion_square(data: &Data, gain: f64, is_one: impl Fn(&Block) -> bool) -> f64 {
     let blocks = || data.blocks.iter().filter(|b| is_one(b));
     let motion = |o: &Output| -> f64 {
         if !o.is_velocity {
@@ -120,7 +112,7 @@ pub(super) fn motion_square(data: &Data, is_one: impl Fn(&Block) -> bool) -> f64
         let count = told().count().max(1) as f64;
         let mean = told().map(|i| o.values[i]).sum::<f64>() / count;
         let about: Vec<f64> = o.values.iter().map(|y| y - mean).collect();
-        let about = news(data, o, &about, data.wander);
+        let about = news(data, o, &about, gain);
         told().map(|i| (about[i] / o.noise).powi(2)).sum()
     };
     let count: usize = blocks().map(|b| data.measured(b.from, b.to)).sum();

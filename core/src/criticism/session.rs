@@ -200,7 +200,7 @@ impl Session {
             scales,
             screened_body,
             input_check: screening.input_check.clone(),
-            motion_square: motion_square(&compared, |_| true),
+            motion_square: motion_square(&compared, 0.0, |_| true),
             probes: Probes::default(),
             scout: compared.scout(),
             knowledge,
@@ -221,14 +221,16 @@ impl Session {
         Ok((session, screened))
     }
 
+    /// The record as it is compared, its scout, and where that is more the whole of it.
+    fn all_data(&mut self) -> impl Iterator<Item = &mut Data> {
+        [&mut self.data, &mut self.scout]
+            .into_iter()
+            .chain(&mut self.full)
+    }
+
     /// Has the parts of what is computed done by `crew`.
     pub fn employ(&mut self, crew: &Crew) {
-        let parts = [
-            Some(&mut self.data),
-            Some(&mut self.scout),
-            self.full.as_mut(),
-        ];
-        for data in parts.into_iter().flatten() {
+        for data in self.all_data() {
             data.crew = crew.clone();
         }
     }
@@ -322,27 +324,17 @@ impl Session {
 
     /// Takes a process for one whose output stays where the input leaves it.
     pub fn integrate(&mut self) {
-        let parts = [
-            Some(&mut self.data),
-            Some(&mut self.scout),
-            self.full.as_mut(),
-        ];
-        for data in parts.into_iter().flatten() {
+        for data in self.all_data() {
             data.baseline = Baseline::Integrator;
         }
     }
 
     /// Has models fitted and compared by the news of each sample, beyond a level that moves towards each.
     pub fn let_surroundings_wander(&mut self) {
-        let parts = [
-            Some(&mut self.data),
-            Some(&mut self.scout),
-            self.full.as_mut(),
-        ];
-        for data in parts.into_iter().flatten() {
+        for data in self.all_data() {
             data.wander = WANDER;
         }
-        self.motion_square = motion_square(&self.data, |_| true);
+        self.motion_square = motion_square(&self.data, WANDER, |_| true);
         self.probes = Probes::default();
         self.baseline = None;
     }

@@ -259,11 +259,12 @@ impl Explain {
         {
             return false;
         }
-        let news = |fit: &Fit| news_left(data, &fit.motion, WANDER);
+        let left = |fit: &Fit, gain: f64| news_left(data, &fit.motion, gain, |_| true);
+        let news = |fit: &Fit| left(fit, WANDER);
         let fits = self.trials.iter().map(|t| &t.scored.fit);
         let best = fits.min_by(|a, b| news(a).total_cmp(&news(b)));
         best.is_some_and(|fit| {
-            let all = news_left(data, &fit.motion, 0.0);
+            let all = left(fit, 0.0);
             outweighs(
                 all,
                 news(&fit.among_surroundings(data, WANDER, &session.scales)),

@@ -6,6 +6,7 @@
 //! compared by it where it is most of what is left (generalised least squares): what explains how the output answers
 //! the input is in the news of few samples after each change, and what follows a slow wander is in none.
 
+use crate::criticism::cut::Block;
 use crate::criticism::data::Data;
 use crate::criticism::motion::Motion;
 use crate::criticism::output::Output;
@@ -31,14 +32,19 @@ pub(in crate::criticism) fn news(
     news
 }
 
-/// Root mean square of the news of what a motion leaves, in noise units.
-pub(in crate::criticism) fn news_left(data: &Data, motion: &Motion, gain: f64) -> f64 {
+/// Root mean square of the news of what a motion leaves in these blocks, in noise units.
+pub(in crate::criticism) fn news_left(
+    data: &Data,
+    motion: &Motion,
+    gain: f64,
+    is_one: impl Fn(&Block) -> bool,
+) -> f64 {
     let (mut square, mut count) = (0.0, 0_usize);
     for output in data.outputs.iter().filter(|o| o.is_velocity) {
         let pairs = output.values.iter().zip(&motion.velocity);
         let left: Vec<f64> = pairs.map(|(y, m)| y - m).collect();
         let news = news(data, output, &left, gain);
-        for block in &data.blocks {
+        for block in data.blocks.iter().filter(|b| is_one(b)) {
             for i in (block.from..block.to).filter(|i| output.tells(*i)) {
                 square += (news[i] / output.noise).powi(2);
                 count += 1;
