@@ -368,6 +368,28 @@ fn a_decimal_comma_that_comes_late_is_still_one() {
     );
 }
 
+/// A logger that ends says what it found, or cuts its last row; in the middle, and from the beginning, it is an error.
+#[test]
+fn lines_at_the_end_that_are_no_rows_are_left_out_and_said() {
+    let whole = file(HEADER, 30);
+    let rows = import(&whole);
+    let left_out = |end: &str, begin: &str| {
+        let m = import(&format!("{whole}{end}"));
+        assert_eq!((&m.time, &m.outputs), (&rows.time, &rows.outputs), "{end}");
+        let note = format!("From line 32 on there are no rows of numbers ('{begin}'): left out.");
+        assert_eq!(m.warnings.last(), Some(&note));
+    };
+    left_out("30,2", "30,2");
+    left_out("kp: 1.26 ki: 0.00\ndone\n", "kp: 1.26 ki: 0.00");
+    refused(
+        &format!("{whole}done\n30,2,2,2\n"),
+        &["line 32", "1 field, but the header has 4"],
+    );
+    refused(&format!("{whole}{}", "done\n".repeat(9)), &["line 32"]);
+    refused(&format!("{whole}30,2,nan,2\n"), &["line 32"]);
+    refused(&format!("{}done\n", file(HEADER, 3)), &["line 5"]);
+}
+
 #[test]
 fn a_process_needs_no_units() {
     let rows: Vec<String> = (0..40).map(|k| format!("{k},{},{k}", k % 2)).collect();

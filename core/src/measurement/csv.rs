@@ -75,9 +75,15 @@ pub(super) fn import_text(
     let mended = in_order(&header, &mut table).map_err(located)?;
     check_sizes(&header, separator, rows, &table).map_err(located)?;
     let Rows {
-        values, repeated, ..
+        values,
+        repeated,
+        tail,
+        ..
     } = table;
     header.notes.extend(said_of_repeated(repeated));
+    header.notes.extend(tail.map(|(line, begin)| {
+        format!("From line {line} on there are no rows of numbers ('{begin}'): left out.")
+    }));
     header.notes.extend(mended);
     header
         .doubt_seconds(&values)
@@ -169,6 +175,7 @@ fn said_of_repeated(count: usize) -> Option<String> {
 type Failure = (usize, Option<String>, Problem);
 
 /// What stands in rows.
+#[derive(Default)]
 struct Rows {
     /// Values by column, in SI.
     values: Vec<Vec<f64>>,
@@ -176,84 +183,130 @@ struct Rows {
     lines: Vec<usize>,
     /// How many rows were left out because they repeat the one before.
     repeated: usize,
+    /// The first of the lines at the end that are no rows.
+    tail: Option<(usize, String)>,
 }
+
+/// Lines at the end that may be no rows: a logger that ends cuts its last row, or says what it found.
+const LONGEST_TAIL: usize = 8;
 
 /// Reads rows.
 fn read_rows<'a>(
     header: &Header,
-    mut dialect: Dialect,
-    mut times: Clock,
-    lines: impl Iterator<Item = (usize, &'a str)>,
+    dialect: Dialect,
+    times: Clock,
+    mut lines: impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Rows, Failure> {
-    let mut repeated = 0;
-    let mut kept = Vec::new();
-    let mut other = Clock::default();
-    let mut values: Vec<Vec<f64>> = vec![Vec::new(); header.columns.len()];
     let time = header.columns.iter().position(|c| c.role == Role::Time);
+    let mut reader = RowReader {
+        header,
+        dialect,
+        times,
+        other: Clock::default(),
+    };
+    let mut rows = Rows {
+        values: vec![Vec::new(); header.columns.len()],
+        ..Rows::default()
+    };
     let mut fields: Vec<&str> = Vec::with_capacity(header.width);
-    for (line, row) in lines {
-        split_row(row, dialect.separator, &mut fields);
+    while let Some((line, row)) = lines.next() {
+        let read = reader.read(row, &mut fields, &mut rows.values);
+        let kept = rows.lines.len();
+        if let Err((column, problem)) = read {
+            rows.values.iter_mut().for_each(|v| v.truncate(kept));
+            let rest: Vec<&str> = lines
+                .by_ref()
+                .take(LONGEST_TAIL)
+                .map(|(_, row)| row)
+                .collect();
+            let mut is_row = |row: &&str| {
+                let mut aside = vec![Vec::new(); header.columns.len()];
+                reader.read(row, &mut Vec::new(), &mut aside).is_ok()
+            };
+            let no_row = match &problem {
+                Problem::Ragged {
+                    found, expected, ..
+                } => found < expected,
+                Problem::NotANumber { text } => !text.contains(|c: char| c.is_ascii_digit()),
+                _ => false,
+            };
+            let ends = rest.len() < LONGEST_TAIL && !rest.iter().any(&mut is_row);
+            if !(no_row && ends && kept >= MIN_SAMPLES) {
+                return Err((line, column, problem));
+            }
+            rows.tail = Some((line, begin_of(row.trim())));
+        } else if time.is_some_and(|time| repeats(&rows.values, time)) {
+            rows.values.iter_mut().for_each(|v| v.truncate(kept));
+            rows.repeated += 1;
+        } else {
+            rows.lines.push(line);
+        }
+    }
+    Ok(rows)
+}
+
+/// What reads a row.
+struct RowReader<'a> {
+    header: &'a Header,
+    dialect: Dialect,
+    times: Clock,
+    other: Clock,
+}
+
+impl RowReader<'_> {
+    /// Adds the values of a row; where it is none, the column and what is wrong, with some values added.
+    fn read<'a>(
+        &mut self,
+        row: &'a str,
+        fields: &mut Vec<&'a str>,
+        values: &mut [Vec<f64>],
+    ) -> Result<(), (Option<String>, Problem)> {
+        let (width, separator) = (self.header.width, self.dialect.separator);
+        split_row(row, separator, fields);
         // A separator at the end of every row is a habit of some loggers.
-        if fields.len() == header.width + 1 && fields.last().is_some_and(|f| f.is_empty()) {
+        if fields.len() == width + 1 && fields.last().is_some_and(|f| f.is_empty()) {
             fields.pop();
         }
-        if fields.len() != header.width {
-            return Err((
-                line,
-                None,
-                Problem::Ragged {
-                    found: fields.len(),
-                    expected: header.width,
-                    hint: if dialect.separator == ',' && fields.len() > header.width {
-                        "; decimal commas need ; or tab between the columns"
-                    } else {
-                        ""
-                    },
-                },
-            ));
+        if fields.len() != width {
+            let found = fields.len();
+            let hint = if separator == ',' && found > width {
+                "; decimal commas need ; or tab between the columns"
+            } else {
+                ""
+            };
+            let ragged = Problem::Ragged {
+                found,
+                expected: width,
+                hint,
+            };
+            return Err((None, ragged));
         }
-        for (column, values) in header.columns.iter().zip(&mut values) {
+        for (column, values) in self.header.columns.iter().zip(values) {
             let here = || Some(format!("{} ({})", column.index + 1, column.name));
             let text = fields[column.index];
-            let clock = if column.role == Role::Time {
-                &mut times
+            let is_time = column.role == Role::Time;
+            let clock = if is_time {
+                &mut self.times
             } else {
-                &mut other
+                &mut self.other
             };
-            let value = dialect.mark.value(text, clock).ok_or_else(|| {
+            let value = self.dialect.mark.value(text, clock).ok_or_else(|| {
                 let (name, text) = (column.name.clone(), shorten(text));
-                let problem = if column.role == Role::Time && is_date(&text) {
+                let problem = if is_time && is_date(&text) {
                     Problem::Date { name, text }
                 } else {
                     Problem::NotANumber { text }
                 };
-                (line, here(), problem)
+                (here(), problem)
             })? * column.factor;
             if !value.is_finite() {
-                return Err((
-                    line,
-                    here(),
-                    Problem::NotFinite {
-                        text: shorten(text),
-                    },
-                ));
+                let text = shorten(text);
+                return Err((here(), Problem::NotFinite { text }));
             }
             values.push(value);
         }
-        if time.is_some_and(|time| repeats(&values, time)) {
-            repeated += 1;
-            for values in &mut values {
-                values.pop();
-            }
-            continue;
-        }
-        kept.push(line);
+        Ok(())
     }
-    Ok(Rows {
-        values,
-        lines: kept,
-        repeated,
-    })
 }
 
 /// Makes the times of a table increase, and says what was done for it.
