@@ -367,8 +367,9 @@ pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
     }
 }
 
-/// Says first where the input does not explain the motion: where its sign is turned or it follows the output, no physics is
-/// named, for that would be physics of another machine. A model that leaves noise alone has explained the motion.
+/// Says first where the input does not explain the motion: where its sign is turned, or it follows the output and the record does
+/// not tell the plant, no physics is named, for that would be physics of another machine. A model that leaves noise alone has
+/// explained the motion, which a controller may have made.
 /// That the inertia is not told is not said beside one that is.
 pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, parameters: &[Parameter]) {
     let inertia = parameters.first();
@@ -378,10 +379,11 @@ pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, paramet
         InputVerdict::InertiaNotTold => !is_told,
         InputVerdict::DoesNotExplain | InputVerdict::Sign | InputVerdict::ClosedLoop => true,
     };
-    if verdict.complete || !leads {
+    let closed = check.verdict == InputVerdict::ClosedLoop;
+    if !leads || verdict.complete && !closed {
         return;
     }
-    if matches!(check.verdict, InputVerdict::Sign | InputVerdict::ClosedLoop) {
+    if check.verdict == InputVerdict::Sign || closed && !check.plant_told {
         verdict.missing.clear();
         verdict.experiments.clear();
         verdict.next_experiment = None;

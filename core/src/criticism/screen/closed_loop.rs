@@ -1,11 +1,13 @@
-//! Was the loop closed? An input that follows from the output by a linear law was made by a controller.
+//! Was the loop closed? In open loop the input knows nothing of what the output does by chance; a controller answers to it.
 
 use std::fmt::Write as _;
+use std::ops::Range;
 
 use super::signals::Signals;
-use super::tuning::{CONTROLLED, FEW_LEVELS};
+use super::tuning::{ANSWERED, CONTROLLED, FEW_LEVELS, FORETOLD, JUMP, PAST, SHORTEST_STRETCH};
 use crate::measurement::Kind;
-use crate::sums::deviation;
+use crate::order::range;
+use crate::uncertain::brief;
 
 /// A linear controller, read off the record: `u = offset + sum gains`.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +16,7 @@ pub(super) struct Controller {
     pub law: String,
     /// Its kind in a word.
     pub kind: &'static str,
-    /// Share of the variance of the input that it explains.
+    /// Share of the variance of the input that it explains, where it is not at a limit.
     pub explained: f64,
 }
 
@@ -22,144 +24,234 @@ pub(super) struct Controller {
 struct Term {
     symbol: &'static str,
     values: Vec<f64>,
+    /// What it is the integral about, if it is one.
+    about: Option<f64>,
 }
 
-/// The controller that made the input, if one did: at the level and in the changes from sample to sample, which an output
-/// that follows the input does not have.
+/// The controller that made the input, if one did. Where the input is at its limits it follows nothing, and what an integral holds
+/// afterwards is not known: each stretch between them has an offset of its own.
 pub(super) fn controller(signals: &Signals) -> Option<Controller> {
-    if levels(&signals.input) <= FEW_LEVELS {
+    let stretches = between_limits(signals);
+    if levels(stretches.iter().flat_map(|s| &signals.input[s.clone()])) <= FEW_LEVELS {
         return None;
     }
-    let n = signals.len();
-    let one = || Term {
-        symbol: "",
-        values: vec![1.0; n],
-    };
     let term = |symbol, values: &[f64]| Term {
         symbol,
         values: values.to_vec(),
+        about: None,
     };
-    let sets: Vec<(&'static str, Vec<Term>)> = match signals.kind {
-        Kind::Process => {
-            let y = &signals.speed;
-            let mut sum = 0.0;
-            let mean = y.iter().sum::<f64>() / n as f64;
-            let integral: Vec<f64> = y
-                .iter()
-                .map(|y| {
-                    sum += signals.step * (y - mean);
-                    sum
-                })
-                .collect();
-            vec![
-                ("proportional", vec![one(), term("y", y)]),
-                (
-                    "proportional-integral",
-                    vec![one(), term("y", y), term("∫y", &integral)],
-                ),
-            ]
-        }
-        Kind::Drive => {
-            let v = match &signals.velocity {
-                Some(v) => v.values.as_slice(),
-                None => signals.speed.as_slice(),
-            };
-            vec![
-                ("proportional", vec![one(), term("v", v)]),
-                (
-                    "proportional-derivative",
-                    vec![one(), term("x", &signals.place), term("v", v)],
-                ),
-            ]
-        }
+    let output = signals
+        .velocity
+        .as_ref()
+        .map_or(&signals.speed, |v| &v.values);
+    let sets = match signals.kind {
+        Kind::Process => [
+            ("proportional", vec![term("y", output)]),
+            (
+                "proportional-integral",
+                vec![term("y", output), integral(output, signals.step)],
+            ),
+        ],
+        Kind::Drive => [
+            ("proportional", vec![term("v", output)]),
+            (
+                "proportional-derivative",
+                vec![term("x", &signals.place), term("v", output)],
+            ),
+        ],
     };
     sets.into_iter().find_map(|(kind, terms)| {
-        let (gains, explained) = regressed(&signals.input, &terms)?;
-        let changes = |values: &[f64]| values.windows(2).map(|w| w[1] - w[0]).collect::<Vec<f64>>();
-        let rest: Vec<Term> = terms[1..]
-            .iter()
-            .map(|t| term(t.symbol, &changes(&t.values)))
-            .collect();
-        let (_, of_changes) = regressed(&changes(&signals.input), &rest)?;
-        let made = explained >= CONTROLLED && of_changes >= CONTROLLED / 2.0;
-        (made && is_control(signals, &gains, &terms, explained)).then(|| Controller {
-            law: law(&gains, &terms),
+        let (gains, explained) = follows(&signals.input, &terms, &stretches, 0)?;
+        let made = explained >= CONTROLLED && answers(&signals.input, output, &stretches);
+        (made && is_control(signals, &gains, &terms, &stretches, explained)).then(|| Controller {
+            law: law(signals, &gains, &terms, &stretches),
             kind,
             explained,
         })
     })
 }
 
+/// The integral of an output about its mean.
+fn integral(output: &[f64], step: f64) -> Term {
+    let mean = output.iter().sum::<f64>() / output.len().max(1) as f64;
+    let sum = output.iter().scan(0.0, |sum, y| {
+        *sum += step * (y - mean);
+        Some(*sum)
+    });
+    Term {
+        symbol: "y",
+        values: sum.collect(),
+        about: Some(mean),
+    }
+}
+
+/// Stretches of the record without a gap in which the input is between its limits and does not jump, as it does with a set point.
+fn between_limits(signals: &Signals) -> Vec<Range<usize>> {
+    let input = &signals.input;
+    let (least, most) = range(input);
+    let change = |k: usize| (input[k] - input[k - 1]).abs();
+    let usual = (1..input.len()).map(change).sum::<f64>() / input.len() as f64;
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for (k, u) in input.iter().enumerate() {
+        if *u <= least || *u >= most {
+            continue;
+        }
+        match stretches.last_mut() {
+            Some(last)
+                if last.end == k && !signals.begins.contains(&k) && change(k) < JUMP * usual =>
+            {
+                last.end = k + 1;
+            }
+            _ => stretches.push(k..k + 1),
+        }
+    }
+    stretches.retain(|s| s.len() >= SHORTEST_STRETCH);
+    stretches
+}
+
+/// Gains of the terms, taken `later` samples after the input, by which the input follows them in each stretch, and the share of its
+/// variance there that they explain.
+fn follows(
+    input: &[f64],
+    terms: &[Term],
+    stretches: &[Range<usize>],
+    later: usize,
+) -> Option<(Vec<f64>, f64)> {
+    let integrates = terms.iter().any(|t| t.about.is_some());
+    let of_stretches = |values: &[f64], later: usize| -> Vec<f64> {
+        let parts = stretches
+            .iter()
+            .map(|s| &values[s.start + later..s.end - 1 + later]);
+        parts.flat_map(|part| centred(part, integrates)).collect()
+    };
+    let columns: Vec<Vec<f64>> = terms
+        .iter()
+        .map(|t| of_stretches(&t.values, later))
+        .collect();
+    regressed(&of_stretches(input, 0), &columns, false)
+}
+
+/// Values about their mean, or about their straight line where a set point makes one of an integral.
+fn centred(values: &[f64], integrates: bool) -> impl Iterator<Item = f64> + '_ {
+    let [mean, slope] = line(values);
+    let slope = if integrates { slope } else { 0.0 };
+    let middle = (values.len() as f64 - 1.0) / 2.0;
+    let at = move |k: usize| mean + slope * (k as f64 - middle);
+    values
+        .iter()
+        .enumerate()
+        .map(move |(k, value)| value - at(k))
+}
+
+/// Mean of some values, and their slope in a sample.
+fn line(values: &[f64]) -> [f64; 2] {
+    let n = values.len().max(1) as f64;
+    let middle = (n - 1.0) / 2.0;
+    let mean = values.iter().sum::<f64>() / n;
+    let moment = values
+        .iter()
+        .enumerate()
+        .map(|(k, v)| (k as f64 - middle) * (v - mean));
+    let squares = (n * n - 1.0) * n / 12.0;
+    [mean, moment.sum::<f64>() / squares.max(f64::MIN_POSITIVE)]
+}
+
+/// Whether the input answers to what the output does by chance: of its changes, what its own past and that of the output do not
+/// foretell follows the change of the output. An input that is foretold wholly, as a sine is, tells nothing of that.
+fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
+    let changes = |values: &[f64], before: usize| -> Vec<f64> {
+        let parts = stretches
+            .iter()
+            .map(|s| &values[s.start + PAST - before..s.end - before]);
+        parts
+            .flat_map(|part| part.windows(2).map(|w| w[1] - w[0]))
+            .collect()
+    };
+    let past = (1..PAST).flat_map(|before| [changes(input, before), changes(output, before)]);
+    let mut columns: Vec<Vec<f64>> = past.collect();
+    let target = changes(input, 0);
+    let Some((_, foretold)) = regressed(&target, &columns, true) else {
+        return false;
+    };
+    columns.push(changes(output, 0));
+    let told = regressed(&target, &columns, true).map_or(foretold, |(_, told)| told);
+    let news = 1.0 - foretold;
+    news > FORETOLD && told - foretold > ANSWERED * news
+}
+
 /// Whether a law that the input follows was made by a controller, and not by the plant itself. A drive is controlled by what opposes
 /// its motion: what grows with it holds a spring or drags through a liquid. The output of a process that settles within a sample
 /// follows the input, and tells the one of the sample before better than its own.
-fn is_control(signals: &Signals, gains: &[f64], terms: &[Term], explained: f64) -> bool {
+fn is_control(
+    signals: &Signals,
+    gains: &[f64],
+    terms: &[Term],
+    stretches: &[Range<usize>],
+    explained: f64,
+) -> bool {
     match signals.kind {
-        Kind::Drive => gains.get(1).is_some_and(|gain| *gain < 0.0),
+        Kind::Drive => gains.first().is_some_and(|gain| *gain < 0.0),
         Kind::Process => {
-            let n = signals.len();
-            let late = terms.iter().map(|t| Term {
-                symbol: t.symbol,
-                values: t.values[1..].to_vec(),
-            });
-            let late: Vec<Term> = late.collect();
-            let before = regressed(&signals.input[..n - 1], &late);
-            before.is_none_or(|(_, of_late)| explained > of_late)
+            let late = follows(&signals.input, terms, stretches, 1);
+            late.is_none_or(|(_, of_late)| explained > of_late)
         }
     }
 }
 
-fn law(gains: &[f64], terms: &[Term]) -> String {
+/// The law as one writes it; an integral is that of the distance from the set point of the longest stretch.
+fn law(signals: &Signals, gains: &[f64], terms: &[Term], stretches: &[Range<usize>]) -> String {
     let mut text = "u =".to_owned();
-    let order = (1..terms.len()).chain(std::iter::once(0));
-    for (place, k) in order.enumerate() {
-        let gain = gains[k];
-        let sign = match (gain < 0.0, place) {
-            (true, 0) => " -",
-            (true, _) => " - ",
-            (false, 0) => " ",
-            (false, _) => " + ",
+    let mut add = |gain: f64, what: &str| {
+        let sign = match (gain < 0.0, text.ends_with('=')) {
+            (true, true) => " -",
+            (true, false) => " - ",
+            (false, true) => " ",
+            (false, false) => " + ",
         };
-        let space = if terms[k].symbol.is_empty() { "" } else { " " };
         // Writing into a string cannot fail.
-        let _ = write!(
-            text,
-            "{sign}{}{space}{}",
-            three(gain.abs()),
-            terms[k].symbol
-        );
+        let _ = write!(text, "{sign}{}{what}", brief(gain.abs()));
+    };
+    let longest = stretches
+        .iter()
+        .max_by_key(|s| s.len())
+        .cloned()
+        .unwrap_or_default();
+    let left = longest.map(|k| {
+        let made = terms.iter().zip(gains).map(|(t, gain)| gain * t.values[k]);
+        signals.input[k] - made.sum::<f64>()
+    });
+    let [offset, slope] = line(&left.collect::<Vec<f64>>());
+    for (term, gain) in terms.iter().zip(gains) {
+        match term.about {
+            Some(about) => {
+                let set_point = about - slope / (signals.step * gain);
+                let sign = if set_point < 0.0 { '+' } else { '-' };
+                add(
+                    *gain,
+                    &format!(" ∫({} {sign} {}) dt", term.symbol, brief(set_point.abs())),
+                );
+            }
+            None => add(*gain, &format!(" {}", term.symbol)),
+        }
+    }
+    if terms.iter().all(|t| t.about.is_none()) {
+        add(offset, "");
     }
     text
 }
 
-/// Three significant digits.
-fn three(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let exponent = libm::log10(value).floor() as i32;
-    if (-3..6).contains(&exponent) {
-        let decimals = usize::try_from(2 - exponent).unwrap_or(0);
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.2e}")
-    }
-}
-
-fn levels(input: &[f64]) -> usize {
-    let mut seen: Vec<u64> = input.iter().map(|u| u.to_bits()).collect();
+fn levels<'a>(input: impl Iterator<Item = &'a f64>) -> usize {
+    let mut seen: Vec<u64> = input.map(|u| u.to_bits()).collect();
     seen.sort_unstable();
     seen.dedup();
     seen.len()
 }
 
-/// Least squares on a few terms: gains and the share of the variance that they explain.
-fn regressed(target: &[f64], terms: &[Term]) -> Option<(Vec<f64>, f64)> {
-    let columns: Vec<&[f64]> = terms
-        .iter()
-        .map(|t| t.values.as_slice())
-        .chain([target])
-        .collect();
+/// Least squares on a few columns about their means: gains and the share of the variance of the target that they explain.
+/// Columns that the others explain have no gain where that is allowed, else there is none.
+fn regressed(target: &[f64], columns: &[Vec<f64>], leave_out: bool) -> Option<(Vec<f64>, f64)> {
+    let columns = columns.iter().map(Vec::as_slice).chain([target]);
+    let columns: Vec<&[f64]> = columns.collect();
     let n = columns.len();
     let mut values = vec![0.0; n * n];
     for i in 0..n {
@@ -167,11 +259,11 @@ fn regressed(target: &[f64], terms: &[Term]) -> Option<(Vec<f64>, f64)> {
             values[i * n + j] = columns[i].iter().zip(columns[j]).map(|(a, b)| a * b).sum();
         }
     }
+    let squares = values[n * n - 1];
     let reduced = super::gram::Reduced {
         order: n - 1,
         values,
     };
-    let gains = reduced.coefficients(&reduced.solve(false)?);
-    let variance = deviation(target).powi(2) * target.len() as f64;
-    (variance > 0.0).then(|| (gains.clone(), 1.0 - reduced.loss(&gains) / variance))
+    let gains = reduced.coefficients(&reduced.solve(leave_out)?);
+    (squares > 0.0).then(|| (gains.clone(), 1.0 - reduced.loss(&gains) / squares))
 }

@@ -27,14 +27,22 @@ pub(super) fn checked(
     bench: &Bench,
     tried: &[Tried],
 ) -> InputCheck {
-    let say = |verdict, text: String| InputCheck { verdict, text };
+    let say = |verdict, text: String| InputCheck {
+        verdict,
+        text,
+        plant_told: verdict == InputVerdict::Ok,
+    };
     let left = left(bench, tried);
     let explained = !tried.is_empty() && left < UNEXPLAINED;
     if let Some(made) = controller(signals) {
         let plant = smallest(tried, bench.motion())
             .first()
             .is_some_and(|t| bench.settles(&t.members));
-        return say(InputVerdict::ClosedLoop, closed(&made, explained && plant));
+        let plant_told = explained && plant;
+        return InputCheck {
+            plant_told,
+            ..say(InputVerdict::ClosedLoop, closed(&made, plant_told))
+        };
     }
     if explained {
         let share = 100.0 * left;
