@@ -132,9 +132,17 @@ MORE_PLANTS = [
 ]
 MORE_RELAYS = [("1", "0"), ("0.8", "0.03"), ("3", "0.5")]
 
+# Lags a thousand times apart, an integrator with a lag behind a dead time, and three lags with a slow zero.
+LAST_PLANTS = [
+    ("stiff", ["1"], ["0.001", "1.002", "2.001", "1"], "0"),
+    ("integrator_lag_dead_time", ["0.5"], ["0.8", "1", "0"], "0.6"),
+    ("slow_zero", ["2", "1"], ["0.5", "2", "2.5", "1"], "0.1"),
+]
+
 if __name__ == "__main__":
     print("name,numerator,denominator,dead_time_s,k,epsilon,period_s,amplitude,check")
     loops = [(p, r) for p in PLANTS for r in RELAYS] + [(p, r) for p in MORE_PLANTS for r in MORE_RELAYS]
+    loops += [(p, r) for p in LAST_PLANTS for r in MORE_RELAYS]
     for (name, num, den, lag), (k, eps) in loops:
         at = guess(num, den, mp.mpf(lag), mp.mpf(k), mp.mpf(eps))
         period, amplitude = solve(num, den, lag, k, eps, at)
