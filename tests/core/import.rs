@@ -368,6 +368,55 @@ fn a_decimal_comma_that_comes_late_is_still_one() {
     );
 }
 
+/// What a controller calls input and output is the other way round in the loop; a set point is wanted of what comes out.
+#[test]
+fn beside_a_set_point_the_output_may_be_that_of_a_controller() {
+    let log = |header: &str, swap: bool| {
+        let mut text = format!("{header}\n");
+        for k in 0..60 {
+            let heat = 120.0 - f64::from(k);
+            let warm = 20.0 + 0.5 * f64::from(k);
+            let [first, second] = if swap { [heat, warm] } else { [warm, heat] };
+            let _ = writeln!(text, "{k},50,{first},{second}");
+        }
+        import(&text)
+    };
+    let named = |m: &Measurement| [m.input.name.clone(), m.outputs[0].name.clone()];
+    for (header, swap, input, output) in [
+        (
+            "time,setpoint,temperature,output",
+            false,
+            "output",
+            "temperature",
+        ),
+        ("time,setpoint,input,output", false, "output", "input"),
+        ("time,reference,input,output", true, "input", "output"),
+        ("time,SP,PV,OP", false, "OP", "PV"),
+        ("time,soll,u,output", true, "u", "output"),
+    ] {
+        let m = log(header, swap);
+        assert_eq!(named(&m), [input, output], "{header}");
+        let said = m
+            .warnings
+            .iter()
+            .any(|w| w.contains("what a controller put out"));
+        assert_eq!(said, input == "output", "{header}: {:?}", m.warnings);
+    }
+    // As the plotter of a microcontroller has it.
+    let line = |k: i32| {
+        format!(
+            "t:{k} Setpoint:50 Input:{} Output:{}\n",
+            20 + k / 2,
+            120 - k
+        )
+    };
+    let m = import(&(0..60).map(line).collect::<String>());
+    assert_eq!(named(&m), ["Output", "Input"]);
+    // Without a set point nothing says so.
+    let plain = log("time,extra,input,output", false);
+    assert_eq!(named(&plain), ["input", "output"]);
+}
+
 /// A logger that ends says what it found, or cuts its last row; in the middle, and from the beginning, it is an error.
 #[test]
 fn lines_at_the_end_that_are_no_rows_are_left_out_and_said() {

@@ -8,7 +8,7 @@ use super::found::FoundColumn;
 use super::guess::guess;
 use super::mapping::{ImportOptions, Mapping};
 use super::period::Period;
-use super::resembling::{WANTED, resembles};
+use super::resembling::{is_wanted, resembles};
 use super::unit::{COUNTS, is_bare_counts, parse};
 use super::{Kind, Quantity};
 
@@ -389,7 +389,7 @@ impl<'a> Settler<'a> {
         let still = |i: &usize| {
             let column = &self.columns[*i];
             let of_role = fits(role, self.kind, column) && resembles(role, &column.name);
-            of_role && !column.numbers.vary() && !column.numbers.dates && !is_wanted(column)
+            of_role && !column.numbers.vary() && !column.numbers.dates && !is_wanted(&column.name)
         };
         self.free().find(|i| role != INPUT && still(i))
     }
@@ -490,13 +490,7 @@ fn is_held(column: &FoundColumn) -> bool {
 /// Whether a column may be a signal by its values, and was not only wanted.
 fn is_signal(column: &FoundColumn) -> bool {
     let time = column.numbers.increase() && resembles(Role::Time, &column.name);
-    column.numbers.vary() && !column.numbers.dates && !is_wanted(column) && !time
-}
-
-/// Whether a column is called as what was wanted is.
-fn is_wanted(column: &FoundColumn) -> bool {
-    let name = column.name.to_lowercase();
-    WANTED.iter().any(|part| name.contains(part))
+    column.numbers.vary() && !column.numbers.dates && !is_wanted(&column.name) && !time
 }
 
 /// Whether a column is called as velocities are.

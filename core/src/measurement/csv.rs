@@ -13,8 +13,9 @@ use super::period::Period;
 use super::rates;
 use super::resembling::is_period;
 use super::size::wrong_size;
+use super::split::split_row;
 use super::switched_on;
-use super::text::{Dialect, Text, open, split_row, survey};
+use super::text::{Dialect, Text, open, survey};
 use super::times;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
 
@@ -31,6 +32,7 @@ pub(super) fn import_text(
         mut fields,
         line,
         dialect,
+        note,
         rows,
     } = open(bytes).map_err(|(line, problem)| fail(line, None, problem))?;
     if options.mapping.is_empty() && fields.iter().all(|f| f.name.is_empty()) {
@@ -41,6 +43,7 @@ pub(super) fn import_text(
         return Err(fail(Some(line), None, Problem::NoHeader { found }));
     }
     let mut notes = map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
+    notes.extend(note.filter(|_| options.mapping.is_empty()));
     let mut options = options.clone();
     if let Some((place, period)) = period_column(&fields, &options, rows.clone(), dialect) {
         let name = shorten(&fields[place].name);

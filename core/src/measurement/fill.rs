@@ -4,7 +4,7 @@ use super::error::Problem;
 use super::found::FoundColumn;
 use super::header::{Field, Role, listed, shorten};
 use super::mapping::ImportOptions;
-use super::resembling::{RESEMBLING, Resembling, WANTED};
+use super::resembling::{RESEMBLING, Resembling, is_wanted};
 use super::{Kind, Quantity};
 
 /// What a measurement still needs of its columns: time, input, and what moves or comes out.
@@ -140,11 +140,11 @@ fn only_left(columns: &[FoundColumn], free: &[usize], found: &[Candidates]) -> O
             .any(|(r, all)| r.role != INPUT && all.contains(&i))
     };
     let moves = |i: usize| {
-        let (name, numbers) = (columns[i].name.to_lowercase(), &columns[i].numbers);
+        let numbers = &columns[i].numbers;
         let varies = numbers
             .range
             .is_some_and(|[least, largest]| least < largest);
-        varies && !numbers.increase() && !numbers.dates && !WANTED.iter().any(|w| name.contains(w))
+        varies && !numbers.increase() && !numbers.dates && !is_wanted(&columns[i].name)
     };
     let mut left = free.iter().copied().filter(|i| !taken(*i) && moves(*i));
     left.next().filter(|_| left.next().is_none())

@@ -9,6 +9,7 @@ mod average;
 mod cell;
 mod clock;
 mod column;
+mod controlled;
 mod csv;
 mod error;
 mod fill;

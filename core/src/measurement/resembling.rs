@@ -83,6 +83,7 @@ pub(super) const RESEMBLING: [Resembling; 5] = [
         ],
         words: &[
             "u", "i", "iq", "m", "f", "tau", "q1", "q2", "u1", "uin", "ctrl", "cmd", "mv", "co",
+            "op",
         ],
     },
     Resembling {
@@ -117,8 +118,8 @@ const UNITS_OF_PROCESS: [&str; 18] = [
 /// How many of them are units of temperature.
 const OF_TEMPERATURE: usize = 9;
 
-/// Parts of names of what was wanted, and not measured.
-pub(super) const WANTED: [&str; 10] = [
+/// Parts of names of what was wanted, and not measured, and whole words; and parts of what was missing of it.
+const WANTED: [&str; 8] = [
     "setpoint",
     "set point",
     "set_point",
@@ -127,9 +128,22 @@ pub(super) const WANTED: [&str; 10] = [
     "desired",
     "reference",
     "wanted",
-    "error",
-    "fehler",
 ];
+const WANTED_WORDS: [&str; 2] = ["sp", "ref"];
+const MISSED: [&str; 2] = ["error", "fehler"];
+
+/// Whether a column of this name may have a set point.
+pub(super) fn is_set_point(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    let called = WANTED.iter().any(|part| lower.contains(part));
+    called || words(&lower).any(|word| WANTED_WORDS.contains(&word))
+}
+
+/// Whether a column of this name has what was wanted, or what was missing of it, and not what was measured.
+pub(super) fn is_wanted(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    is_set_point(name) || MISSED.iter().any(|part| lower.contains(part))
+}
 
 /// Names of a column that has the sampling period and not the times.
 const PERIOD: [&str; 10] = [
@@ -208,7 +222,9 @@ impl Resembling {
         let other_time = self.role != Role::Time
             && column.numbers.increase()
             && RESEMBLING[0].resembles(&column.name);
-        if other_time || (measured && has(&WANTED)) || (self.moves() && !named && has(&OF_PROCESS))
+        if other_time
+            || (measured && is_wanted(&column.name))
+            || (self.moves() && !named && has(&OF_PROCESS))
         {
             return 0;
         }

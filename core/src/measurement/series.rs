@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::Measurement;
 use super::cell::Mark;
 use super::clock::{Clock, unit_from_1970};
+use super::controlled::as_in_the_loop;
 use super::csv::assemble;
 use super::error::{ImportError, Problem};
 use super::fill::fill;
@@ -123,14 +124,29 @@ pub(super) struct Table {
 }
 
 impl Table {
-    fn fields(&self) -> Vec<Field> {
+    /// The fields by their names, and what is to be said of these.
+    fn fields(&self) -> (Vec<Field>, Option<String>) {
         let field = |series: &Series| {
             let unit = series.unit.clone();
             let field = Field::named(series.name.clone(), unit);
             let role = field.role.filter(|_| self.named);
             Field { role, ..field }
         };
-        self.series.iter().map(field).collect()
+        let mut fields: Vec<Field> = self.series.iter().map(field).collect();
+        let longest = self
+            .series
+            .iter()
+            .map(|s| s.values.len())
+            .max()
+            .unwrap_or(0);
+        let row = |k: usize| {
+            self.series
+                .iter()
+                .map(|s| s.values.get(k).copied())
+                .collect()
+        };
+        let note = as_in_the_loop(&mut fields, (0..longest).map(row));
+        (fields, note)
     }
 
     /// The columns, before it is known what they are.
@@ -143,6 +159,7 @@ impl Table {
         };
         let seen = self
             .fields()
+            .0
             .into_iter()
             .zip(self.series.iter().map(numbers));
         addressed(seen.collect())
@@ -159,12 +176,13 @@ impl Table {
         if self.series.is_empty() {
             return Err(whole(Problem::NoNumbers));
         }
-        let mut fields = self.fields();
+        let (mut fields, note) = self.fields();
         if options.mapping.is_empty() && !self.named {
             let found = listed(self.series.iter().map(|s| s.name.as_str()));
             return Err(whole(Problem::NotMapped { found }));
         }
         let mut notes = map(&mut fields, &options.mapping).map_err(whole)?;
+        notes.extend(note.filter(|_| options.mapping.is_empty()));
         let mut options = options.clone();
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
             notes.push(format!(

@@ -1,4 +1,4 @@
-//! A header in its parts.
+//! A header and a row in their parts.
 
 /// Stands for any number of blanks and tabs.
 pub(super) const BLANKS: char = ' ';
@@ -49,4 +49,23 @@ fn join_units(parts: Vec<String>) -> Vec<String> {
         }
     }
     fields
+}
+
+/// Splits a row of numbers; a separator inside quotes belongs to the field.
+pub(super) fn split_row<'a>(row: &'a str, separator: char, fields: &mut Vec<&'a str>) {
+    fields.clear();
+    if separator == BLANKS {
+        fields.extend(row.split_whitespace().map(|f| f.trim_matches('"')));
+        return;
+    }
+    if !row.contains('"') {
+        fields.extend(row.split(separator).map(str::trim));
+        return;
+    }
+    let mut quoted = false;
+    let pieces = row.split(|c| {
+        quoted ^= c == '"';
+        c == separator && !quoted
+    });
+    fields.extend(pieces.map(|f| f.trim().trim_matches('"').trim()));
 }

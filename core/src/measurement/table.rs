@@ -24,7 +24,8 @@ use super::{found, json, log, text};
 /// Everything but the signals of a process is converted to SI units; encoder counts state their resolution in the
 /// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). The kind is told by the columns if it is not given. What no
 /// column is called is taken from the only one whose name resembles it, with a warning, and the input from the only one
-/// that is left. Other columns are ignored with a warning.
+/// that is left. Beside a set point the output may be that of a controller, which is the input here: the values tell, and it is
+/// said. A few lines at the end that are no rows are left out with a warning. Other columns are ignored with a warning.
 ///
 /// A MATLAB file has names but no units, so it needs a mapping, such as
 /// `t=time [s], u=log.current [A], x1=enc [counts:4096]`. Variables in structures are addressed as in

@@ -2,11 +2,12 @@
 
 use super::cell::Mark;
 use super::clock::Clock;
+use super::controlled::as_in_the_loop;
 use super::error::Problem;
 use super::found::Numbers;
 use super::header::{Field, has_number, name_and_unit};
 use super::resembling::is_of_process;
-use super::split::{BLANKS, split_header};
+use super::split::{BLANKS, split_header, split_row};
 use super::unit::parse_input;
 
 /// A problem and its line.
@@ -26,6 +27,8 @@ pub(super) struct Text<Rows> {
     /// The line that they stand in.
     pub line: usize,
     pub dialect: Dialect,
+    /// What is to be said of the names.
+    pub note: Option<String>,
     /// Rows with their lines.
     pub rows: Rows,
 }
@@ -114,11 +117,26 @@ pub(super) fn open(
         rows.next();
         labelled(&mut fields, labels);
     }
+    let note = as_in_the_loop(&mut fields, values(dialect, rows.clone()));
     Ok(Text {
         fields,
         line,
         dialect,
+        note,
         rows: if numeric { whole } else { rows },
+    })
+}
+
+/// The values of rows; what is no number has none.
+fn values<'a>(
+    mut dialect: Dialect,
+    rows: impl Iterator<Item = (usize, &'a str)>,
+) -> impl Iterator<Item = Vec<Option<f64>>> {
+    let mut texts = Vec::new();
+    rows.map(move |(_, row)| {
+        split_row(row, dialect.separator, &mut texts);
+        let mut value = |text: &&str| dialect.mark.value(text, &mut Clock::default());
+        texts.iter().map(&mut value).collect()
     })
 }
 
@@ -338,23 +356,4 @@ fn outside_brackets(header: &str) -> String {
         depth == 0
     });
     outside.collect()
-}
-
-/// Splits a row of numbers; a separator inside quotes belongs to the field.
-pub(super) fn split_row<'a>(row: &'a str, separator: char, fields: &mut Vec<&'a str>) {
-    fields.clear();
-    if separator == BLANKS {
-        fields.extend(row.split_whitespace().map(|f| f.trim_matches('"')));
-        return;
-    }
-    if !row.contains('"') {
-        fields.extend(row.split(separator).map(str::trim));
-        return;
-    }
-    let mut quoted = false;
-    let pieces = row.split(|c| {
-        quoted ^= c == '"';
-        c == separator && !quoted
-    });
-    fields.extend(pieces.map(|f| f.trim().trim_matches('"').trim()));
 }

@@ -60,15 +60,31 @@ pub(super) fn controller(signals: &Signals) -> Option<Controller> {
             ),
         ],
     };
-    sets.into_iter().find_map(|(kind, terms)| {
-        let (gains, explained) = follows(&signals.input, &terms, &stretches, 0)?;
+    let made = sets.into_iter().filter_map(|(kind, terms)| {
+        let Law {
+            gains,
+            explained,
+            left,
+        } = follows(&signals.input, &terms, &stretches, 0)?;
         let made = explained >= CONTROLLED && answers(&signals.input, output, &stretches);
-        (made && is_control(signals, &gains, &terms, &stretches, explained)).then(|| Controller {
-            law: law(signals, &gains, &terms, &stretches),
+        let law = || law(signals, &gains, &terms, &stretches);
+        let controller = || Controller {
+            law: law(),
             kind,
             explained,
-        })
-    })
+        };
+        (made && is_control(signals, &gains, &terms, &stretches, explained))
+            .then(|| (controller(), left))
+    });
+    // A term more is the controller's where it explains more than it leaves.
+    let richer = |(simple, before), (rich, left)| {
+        if before > 2.0 * left {
+            (rich, left)
+        } else {
+            (simple, before)
+        }
+    };
+    made.reduce(richer).map(|(controller, _)| controller)
 }
 
 /// The integral of an output about its mean.
@@ -109,14 +125,18 @@ fn between_limits(signals: &Signals) -> Vec<Range<usize>> {
     stretches
 }
 
+/// What the input follows.
+struct Law {
+    gains: Vec<f64>,
+    /// Share of its variance that they explain.
+    explained: f64,
+    /// Sum of the squares that they leave.
+    left: f64,
+}
+
 /// Gains of the terms, taken `later` samples after the input, by which the input follows them in each stretch, and the share of its
 /// variance there that they explain.
-fn follows(
-    input: &[f64],
-    terms: &[Term],
-    stretches: &[Range<usize>],
-    later: usize,
-) -> Option<(Vec<f64>, f64)> {
+fn follows(input: &[f64], terms: &[Term], stretches: &[Range<usize>], later: usize) -> Option<Law> {
     let integrates = terms.iter().any(|t| t.about.is_some());
     let of_stretches = |values: &[f64], later: usize| -> Vec<f64> {
         let parts = stretches
@@ -170,11 +190,15 @@ fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
     let past = (1..PAST).flat_map(|before| [changes(input, before), changes(output, before)]);
     let mut columns: Vec<Vec<f64>> = past.collect();
     let target = changes(input, 0);
-    let Some((_, foretold)) = regressed(&target, &columns, true) else {
+    let Some(Law {
+        explained: foretold,
+        ..
+    }) = regressed(&target, &columns, true)
+    else {
         return false;
     };
     columns.push(changes(output, 0));
-    let told = regressed(&target, &columns, true).map_or(foretold, |(_, told)| told);
+    let told = regressed(&target, &columns, true).map_or(foretold, |law| law.explained);
     let news = 1.0 - foretold;
     news > FORETOLD && told - foretold > ANSWERED * news
 }
@@ -193,7 +217,7 @@ fn is_control(
         Kind::Drive => gains.first().is_some_and(|gain| *gain < 0.0),
         Kind::Process => {
             let late = follows(&signals.input, terms, stretches, 1);
-            late.is_none_or(|(_, of_late)| explained > of_late)
+            late.is_none_or(|late| explained > late.explained)
         }
     }
 }
@@ -249,7 +273,7 @@ fn levels<'a>(input: impl Iterator<Item = &'a f64>) -> usize {
 
 /// Least squares on a few columns about their means: gains and the share of the variance of the target that they explain.
 /// Columns that the others explain have no gain where that is allowed, else there is none.
-fn regressed(target: &[f64], columns: &[Vec<f64>], leave_out: bool) -> Option<(Vec<f64>, f64)> {
+fn regressed(target: &[f64], columns: &[Vec<f64>], leave_out: bool) -> Option<Law> {
     let columns = columns.iter().map(Vec::as_slice).chain([target]);
     let columns: Vec<&[f64]> = columns.collect();
     let n = columns.len();
@@ -265,5 +289,10 @@ fn regressed(target: &[f64], columns: &[Vec<f64>], leave_out: bool) -> Option<(V
         values,
     };
     let gains = reduced.coefficients(&reduced.solve(leave_out)?);
-    (squares > 0.0).then(|| (gains.clone(), 1.0 - reduced.loss(&gains) / squares))
+    let left = reduced.loss(&gains);
+    (squares > 0.0).then(|| Law {
+        gains,
+        explained: 1.0 - left / squares,
+        left,
+    })
 }
