@@ -39,6 +39,7 @@
 
 pub mod backlash;
 pub mod by_hand;
+mod controller;
 pub mod count;
 pub mod crew;
 pub mod criticism;
@@ -52,6 +53,7 @@ mod exponential;
 pub mod figures;
 mod fourier;
 pub mod hunting;
+mod least_squares;
 pub mod limit_cycle;
 pub mod maps;
 pub mod measurement;

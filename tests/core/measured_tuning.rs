@@ -5,6 +5,7 @@
     reason = "the core does not print; its bench does"
 )]
 
+use crate::support::controlled::under_controller;
 use crate::support::shared::shared;
 use hysteron_core::rig::Random;
 use hysteron_core::tuning::measured::{
@@ -1036,4 +1037,33 @@ fn heaters_of_others_give_their_models() {
             integrator.gain.value
         );
     }
+}
+
+/// Where the set point steps and the input meets its limits, the log of a controller tells the plant.
+#[test]
+fn the_log_of_a_controller_is_no_relay_test_and_tells_the_plant() {
+    let record = Record::of(&under_controller());
+    let result = tune_record(&record, &Settings::default()).unwrap();
+    has(&result, TroubleKind::Controller);
+    assert!(
+        result.conventional.is_none() && result.cycle.is_none(),
+        "{}",
+        result.text
+    );
+    assert!(
+        result
+            .text
+            .contains("A proportional-integral controller made the input"),
+        "{}",
+        result.text
+    );
+    let best = &result.models[0];
+    for (told, known) in [
+        (best.gain, 8.0),
+        (best.time_constants[0], 120.0),
+        (best.time_constants[1], 15.0),
+    ] {
+        assert!((told.value / known - 1.0).abs() < 0.1, "{}", result.text);
+    }
+    assert!(!result.gains.is_empty());
 }

@@ -1,13 +1,12 @@
 //! The screen names what a rig hides, questions the input, and says what a record cannot tell.
 
-use std::fmt::Write as _;
-
 use hysteron_core::criticism::screen;
 use hysteron_core::diagnosis::{InputVerdict, Screening};
 use hysteron_core::measurement::{ImportOptions, Measurement, Quantity, import};
 use hysteron_core::rig::process::{Excitation as ProcessExcitation, ProcessRig};
-use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Random, Stranger};
+use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Stranger};
 
+use crate::support::controlled::{process, under_controller};
 use crate::support::servo::servo;
 use crate::support::shared::shared;
 
@@ -322,35 +321,10 @@ fn a_controller_is_read_off() {
     );
 }
 
-/// Two lags in a row under an input that may depend on the output, sampled each second: a process by other means than the model's.
-fn process(mut input: impl FnMut(usize, f64) -> f64) -> Measurement {
-    let mut random = Random::new(11);
-    let (mut heater, mut sensor, mut surroundings) = (0.0, 0.0, 0.0);
-    let mut csv = "t [s],u [1],y [1]\n".to_owned();
-    for k in 0..2500 {
-        surroundings = 0.999 * surroundings + 0.01 * random.normal();
-        let y = 20.0 + sensor + surroundings + 0.02 * random.normal();
-        let u = input(k, y);
-        let _ = writeln!(csv, "{k},{u},{y}");
-        for _ in 0..10 {
-            heater += 0.1 * (8.0 * u - heater) / 120.0;
-            sensor += 0.1 * (heater - sensor) / 15.0;
-        }
-    }
-    import("process.csv", csv.as_bytes(), &ImportOptions::default()).expect("a record")
-}
-
 /// As they are built: between limits, with an integral that stops there.
 #[test]
 fn a_controller_with_limits_is_read_off_with_its_set_point() {
-    let mut integral = 0.0;
-    let measurement = process(|k, y| {
-        let error = if k < 1200 { 45.0 } else { 30.0 } - y;
-        let wish = 0.4 * error + integral + 0.005 * error;
-        let u = wish.clamp(0.0, 5.0);
-        integral += if u == wish { 0.005 * error } else { 0.0 };
-        u
-    });
+    let measurement = under_controller();
     let check = screen(&measurement).input_check;
     assert_eq!(check.verdict, InputVerdict::ClosedLoop, "{}", check.text);
     assert!(

@@ -23,7 +23,7 @@ use imports::{Imports, circles, imports as imports_of};
 use tree::{Tree, crates_in};
 
 /// Rooms of core, lowest first, then those of the app: a file imports from its own room and from rooms before it.
-const ROOMS: [&str; 43] = [
+const ROOMS: [&str; 45] = [
     // small numerics, no physics
     "count",
     "order",
@@ -39,7 +39,9 @@ const ROOMS: [&str; 43] = [
     "packed",
     "progress",
     "uncertain",
+    "least_squares",
     "measurement",
+    "controller",
     // the linear loop
     "plant",
     "relay",

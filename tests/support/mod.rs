@@ -12,6 +12,7 @@
 #![allow(dead_code, reason = "each test uses a part of the rigs")]
 
 pub mod case;
+pub mod controlled;
 pub mod diagnosis;
 pub mod drive_cases;
 pub mod file;

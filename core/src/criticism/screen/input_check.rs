@@ -1,6 +1,5 @@
 //! The input questioned before the physics.
 
-use super::closed_loop::{Controller, controller};
 use super::gram::{Gram, Reduced};
 use super::model::{ACCELERATION, Fit, INPUT, ONE, VELOCITY};
 use super::prepare::Prepared;
@@ -9,6 +8,7 @@ use super::signals::Signals;
 use super::subsets::{Bench, Tried, smallest};
 use super::tuning::{BLOCKS, CHANCE, DRIVEN, LATE, LATEST, TOLD, UNEXPLAINED};
 use super::window::Width;
+use crate::controller::{Controller, Logged, controller};
 use crate::diagnosis::{InputCheck, InputVerdict};
 use crate::measurement::Kind;
 use crate::order::median;
@@ -34,7 +34,18 @@ pub(super) fn checked(
     };
     let left = left(bench, tried);
     let explained = !tried.is_empty() && left < UNEXPLAINED;
-    if let Some(made) = controller(signals) {
+    let logged = Logged {
+        kind: signals.kind,
+        step: signals.step,
+        begins: &signals.begins,
+        input: &signals.input,
+        output: signals
+            .velocity
+            .as_ref()
+            .map_or(&signals.speed, |v| &v.values),
+        place: &signals.place,
+    };
+    if let Some(made) = controller(&logged) {
         let plant = smallest(tried, bench.motion())
             .first()
             .is_some_and(|t| bench.settles(&t.members));

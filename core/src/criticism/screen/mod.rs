@@ -4,7 +4,6 @@
 //! of all effects ([`crate::effect::Atom`]). Sums of products in blocks make all subsets of a few atoms cheap; those that
 //! are as good as the best on held-back blocks, and have the fewest parameters, are a class.
 
-mod closed_loop;
 mod gram;
 mod input_check;
 mod model;

@@ -80,22 +80,6 @@ pub(super) const UNEXPLAINED: f64 = 0.7;
 /// Standard errors within which a coefficient may be by chance.
 pub(super) const CHANCE: f64 = 2.0;
 
-/// Share of the variance of the input that the output must explain for a linear controller to have made it.
-pub(super) const CONTROLLED: f64 = 0.99;
-
-/// Share of what the past does not foretell of the input that must follow the output for the loop to have been closed: in open loop
-/// it is chance alone (at most 0.003 in records of 3,000 samples), with a controller that had the logged readings nearly all.
-pub(super) const ANSWERED: f64 = 0.5;
-
-/// Share of the variance of its changes down to which an input is foretold wholly: sums of squares are not known to less.
-pub(super) const FORETOLD: f64 = 1e-6;
-
-/// Change of the input, in mean changes, from which it jumps: of noise it would be one in 10^15.
-pub(super) const JUMP: f64 = 10.0;
-
-/// Samples between two limits of the input from which on it may show what it follows: twice the past that foretells it.
-pub(super) const SHORTEST_STRETCH: usize = 2 * PAST;
-
 /// Step of a numerical derivative, in standard errors.
 pub(super) const DIFFERENCE: f64 = 1e-3;
 
@@ -110,9 +94,6 @@ pub(super) const PAST: usize = 6;
 /// Work that went in, in times of what came back, from which the input acted: of a random walk, which the work of an input of another
 /// record is, one in forty has as much.
 pub(super) const DRIVEN: f64 = 4.0;
-
-/// Levels of an input up to which it is switched and not computed.
-pub(super) const FEW_LEVELS: usize = 6;
 
 /// Delays that are tried where the input does not explain the motion, and the longest as a share of the record.
 pub(super) const LATE: usize = 30;

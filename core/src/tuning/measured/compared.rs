@@ -1,10 +1,10 @@
 //! The record as the fits see it: what is compared, and the columns of the linear problem.
 
-use super::least_squares::least_squares;
 use super::record::Record;
 use super::response::Held;
 use super::structure::{Structure, times};
 use super::wander;
+use crate::least_squares::least_squares;
 
 /// Most samples of the output that are compared; the input is simulated with all.
 const COMPARED: usize = 3000;

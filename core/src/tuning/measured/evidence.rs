@@ -52,6 +52,8 @@ pub(super) struct Evidence<'a> {
     pub cycle: Option<&'a Cycle>,
     /// What would be a cycle if noise did not make it.
     pub chatter: Option<&'a Cycle>,
+    /// What is to be said of a controller that made the input.
+    pub controller: Option<Trouble>,
     pub fit: Option<&'a Fit>,
     /// Noise of the output.
     pub noise: f64,

@@ -10,9 +10,9 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
 
 use super::compared::Compared;
-use super::least_squares::{coherence, damped, inverse_gram};
 use super::structure::{FittedModel, LARGEST_SHARE, Structure, Value, physical, response, times};
 use super::wander;
+use crate::least_squares::{coherence, damped, inverse_gram};
 use crate::simplex::minimise;
 use crate::sums::dot;
 

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 use super::compared::Compared;
 use super::cycle::Cycle;
 use super::fit::Fit;
-use super::least_squares::{coherence, inverse_gram, least_squares};
 use super::record::Record;
 use super::response::Held;
 use super::structure::Value;
+use crate::least_squares::{coherence, inverse_gram, least_squares};
 use crate::order::median;
 use crate::sums::dot;
 

@@ -39,7 +39,6 @@ mod family;
 mod fit;
 mod fourier;
 mod gains;
-mod least_squares;
 pub mod log;
 mod minimum_time;
 mod number;

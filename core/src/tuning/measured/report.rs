@@ -116,13 +116,22 @@ pub struct MeasuredTuning {
 /// A record that cannot be used.
 pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTuning, RecordError> {
     record.validate()?;
+    let controller = trouble::of_controller(record);
     // A relay that stops switching is told; the cycle is that before.
-    let stop = cycle::find(record).and_then(|c| ending::stop(record, &c));
+    let switched = || cycle::find(record).and_then(|c| ending::stop(record, &c));
+    let stop = if controller.is_none() {
+        switched()
+    } else {
+        None
+    };
     let kept = stop.map(|s| record.first(s.before));
     let kept = kept.filter(|before| before.validate().is_ok());
     let whole = record;
     let record = kept.as_ref().unwrap_or(record);
-    let [mut cycle, chatter] = cycle_and_chatter(record);
+    let [mut cycle, chatter] = match controller {
+        Some(_) => [None, None],
+        None => cycle_and_chatter(record),
+    };
     let scale = cycle.as_ref().map_or_else(|| time_of(record), |c| c.period);
     let mut compared = Compared::new(record, scale);
     let fits = if cycle.is_some() {
@@ -146,6 +155,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         record,
         cycle: cycle.as_ref(),
         chatter: chatter.as_ref(),
+        controller,
         fit: fits.first(),
         noise: fits.first().map_or(0.0, |f| f.noise),
         target: settings.target,
@@ -157,7 +167,9 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         troubles.sort_by_key(|t| !t.fatal);
     }
     // What a controller made is as much of it as of the plant.
-    let denied = troubles.iter().any(|t| t.kind == TroubleKind::Controller);
+    let denied = troubles
+        .iter()
+        .any(|t| t.kind == TroubleKind::Controller && t.fatal);
     let (ultimate, static_gain) = if denied {
         (None, None)
     } else {

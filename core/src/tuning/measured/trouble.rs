@@ -6,7 +6,9 @@ use super::evidence::{Evidence, Trouble, TroubleKind, of_unit, trouble};
 use super::minimum_time::minimum_time;
 use super::number::number;
 use super::record::Record;
+use crate::controller::{Logged, controller};
 use crate::count::counted;
+use crate::measurement::Kind;
 use crate::order::{median, range};
 
 /// The shorter half period over the longer, below which heating and cooling count as of different strength.
@@ -240,8 +242,8 @@ fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
     if let Some(cycle) = e.chatter {
         return vec![Some(chatter(e, cycle))];
     }
-    if let Some(controller) = controller(record) {
-        return vec![Some(controller)];
+    if e.controller.is_some() {
+        return vec![e.controller.clone()];
     }
     let Some(middle) = threshold(record) else {
         let (low, high) = range(&record.input);
@@ -272,8 +274,9 @@ fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
     ]
 }
 
-/// Whether the input is a straight line in the output: then the record shows the controller at least as much as the plant.
-fn controller(record: &Record) -> Option<Trouble> {
+/// Whether a controller made the input: where it is a straight line in the output, the record shows the controller at least as much
+/// as the plant.
+pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
     let count = record.input.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / count;
     let (u0, y0) = (mean(&record.input), mean(&record.output));
@@ -291,21 +294,39 @@ fn controller(record: &Record) -> Option<Trouble> {
     let mut levels = record.input.clone();
     levels.sort_by(f64::total_cmp);
     levels.dedup();
-    (levels.len() > LEVELS && explained > FOLLOWS).then(|| {
+    if levels.len() <= LEVELS {
+        return None;
+    }
+    if explained > FOLLOWS {
         let slope = uy / yy;
-        trouble(
-            TroubleKind::Controller,
-            true,
-            slope,
-            format!(
-                "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the \
-                 models below are as much of it as of the plant. Record a step or a relay test with the controller off.",
-                n(slope),
-                n(u0 - slope * y0),
-                n(100.0 * explained)
-            ),
-        )
-    })
+        let text = format!(
+            "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the models below \
+             are as much of it as of the plant. Record a step or a relay test with the controller off.",
+            n(slope),
+            n(u0 - slope * y0),
+            n(100.0 * explained)
+        );
+        return Some(trouble(TroubleKind::Controller, true, slope, text));
+    }
+    let made = controller(&Logged {
+        kind: Kind::Process,
+        step: record.sampling(),
+        begins: &[],
+        input: &record.input,
+        output: &record.output,
+        place: &[],
+    })?;
+    let text = format!(
+        "A {} controller made the input, {}: this is no relay test. Where its set point or its limits moved the input, the models \
+         are those of the plant.",
+        made.kind, made.law
+    );
+    Some(trouble(
+        TroubleKind::Controller,
+        false,
+        made.explained,
+        text,
+    ))
 }
 
 fn too_short(e: &Evidence<'_>) -> Option<Trouble> {

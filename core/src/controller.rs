@@ -3,15 +3,52 @@
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use super::signals::Signals;
-use super::tuning::{ANSWERED, CONTROLLED, FEW_LEVELS, FORETOLD, JUMP, PAST, SHORTEST_STRETCH};
+use crate::least_squares::least_squares;
 use crate::measurement::Kind;
 use crate::order::range;
+use crate::sums::dot;
 use crate::uncertain::brief;
+
+/// Levels of an input up to which it is switched and not computed.
+const FEW_LEVELS: usize = 6;
+
+/// Share of the variance of the input that the output must explain for a linear controller to have made it.
+const CONTROLLED: f64 = 0.99;
+
+/// Samples of the past that foretell the next: three resonances.
+const PAST: usize = 6;
+
+/// Share of what the past does not foretell of the input that must follow the output for the loop to have been closed: in open loop
+/// it is chance alone (at most 0.003 in records of 3,000 samples), with a controller that had the logged readings nearly all.
+const ANSWERED: f64 = 0.5;
+
+/// Share of the variance of its changes down to which an input is foretold wholly: sums of squares are not known to less.
+const FORETOLD: f64 = 1e-6;
+
+/// Change of the input, in mean changes, from which it jumps: of noise it would be one in 10^15.
+const JUMP: f64 = 10.0;
+
+/// Samples between two limits of the input from which on it may show what it follows: twice the past that foretells it.
+const SHORTEST_STRETCH: usize = 2 * PAST;
+
+/// A record at equal time steps of a loop that may have been closed.
+#[derive(Clone, Copy, Debug)]
+pub struct Logged<'a> {
+    pub kind: Kind,
+    /// From a sample to the next, s.
+    pub step: f64,
+    /// First samples of runs: a gap in time is before each but the first.
+    pub begins: &'a [usize],
+    pub input: &'a [f64],
+    /// Velocity of a drive, output of a process.
+    pub output: &'a [f64],
+    /// Position of a drive; not looked at for a process.
+    pub place: &'a [f64],
+}
 
 /// A linear controller, read off the record: `u = offset + sum gains`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Controller {
+pub struct Controller {
     /// Terms as they are read, such as `-1.84 y`.
     pub law: String,
     /// Its kind in a word.
@@ -30,9 +67,9 @@ struct Term {
 
 /// The controller that made the input, if one did. Where the input is at its limits it follows nothing, and what an integral holds
 /// afterwards is not known: each stretch between them has an offset of its own.
-pub(super) fn controller(signals: &Signals) -> Option<Controller> {
-    let stretches = between_limits(signals);
-    if levels(stretches.iter().flat_map(|s| &signals.input[s.clone()])) <= FEW_LEVELS {
+pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
+    let stretches = between_limits(logged);
+    if levels(stretches.iter().flat_map(|s| &logged.input[s.clone()])) <= FEW_LEVELS {
         return None;
     }
     let term = |symbol, values: &[f64]| Term {
@@ -40,23 +77,20 @@ pub(super) fn controller(signals: &Signals) -> Option<Controller> {
         values: values.to_vec(),
         about: None,
     };
-    let output = signals
-        .velocity
-        .as_ref()
-        .map_or(&signals.speed, |v| &v.values);
-    let sets = match signals.kind {
+    let output = logged.output;
+    let sets = match logged.kind {
         Kind::Process => [
             ("proportional", vec![term("y", output)]),
             (
                 "proportional-integral",
-                vec![term("y", output), integral(output, signals.step)],
+                vec![term("y", output), integral(output, logged.step)],
             ),
         ],
         Kind::Drive => [
             ("proportional", vec![term("v", output)]),
             (
                 "proportional-derivative",
-                vec![term("x", &signals.place), term("v", output)],
+                vec![term("x", logged.place), term("v", output)],
             ),
         ],
     };
@@ -65,15 +99,15 @@ pub(super) fn controller(signals: &Signals) -> Option<Controller> {
             gains,
             explained,
             left,
-        } = follows(&signals.input, &terms, &stretches, 0)?;
-        let made = explained >= CONTROLLED && answers(&signals.input, output, &stretches);
-        let law = || law(signals, &gains, &terms, &stretches);
+        } = follows(logged.input, &terms, &stretches, 0)?;
+        let made = explained >= CONTROLLED && answers(logged.input, output, &stretches);
+        let law = || law(logged, &gains, &terms, &stretches);
         let controller = || Controller {
             law: law(),
             kind,
             explained,
         };
-        (made && is_control(signals, &gains, &terms, &stretches, explained))
+        (made && is_control(logged, &gains, &terms, &stretches, explained))
             .then(|| (controller(), left))
     });
     // A term more is the controller's where it explains more than it leaves.
@@ -102,8 +136,8 @@ fn integral(output: &[f64], step: f64) -> Term {
 }
 
 /// Stretches of the record without a gap in which the input is between its limits and does not jump, as it does with a set point.
-fn between_limits(signals: &Signals) -> Vec<Range<usize>> {
-    let input = &signals.input;
+fn between_limits(logged: &Logged<'_>) -> Vec<Range<usize>> {
+    let input = logged.input;
     let (least, most) = range(input);
     let change = |k: usize| (input[k] - input[k - 1]).abs();
     let usual = (1..input.len()).map(change).sum::<f64>() / input.len() as f64;
@@ -114,7 +148,7 @@ fn between_limits(signals: &Signals) -> Vec<Range<usize>> {
         }
         match stretches.last_mut() {
             Some(last)
-                if last.end == k && !signals.begins.contains(&k) && change(k) < JUMP * usual =>
+                if last.end == k && !logged.begins.contains(&k) && change(k) < JUMP * usual =>
             {
                 last.end = k + 1;
             }
@@ -148,7 +182,7 @@ fn follows(input: &[f64], terms: &[Term], stretches: &[Range<usize>], later: usi
         .iter()
         .map(|t| of_stretches(&t.values, later))
         .collect();
-    regressed(&of_stretches(input, 0), &columns, false)
+    regressed(&of_stretches(input, 0), &columns)
 }
 
 /// Values about their mean, or about their straight line where a set point makes one of an integral.
@@ -193,12 +227,12 @@ fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
     let Some(Law {
         explained: foretold,
         ..
-    }) = regressed(&target, &columns, true)
+    }) = regressed(&target, &columns)
     else {
         return false;
     };
     columns.push(changes(output, 0));
-    let told = regressed(&target, &columns, true).map_or(foretold, |law| law.explained);
+    let told = regressed(&target, &columns).map_or(foretold, |law| law.explained);
     let news = 1.0 - foretold;
     news > FORETOLD && told - foretold > ANSWERED * news
 }
@@ -207,23 +241,23 @@ fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
 /// its motion: what grows with it holds a spring or drags through a liquid. The output of a process that settles within a sample
 /// follows the input, and tells the one of the sample before better than its own.
 fn is_control(
-    signals: &Signals,
+    logged: &Logged<'_>,
     gains: &[f64],
     terms: &[Term],
     stretches: &[Range<usize>],
     explained: f64,
 ) -> bool {
-    match signals.kind {
+    match logged.kind {
         Kind::Drive => gains.first().is_some_and(|gain| *gain < 0.0),
         Kind::Process => {
-            let late = follows(&signals.input, terms, stretches, 1);
+            let late = follows(logged.input, terms, stretches, 1);
             late.is_none_or(|late| explained > late.explained)
         }
     }
 }
 
 /// The law as one writes it; an integral is that of the distance from the set point of the longest stretch.
-fn law(signals: &Signals, gains: &[f64], terms: &[Term], stretches: &[Range<usize>]) -> String {
+fn law(logged: &Logged<'_>, gains: &[f64], terms: &[Term], stretches: &[Range<usize>]) -> String {
     let mut text = "u =".to_owned();
     let mut add = |gain: f64, what: &str| {
         let sign = match (gain < 0.0, text.ends_with('=')) {
@@ -242,13 +276,13 @@ fn law(signals: &Signals, gains: &[f64], terms: &[Term], stretches: &[Range<usiz
         .unwrap_or_default();
     let left = longest.map(|k| {
         let made = terms.iter().zip(gains).map(|(t, gain)| gain * t.values[k]);
-        signals.input[k] - made.sum::<f64>()
+        logged.input[k] - made.sum::<f64>()
     });
     let [offset, slope] = line(&left.collect::<Vec<f64>>());
     for (term, gain) in terms.iter().zip(gains) {
         match term.about {
             Some(about) => {
-                let set_point = about - slope / (signals.step * gain);
+                let set_point = about - slope / (logged.step * gain);
                 let sign = if set_point < 0.0 { '+' } else { '-' };
                 add(
                     *gain,
@@ -271,25 +305,16 @@ fn levels<'a>(input: impl Iterator<Item = &'a f64>) -> usize {
     seen.len()
 }
 
-/// Least squares on a few columns about their means: gains and the share of the variance of the target that they explain.
-/// Columns that the others explain have no gain where that is allowed, else there is none.
-fn regressed(target: &[f64], columns: &[Vec<f64>], leave_out: bool) -> Option<Law> {
-    let columns = columns.iter().map(Vec::as_slice).chain([target]);
-    let columns: Vec<&[f64]> = columns.collect();
-    let n = columns.len();
-    let mut values = vec![0.0; n * n];
-    for i in 0..n {
-        for j in 0..n {
-            values[i * n + j] = columns[i].iter().zip(columns[j]).map(|(a, b)| a * b).sum();
-        }
+/// Least squares on columns about their means.
+fn regressed(target: &[f64], columns: &[Vec<f64>]) -> Option<Law> {
+    let gains = least_squares(columns, target)?;
+    let mut rest = target.to_vec();
+    for (gain, column) in gains.iter().zip(columns) {
+        rest.iter_mut()
+            .zip(column)
+            .for_each(|(r, v)| *r -= gain * v);
     }
-    let squares = values[n * n - 1];
-    let reduced = super::gram::Reduced {
-        order: n - 1,
-        values,
-    };
-    let gains = reduced.coefficients(&reduced.solve(leave_out)?);
-    let left = reduced.loss(&gains);
+    let (squares, left) = (dot(target, target), dot(&rest, &rest));
     (squares > 0.0).then(|| Law {
         gains,
         explained: 1.0 - left / squares,

@@ -27,7 +27,7 @@ fn gram(columns: &[Vec<f64>]) -> (Vec<f64>, DMatrix<f64>) {
 }
 
 /// Coefficients of the columns whose sum comes nearest to `right`; none where they cannot be told apart.
-pub(super) fn least_squares(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
+pub fn least_squares(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let (lengths, gram) = gram(columns);
     let cholesky = gram.cholesky()?;
     let solved = |right: &[f64]| {
@@ -52,7 +52,7 @@ pub(super) fn least_squares(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f
 }
 
 /// Inverse of the matrix of the columns' products: the covariance of the coefficients by unit variance.
-pub(super) fn inverse_gram(columns: &[Vec<f64>]) -> Option<DMatrix<f64>> {
+pub fn inverse_gram(columns: &[Vec<f64>]) -> Option<DMatrix<f64>> {
     let (lengths, gram) = gram(columns);
     let inverse = gram.cholesky()?.inverse();
     let m = columns.len();
@@ -62,7 +62,7 @@ pub(super) fn inverse_gram(columns: &[Vec<f64>]) -> Option<DMatrix<f64>> {
 }
 
 /// A step of Levenberg and Marquardt.
-pub(super) fn damped(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
+pub fn damped(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
     let (lengths, mut gram) = gram(jacobian);
     for i in 0..jacobian.len() {
         gram[(i, i)] += damping;
@@ -80,7 +80,7 @@ pub(super) fn damped(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> 
 
 /// By how much residuals that hang together count less: `1 + 2 sum of autocorrelations`, summed until the first that is
 /// not above 0; at least 1.
-pub(super) fn coherence(residuals: &[f64]) -> f64 {
+pub fn coherence(residuals: &[f64]) -> f64 {
     let n = residuals.len();
     let own = dot(residuals, residuals);
     if own <= 0.0 {
