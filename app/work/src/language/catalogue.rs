@@ -191,7 +191,7 @@ impl Catalogue {
         for pattern in &self.patterns {
             if let Some(parts) = pattern.matches(text) {
                 let found = self.fill(pattern, &parts, depth);
-                if found.complete && !pattern.swallows(&parts) {
+                if found.complete && !Pattern::swallows(&parts) {
                     return found;
                 }
                 let kept = if found.complete {
@@ -283,10 +283,9 @@ impl Pattern {
         parts.iter().all(|p| !p.is_empty()).then_some(parts)
     }
 
-    /// Whether a slot that begins the pattern holds the sentences before its own: they would be put in its middle.
-    fn swallows(&self, parts: &[&str]) -> bool {
-        let begins = self.texts.first().is_some_and(String::is_empty);
-        begins && parts.first().is_some_and(|p| p.contains(SENTENCE))
+    /// Whether a slot holds the end of a sentence: it may have taken in the sentences that stand beside its own.
+    fn swallows(parts: &[&str]) -> bool {
+        parts.iter().any(|part| part.contains(SENTENCE))
     }
 }
 
@@ -397,6 +396,10 @@ e^{-0.5s} ist eine Totzeit
             "Wegen Reibung oder Last driftet sie um 3 mm.",
         );
         check("The file load is read.", "Die Datei load wird gelesen.");
+        check(
+            "The file load is read. The file friction is read.",
+            "Die Datei load wird gelesen. Die Datei friction wird gelesen.",
+        );
         check(
             "The file a. b is read. It drifts by 1 because of load.",
             "Die Datei a. b wird gelesen. Wegen Last driftet sie um 1.",
