@@ -393,6 +393,12 @@ fn beside_a_set_point_the_output_may_be_that_of_a_controller() {
         ("time,reference,input,output", true, "input", "output"),
         ("time,SP,PV,OP", false, "OP", "PV"),
         ("time,soll,u,output", true, "u", "output"),
+        (
+            "time,extra,temperature,output",
+            false,
+            "output",
+            "temperature",
+        ),
     ] {
         let m = log(header, swap);
         assert_eq!(named(&m), [input, output], "{header}");

@@ -1,22 +1,62 @@
-//! What a controller calls the columns: beside a set point, its input is what it reads, and its output is what it puts out.
+//! What a controller calls the columns: its input is what it reads, and its output is what it puts out.
 
 use super::Quantity;
 use super::header::{Field, Role, shorten};
-use super::resembling::{is_set_point, resembles};
+use super::resembling::{is_set_point, is_warm, resembles};
 
 const INPUT: Role = Role::Measured(Quantity::Input);
 const OUTPUT: Role = Role::Measured(Quantity::Output);
 
-/// Gives the columns of a controller's log the roles that they have in the loop, and says so. A set point is wanted of what comes
-/// out: where another column comes nearer to it than the one that is called output, that one is the controller's.
+/// Gives the columns of a controller's log the roles that they have in the loop, and says so: where another column than the one that
+/// is called output is what comes out, that one is the controller's.
 pub(super) fn as_in_the_loop(
     fields: &mut [Field],
     rows: impl Iterator<Item = Vec<Option<f64>>>,
 ) -> Option<String> {
-    let wanted = fields.iter().position(|f| is_set_point(&f.name))?;
     let put_out = fields
         .iter()
         .position(|f| f.role == Some(OUTPUT) && f.name.eq_ignore_ascii_case("output"))?;
+    let own = shorten(&fields[put_out].name);
+    let (comes_out, why) = match fields.iter().position(|f| is_set_point(&f.name)) {
+        Some(wanted) => {
+            let nearest = nearest(fields, wanted, rows).filter(|k| *k != put_out)?;
+            let [aim, output] = [wanted, nearest].map(|k| shorten(&fields[k].name));
+            (
+                nearest,
+                format!("'{output}' comes nearer to '{aim}' than '{own}' does"),
+            )
+        }
+        None => {
+            let warm = only_warm(fields)?;
+            (
+                warm,
+                format!("'{}' is what comes out", shorten(&fields[warm].name)),
+            )
+        }
+    };
+    let another = |(k, field): (usize, &Field)| k != comes_out && field.role == Some(INPUT);
+    if fields.iter().enumerate().any(another) {
+        return None;
+    }
+    let moves = matches!(
+        fields[comes_out].role,
+        Some(Role::Measured(Quantity::Position | Quantity::Velocity))
+    );
+    fields[put_out].role = Some(INPUT);
+    if !moves {
+        fields[comes_out].role = Some(OUTPUT);
+    }
+    Some(format!(
+        "{why}: '{own}' is taken for what a controller put out, which is the input here."
+    ))
+}
+
+/// The column that comes nearest to a set point, which is wanted of what comes out.
+fn nearest(
+    fields: &[Field],
+    wanted: usize,
+    rows: impl Iterator<Item = Vec<Option<f64>>>,
+) -> Option<usize> {
     let is_free = |(k, field): (usize, &Field)| {
         let time = field.role == Some(Role::Time) || resembles(Role::Time, &field.name);
         k != wanted && !time && !is_set_point(&field.name)
@@ -33,27 +73,20 @@ pub(super) fn as_in_the_loop(
             }
         }
     }
-    let nearest = distances
+    let seen = distances
         .iter()
         .enumerate()
-        .filter(|(_, (_, count))| *count > 0)
-        .min_by(|(_, a), (_, b)| (a.0 / a.1 as f64).total_cmp(&(b.0 / b.1 as f64)))
+        .filter(|(_, (_, count))| *count > 0);
+    let mean = |(sum, count): &(f64, usize)| sum / *count as f64;
+    seen.min_by(|(_, a), (_, b)| mean(a).total_cmp(&mean(b)))
         .map(|(k, _)| k)
-        .filter(|k| *k != put_out)?;
-    let another = |(k, field): (usize, &Field)| k != nearest && field.role == Some(INPUT);
-    if fields.iter().enumerate().any(another) {
-        return None;
-    }
-    let moves = matches!(
-        fields[nearest].role,
-        Some(Role::Measured(Quantity::Position | Quantity::Velocity))
-    );
-    fields[put_out].role = Some(INPUT);
-    if !moves {
-        fields[nearest].role = Some(OUTPUT);
-    }
-    let [aim, output, own] = [wanted, nearest, put_out].map(|k| shorten(&fields[k].name));
-    Some(format!(
-        "'{output}' comes nearer to '{aim}' than '{own}' does: '{own}' is taken for what a controller put out, which is the input here."
-    ))
+}
+
+/// The only temperature, which is never put in, where nothing else is called as an input is.
+fn only_warm(fields: &[Field]) -> Option<usize> {
+    let mut warm =
+        (0..fields.len()).filter(|k| is_warm(&fields[*k].name, fields[*k].unit.as_deref()));
+    let only = warm.next().filter(|_| warm.next().is_none())?;
+    let acts = |(k, f): (usize, &Field)| k != only && resembles(INPUT, &f.name);
+    (!fields.iter().enumerate().any(acts)).then_some(only)
 }

@@ -211,7 +211,7 @@ impl Resembling {
         let named = self.resembles(&column.name);
         let measured = output || self.moves();
         let input = self.role == Role::Measured(Quantity::Input);
-        let warm = has(&[TEMPERATURE]) || column.unit.as_deref().is_some_and(is_of_temperature);
+        let warm = is_warm(&column.name, column.unit.as_deref());
         let acts = has(&ACTORS) && !has(&OF_PROCESS);
         // What the file has in a unit of something else does not move.
         let strange = |unit: &str| parse(unit).is_none() && !is_bare_counts(unit);
@@ -266,6 +266,11 @@ impl Resembling {
 /// Whether it is a unit of what no drive has.
 pub(super) fn is_of_process(unit: &str) -> bool {
     UNITS_OF_PROCESS.contains(&unit.trim().to_lowercase().as_str())
+}
+
+/// Whether a column of this name and unit has a temperature.
+pub(super) fn is_warm(name: &str, unit: Option<&str>) -> bool {
+    name.to_lowercase().contains(TEMPERATURE) || unit.is_some_and(is_of_temperature)
 }
 
 /// Whether it is a unit of temperature.

@@ -1,6 +1,6 @@
 //! A file that does not say what its columns are, and what was chosen for them.
 
-use hysteron_core::measurement::FoundColumn;
+use hysteron_core::measurement::{FoundColumn, Kind};
 use hysteron_work::content::Content;
 use hysteron_work::reading::Reading;
 
@@ -42,6 +42,13 @@ impl Form {
             columns,
             error: None,
         }
+    }
+
+    /// The same with this kind of system chosen.
+    pub fn of_kind(mut self, kind: Kind) -> Self {
+        self.choice.kind = kind;
+        self.choice.suit(&self.columns);
+        self
     }
 
     /// The file as it was chosen to be read.

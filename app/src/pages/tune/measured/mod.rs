@@ -132,7 +132,9 @@ impl Measured {
             (Some(form), _) => form.error = Some(reason),
             (form, Some(file)) => {
                 let (name, content) = (file.name.clone(), file.content.clone());
-                *form = Some(Form::new(name, content, None, reason, columns));
+                let new = Form::new(name, content, None, reason, columns);
+                // As `tune` on the command line takes it: a drive is a plant as well.
+                *form = Some(new.of_kind(Kind::Process));
             }
             _ => self.message = Some(reason),
         }
