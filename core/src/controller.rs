@@ -31,6 +31,12 @@ const JUMP: f64 = 10.0;
 /// Samples between two limits of the input from which on it may show what it follows: twice the past that foretells it.
 const SHORTEST_STRETCH: usize = 2 * PAST;
 
+/// Changes of the input from which the share that follows the output is told: of as many as the past has terms, chance takes all.
+const LEAST_CHANGES: usize = 10 * PAST;
+
+/// Samples that are looked at: a controller shows in so many, or not at all.
+const MOST_SAMPLES: usize = 100_000;
+
 /// A record at equal time steps of a loop that may have been closed.
 #[derive(Clone, Copy, Debug)]
 pub struct Logged<'a> {
@@ -142,13 +148,15 @@ fn between_limits(logged: &Logged<'_>) -> Vec<Range<usize>> {
     let change = |k: usize| (input[k] - input[k - 1]).abs();
     let usual = (1..input.len()).map(change).sum::<f64>() / input.len() as f64;
     let mut stretches: Vec<Range<usize>> = Vec::new();
-    for (k, u) in input.iter().enumerate() {
+    for (k, u) in input.iter().enumerate().take(MOST_SAMPLES) {
         if *u <= least || *u >= most {
             continue;
         }
         match stretches.last_mut() {
             Some(last)
-                if last.end == k && !logged.begins.contains(&k) && change(k) < JUMP * usual =>
+                if last.end == k
+                    && logged.begins.binary_search(&k).is_err()
+                    && change(k) < JUMP * usual =>
             {
                 last.end = k + 1;
             }
@@ -224,6 +232,9 @@ fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
     let past = (1..PAST).flat_map(|before| [changes(input, before), changes(output, before)]);
     let mut columns: Vec<Vec<f64>> = past.collect();
     let target = changes(input, 0);
+    if target.len() < LEAST_CHANGES {
+        return false;
+    }
     let Some(Law {
         explained: foretold,
         ..
@@ -298,6 +309,7 @@ fn law(logged: &Logged<'_>, gains: &[f64], terms: &[Term], stretches: &[Range<us
     text
 }
 
+/// How many values there are.
 fn levels<'a>(input: impl Iterator<Item = &'a f64>) -> usize {
     let mut seen: Vec<u64> = input.map(|u| u.to_bits()).collect();
     seen.sort_unstable();
