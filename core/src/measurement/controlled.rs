@@ -17,22 +17,16 @@ pub(super) fn as_in_the_loop(
         .iter()
         .position(|f| f.role == Some(OUTPUT) && f.name.eq_ignore_ascii_case("output"))?;
     let own = shorten(&fields[put_out].name);
-    let (comes_out, why) = match fields.iter().position(|f| is_set_point(&f.name)) {
-        Some(wanted) => {
-            let nearest = nearest(fields, wanted, rows).filter(|k| *k != put_out)?;
-            let [aim, output] = [wanted, nearest].map(|k| shorten(&fields[k].name));
-            (
-                nearest,
-                format!("'{output}' comes nearer to '{aim}' than '{own}' does"),
-            )
-        }
-        None => {
-            let warm = only_warm(fields)?;
-            (
-                warm,
-                format!("'{}' is what comes out", shorten(&fields[warm].name)),
-            )
-        }
+    let wanted = fields.iter().position(|f| is_set_point(&f.name));
+    let (comes_out, why) = if let Some(wanted) = wanted {
+        let nearest = nearest(fields, wanted, rows).filter(|k| *k != put_out)?;
+        let [aim, output] = [wanted, nearest].map(|k| shorten(&fields[k].name));
+        let why = format!("'{output}' comes nearer to '{aim}' than '{own}' does");
+        (nearest, why)
+    } else {
+        let warm = only_warm(fields)?;
+        let name = shorten(&fields[warm].name);
+        (warm, format!("'{name}' is what comes out"))
     };
     let another = |(k, field): (usize, &Field)| k != comes_out && field.role == Some(INPUT);
     if fields.iter().enumerate().any(another) {
