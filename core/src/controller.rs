@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::least_squares::least_squares;
 use crate::measurement::Kind;
-use crate::order::range;
+use crate::order::{distinct, range};
 use crate::sums::dot;
 use crate::uncertain::brief;
 
@@ -75,7 +75,8 @@ struct Term {
 /// afterwards is not known: each stretch between them has an offset of its own.
 pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
     let stretches = between_limits(logged);
-    if levels(stretches.iter().flat_map(|s| &logged.input[s.clone()])) <= FEW_LEVELS {
+    let free = stretches.iter().flat_map(|s| &logged.input[s.clone()]);
+    if distinct(free.copied().collect()).len() <= FEW_LEVELS {
         return None;
     }
     let term = |symbol, values: &[f64]| Term {
@@ -101,30 +102,20 @@ pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
         ],
     };
     let made = sets.into_iter().filter_map(|(kind, terms)| {
-        let Law {
-            gains,
-            explained,
-            left,
-        } = follows(logged.input, &terms, &stretches, 0)?;
-        let made = explained >= CONTROLLED && answers(logged.input, output, &stretches);
-        let law = || law(logged, &gains, &terms, &stretches);
-        let controller = || Controller {
-            law: law(),
-            kind,
-            explained,
-        };
-        (made && is_control(logged, &gains, &terms, &stretches, explained))
-            .then(|| (controller(), left))
+        let law = follows(logged.input, &terms, &stretches, 0)?;
+        let made = law.explained >= CONTROLLED && is_control(logged, &law, &terms, &stretches);
+        made.then_some((kind, terms, law))
     });
     // A term more is the controller's where it explains more than it leaves.
-    let richer = |(simple, before), (rich, left)| {
-        if before > 2.0 * left {
-            (rich, left)
-        } else {
-            (simple, before)
-        }
-    };
-    made.reduce(richer).map(|(controller, _)| controller)
+    let (kind, terms, law) = made.reduce(|simple, rich| {
+        let worth = simple.2.left > 2.0 * rich.2.left;
+        if worth { rich } else { simple }
+    })?;
+    answers(logged.input, output, &stretches).then(|| Controller {
+        law: written(logged, &law.gains, &terms, &stretches),
+        kind,
+        explained: law.explained,
+    })
 }
 
 /// The integral of an output about its mean.
@@ -251,24 +242,23 @@ fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
 /// Whether a law that the input follows was made by a controller, and not by the plant itself. A drive is controlled by what opposes
 /// its motion: what grows with it holds a spring or drags through a liquid. The output of a process that settles within a sample
 /// follows the input, and tells the one of the sample before better than its own.
-fn is_control(
-    logged: &Logged<'_>,
-    gains: &[f64],
-    terms: &[Term],
-    stretches: &[Range<usize>],
-    explained: f64,
-) -> bool {
+fn is_control(logged: &Logged<'_>, law: &Law, terms: &[Term], stretches: &[Range<usize>]) -> bool {
     match logged.kind {
-        Kind::Drive => gains.first().is_some_and(|gain| *gain < 0.0),
+        Kind::Drive => law.gains.first().is_some_and(|gain| *gain < 0.0),
         Kind::Process => {
             let late = follows(logged.input, terms, stretches, 1);
-            late.is_none_or(|late| explained > late.explained)
+            late.is_none_or(|late| law.explained > late.explained)
         }
     }
 }
 
 /// The law as one writes it; an integral is that of the distance from the set point of the longest stretch.
-fn law(logged: &Logged<'_>, gains: &[f64], terms: &[Term], stretches: &[Range<usize>]) -> String {
+fn written(
+    logged: &Logged<'_>,
+    gains: &[f64],
+    terms: &[Term],
+    stretches: &[Range<usize>],
+) -> String {
     let mut text = "u =".to_owned();
     let mut add = |gain: f64, what: &str| {
         let sign = match (gain < 0.0, text.ends_with('=')) {
@@ -307,14 +297,6 @@ fn law(logged: &Logged<'_>, gains: &[f64], terms: &[Term], stretches: &[Range<us
         add(offset, "");
     }
     text
-}
-
-/// How many values there are.
-fn levels<'a>(input: impl Iterator<Item = &'a f64>) -> usize {
-    let mut seen: Vec<u64> = input.map(|u| u.to_bits()).collect();
-    seen.sort_unstable();
-    seen.dedup();
-    seen.len()
 }
 
 /// Least squares on columns about their means.

@@ -13,6 +13,13 @@ pub fn range(values: &[f64]) -> (f64, f64) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), wider)
 }
 
+/// Values in order, each once.
+pub fn distinct(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
 /// Takes out the values that are marked.
 pub fn drop_marked<T>(values: &mut Vec<T>, marked: &[bool]) {
     let mut marks = marked.iter();

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
-use crate::order::{median, range};
+use crate::order::{distinct, median, range};
 
 /// Fewest samples from which a model can be had.
 const FEWEST: usize = 20;
@@ -151,10 +151,8 @@ impl Record {
 
     /// Distances of neighbouring outputs that differ: one fewer than there are values.
     pub(super) fn sensor_steps(&self) -> Vec<f64> {
-        let mut sorted = self.output.clone();
-        sorted.sort_by(f64::total_cmp);
-        sorted.dedup();
-        sorted.windows(2).map(|v| v[1] - v[0]).collect()
+        let values = distinct(self.output.clone());
+        values.windows(2).map(|v| v[1] - v[0]).collect()
     }
 
     /// Length, s.

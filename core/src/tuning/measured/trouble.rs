@@ -9,7 +9,7 @@ use super::record::Record;
 use crate::controller::{Logged, controller};
 use crate::count::counted;
 use crate::measurement::Kind;
-use crate::order::{median, range};
+use crate::order::{distinct, median, range};
 
 /// The shorter half period over the longer, below which heating and cooling count as of different strength.
 const SYMMETRIC: f64 = 0.66;
@@ -174,10 +174,7 @@ fn quantised(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     let step = e.record.sensor_step();
     let steps = cycle.amplitude / step;
     // A sensor with fine steps has as many values as samples.
-    let mut values = e.record.output.clone();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    let few = values.len() * 4 < e.record.output.len();
+    let few = distinct(e.record.output.clone()).len() * 4 < e.record.output.len();
     (few && steps < FEWEST_STEPS).then(|| {
         trouble(
             TroubleKind::Quantised,
@@ -291,10 +288,7 @@ pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
     let (uu, uy, yy) = (sum(&|u, _| u * u), sum(&|u, y| u * y), sum(&|_, y| y * y));
     let explained = uy * uy / (uu * yy);
     // A relay has two levels: that these follow the output says nothing.
-    let mut levels = record.input.clone();
-    levels.sort_by(f64::total_cmp);
-    levels.dedup();
-    if levels.len() <= LEVELS {
+    if distinct(record.input.clone()).len() <= LEVELS {
         return None;
     }
     if explained > FOLLOWS {
