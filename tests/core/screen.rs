@@ -7,6 +7,7 @@ use hysteron_core::rig::process::{Excitation as ProcessExcitation, ProcessRig};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Stranger};
 
 use crate::support::controlled::{process, under_controller};
+use crate::support::score::diagnose;
 use crate::support::servo::servo;
 use crate::support::shared::shared;
 
@@ -332,6 +333,18 @@ fn a_controller_with_limits_is_read_off_with_its_set_point() {
         "{}",
         check.text
     );
+}
+
+/// That a model leaves noise says nothing of a plant that only its controller moves.
+#[test]
+fn a_record_that_shows_the_controller_alone_is_not_complete() {
+    let measurement = process(|_, y| 3.0 + 0.4 * (45.0 - y));
+    let diagnosis = diagnose(&measurement).expect("a diagnosis");
+    let check = diagnosis.input_check.expect("a check");
+    assert_eq!(check.verdict, InputVerdict::ClosedLoop);
+    assert!(!check.plant_told, "{}", check.text);
+    let verdict = &diagnosis.verdict;
+    assert!(!verdict.complete && verdict.unknown, "{}", verdict.text);
 }
 
 /// A sine and its response are phases of one another, as are the terms of a controller; but it does not answer to chance.

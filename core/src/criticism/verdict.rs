@@ -387,6 +387,7 @@ pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, paramet
         verdict.missing.clear();
         verdict.experiments.clear();
         verdict.next_experiment = None;
+        verdict.complete = false;
         verdict.unknown = true;
         verdict.text.clone_from(&check.text);
     } else {
