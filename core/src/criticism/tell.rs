@@ -2,7 +2,7 @@
 
 use super::contradicted::overruled;
 use super::dry_or_viscous::InsteadOfViscous;
-use super::explain::{Difference, Explain, Trial, difference as between, may_replace};
+use super::explain::{Explain, Trial, difference as between, may_replace};
 use super::fingerprint::fingerprints;
 use super::left_out::add_left_out;
 use super::missing::missing_parts;
@@ -22,9 +22,6 @@ use crate::diagnosis::{
     Candidate, Contradiction, Finding, Limits, NextExperiment, Parameter, Step, StepReport, Verdict,
 };
 use crate::effect::{Effect, EffectId};
-
-/// Fall of the error of either half from which an effect is mentioned though chance is not ruled out.
-const PROMISING: f64 = 0.3;
 
 /// A model of which the verdict speaks, and what is known of it.
 struct Told<'a> {
@@ -247,20 +244,38 @@ fn needless(session: &Session, explain: &Explain, place: usize) -> Vec<EffectId>
         .collect()
 }
 
-/// Whether a step lowers the error much, and yet not beyond chance.
-fn is_promising(difference: &Difference) -> bool {
-    difference.least_fall > PROMISING && !difference.is_better()
+/// Whether a step explains more than it leaves of either half, and yet not beyond chance.
+fn is_promising(session: &Session, from: &Trial, to: &Trial) -> bool {
+    let mut halves = from.halves().zip(to.halves());
+    halves.all(|(a, b)| outweighs(a.score.error, b.score.error))
+        && !between(session, from, to).is_better()
 }
 
-/// The effect that would lower the error most, and to what, where that is much and yet not beyond chance.
+/// The effects that would lower the error most, and to what, where that is much and yet not beyond chance.
 fn hint(
     session: &Session,
     model: &Trial,
     tried: &[(&'static dyn Effect, &Trial)],
-) -> Option<(EffectId, f64)> {
-    let best = tried.first()?;
-    let difference = between(session, model, best.1);
-    is_promising(&difference).then(|| (best.0.id(), session.completed(&best.1.scored).score.error))
+) -> Option<(Vec<EffectId>, f64)> {
+    let promising = tried.iter().filter(|t| is_promising(session, model, t.1));
+    let promising: Vec<&(&'static dyn Effect, &Trial)> = promising.collect();
+    let (best, trial) = promising.first()?;
+    let class = same_as(session, best.id(), trial, &promising);
+    Some((class, session.completed(&trial.scored).score.error))
+}
+
+/// Of the effects that were tried, this one and those that need no more values and leave the same.
+fn same_as(
+    session: &Session,
+    best: EffectId,
+    trial: &Trial,
+    tried: &[&(&'static dyn Effect, &Trial)],
+) -> Vec<EffectId> {
+    let same = |t: &&&(&'static dyn Effect, &Trial)| {
+        let alike = t.1.values() <= trial.values() && between(session, trial, t.1).is_same();
+        t.0.id() == best || alike
+    };
+    tried.iter().filter(same).map(|t| t.0.id()).collect()
 }
 
 /// The effects that lower the error most for certain and were not taken, why not, and the error with them.
@@ -275,13 +290,8 @@ fn part_of_the_way(
     let noise = better.iter().filter(|t| leaves_noise(session, t.1));
     let plain = noise.min_by_key(|t| t.1.values());
     let (best, trial) = plain.or(better.first())?;
-    let same = |t: &&&(&'static dyn Effect, &Trial)| {
-        let alike = t.1.values() <= trial.values() && between(session, trial, t.1).is_same();
-        t.0.id() == best.id() || alike
-    };
-    let class = better.iter().filter(same);
     Some(PartOfTheWay {
-        class: class.map(|t| t.0.id()).collect(),
+        class: same_as(session, best.id(), trial, &better),
         error: session.completed(&trial.scored).score.error,
         refused: refused(session, model, trial, best.id()),
     })
@@ -352,7 +362,7 @@ fn candidates(
                     delta_bic(before, length, after, values)
                 },
                 significant: difference.is_better() && most,
-                promising: is_promising(&difference),
+                promising: is_promising(session, model, trial),
                 parameters: session
                     .parameters(&trial.scored, &trial.spreads())
                     .into_iter()

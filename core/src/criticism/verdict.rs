@@ -355,14 +355,14 @@ pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheW
     verdict.part_of_the_way = class;
 }
 
-/// Says which effect would lower the error much, and to what, though chance is not ruled out.
-pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(EffectId, f64)>) {
-    if let Some((id, error)) = hint {
+/// Says which effects would lower the error much, and to what, though chance is not ruled out.
+pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(Vec<EffectId>, f64)>) {
+    if let Some((class, error)) = hint {
         let _ = write!(
             verdict.text,
-            " Perhaps {}: it would lower the error to {error:.2} times the noise, but not in enough independent stretches of \
-             the record to rule out chance.",
-            name_of(id)
+            " Perhaps {}: that would lower the error to {error:.2} times the noise, but not in enough independent stretches \
+             of the record to rule out chance.",
+            names(&in_registry_order(class), " or ")
         );
     }
 }

@@ -146,6 +146,8 @@ pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
                     format!("cannot be told apart from {}", others.join(", "))
                 } else if c.significant {
                     "helps".to_owned()
+                } else if c.promising {
+                    "perhaps: chance is not ruled out".to_owned()
                 } else {
                     "too little to add it".to_owned()
                 };
