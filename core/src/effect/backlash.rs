@@ -47,10 +47,13 @@ const SCANNED: [((f64, f64), f64); 2] = [
 /// Damping ratio of the contact.
 const DAMPING_RATIO: f64 = 0.3;
 
-/// A contact that a fit left soft may as well be as many times as stiff; one that does not bounce may as well do so, with
-/// these stiffnesses in times of that at which the damping is critical.
+/// A contact that a fit left soft may as well be as many times as stiff.
 const STIFFER: [f64; 3] = [6.0, 40.0, 250.0];
-const BOUNCING: [f64; 3] = [0.25, 1.0, 4.0];
+
+/// Damping ratio of a contact that bounces, and its stiffnesses in times of that which the screen finds: a load that follows a
+/// noisy motion through it bounces at other times than it did, so that a contact that swallows all it can explains more there.
+const BOUNCING: f64 = 0.05;
+const HARDER: [f64; 2] = [1.0, 4.0];
 
 /// Stiffness of a contact that was felt, in times of what the length of its push tells.
 const FELT_STIFFNESS: [f64; 10] = [0.01, 0.018, 0.032, 0.056, 0.1, 0.18, 0.32, 0.56, 1.0, 3.2];
@@ -342,6 +345,14 @@ fn pushed_back(track: &Track, numbers: &Shape) -> Vec<f64> {
     pushes.iter().map(|force| -force).collect()
 }
 
+/// Values with a contact of this stiffness and damping ratio.
+fn with_contact(values: &[f64], stiffness: f64, damping_ratio: f64) -> Vec<f64> {
+    let mut values = values.to_vec();
+    values[4] = stiffness;
+    values[5] = 2.0 * damping_ratio * (stiffness * values[1]).sqrt();
+    values
+}
+
 impl Effect for Backlash {
     fn id(&self) -> EffectId {
         EffectId::new("backlash")
@@ -437,20 +448,16 @@ impl Effect for Backlash {
         met.into_iter().chain(found).collect()
     }
 
+    fn other_contacts(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        HARDER
+            .map(|times| with_contact(values, times * values[4], BOUNCING))
+            .to_vec()
+    }
+
     fn other_valleys(&self, values: &[f64], goes_on: bool) -> Vec<Vec<f64>> {
-        let [inertia, stiffness, damping] = [values[1], values[4], values[5]];
-        let critical = damping * damping / (4.0 * inertia);
-        let bouncing = BOUNCING.map(|times| times * critical);
-        let bouncing = bouncing.into_iter().filter(|_| stiffness < critical);
-        let stiffer = STIFFER.map(|times| times * stiffness);
-        let stiffer = stiffer.into_iter().filter(|_| goes_on);
-        let other = |stiffness: f64| {
-            let mut values = values.to_vec();
-            values[4] = stiffness;
-            values[5] = 2.0 * DAMPING_RATIO * (stiffness * inertia).sqrt();
-            values
-        };
-        bouncing.chain(stiffer).map(other).collect()
+        let stiffer = STIFFER.into_iter().filter(|_| goes_on);
+        let with = |times: f64| with_contact(values, times * values[4], DAMPING_RATIO);
+        stiffer.map(with).collect()
     }
 
     fn least_errors(&self, values: &[f64], gap: &SeenGap) -> Vec<f64> {

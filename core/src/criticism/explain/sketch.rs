@@ -169,6 +169,20 @@ impl Sketch {
 
     /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way.
     pub fn variants(self, session: &Session) -> Vec<Self> {
+        let mut all = Vec::new();
+        for (k, effect) in self.structure.effects.iter().enumerate() {
+            let range = self.structure.range(k);
+            for other in effect.other_contacts(&self.values[range.clone()]) {
+                let mut sketch = self.clone();
+                sketch.values[range.clone()].copy_from_slice(&other);
+                all.extend(sketch.with_displacements(session));
+            }
+        }
+        all.extend(self.with_displacements(session));
+        all
+    }
+
+    fn with_displacements(self, session: &Session) -> Vec<Self> {
         let mut open = displacements(&self.structure);
         open.retain(|j| self.values[*j] == 0.0);
         if open.is_empty() {
