@@ -4,6 +4,7 @@
 use crate::support::diagnosis::{classes, finish, step};
 use crate::support::parameter::parameter;
 use crate::support::pulses::reversed_twice;
+use crate::support::shared::shared;
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::{Measurement, import_csv};
@@ -79,4 +80,22 @@ fn what_may_be_chance_is_said_as_that() {
     let with = step(StepJob::new(&record, &offered.effects).unwrap());
     let change = (with.step.error / offered.error - 1.0).abs();
     assert!(change < 0.05, "{} for {}", with.step.error, offered.error);
+}
+
+/// A student's heater whose input steps eight times: what a dead time or a second lag explains is in the few stretches that
+/// hold a step, and a room wanders in all others.
+#[test]
+fn a_lag_in_a_few_steps_is_said_as_a_class_that_may_be_chance() {
+    let file = "failing/heater-steps-second-lag.csv";
+    let Some(bytes) = shared(file) else {
+        return;
+    };
+    let record = import_csv(file, &bytes, None).unwrap();
+    let d = finish(DiagnosisJob::new(&record).unwrap());
+    let text = &d.verdict.text;
+    assert!(d.verdict.missing.is_empty(), "{text}");
+    let perhaps = text.split("Perhaps ").nth(1).expect(text);
+    for name in ["Input delay", "Second lag"] {
+        assert!(perhaps.contains(name), "{text}");
+    }
 }
