@@ -167,7 +167,8 @@ impl Sketch {
         (!open.is_empty()).then_some(Self::from(fit, structure, values))
     }
 
-    /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way.
+    /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way, and how a load bounces
+    /// in its gap.
     pub fn variants(self, session: &Session) -> Vec<Self> {
         let mut all = Vec::new();
         for (k, effect) in self.structure.effects.iter().enumerate() {
@@ -182,6 +183,7 @@ impl Sketch {
         all
     }
 
+    /// The same with each of some displacements over which dry contacts build up their force, where it has none.
     fn with_displacements(self, session: &Session) -> Vec<Self> {
         let mut open = displacements(&self.structure);
         open.retain(|j| self.values[*j] == 0.0);
