@@ -1,9 +1,10 @@
-//! How much work of its own a frame takes while someone drags: every slider and every number of every page in
-//! turn, and the pointer, the wheel and a drag over what is only looked at, 60 frames a second, so that what runs beside them
-//! has time to bring its results; and the shapes cut into triangles, as for a software rasteriser. What paints them
-//! is not measured; nor, on Linux, is the time that the thread waited for a processor. What else the machine did meanwhile is no work of the app: so a drag with a frame
-//! above 16 ms is made again, and counts as slow if it is so every time. Of each page it prints the median, 95 % and 99 %
-//! of the frames and the worst, and the last two as shares of 8 and of 16 ms; it fails at none.
+//! How much work of its own a frame takes while someone drags: every slider and every number of every page in turn, and
+//! the pointer, the wheel and a drag over what is only looked at, 60 frames a second, so that what runs beside them has
+//! time to bring its results; and the shapes cut into triangles, as for a software rasteriser. What paints them is not
+//! measured; nor, on Linux, is the time that the thread waited for a processor. What else the machine did meanwhile is
+//! no work of the app: so a drag with a frame above 16 ms is made again, and counts as slow if it is so every time. Of
+//! each page it prints the median, 95 % and 99 % of the frames and the worst, and the last two as shares of 8 and of 16
+//! ms; it fails at none.
 //!
 //! ```text
 //! cargo bench -p hysteron --bench frames

@@ -1,4 +1,5 @@
-//! Files that a user opens: by a dialog, by dropping them on the window, by the command line, or once more, natively and on the web.
+//! Files that a user opens: by a dialog, by dropping them on the window, by the command line, or once more, natively
+//! and on the web.
 
 #[cfg(not(target_arch = "wasm32"))]
 use std::path::{Path, PathBuf};

@@ -24,7 +24,8 @@ impl<T: Runs> Job<T> {
         self.0.news()
     }
 
-    /// What it has come to, once it has ended. Until then `progress` is told the share that is done, and what it is doing.
+    /// What it has come to, once it has ended. Until then `progress` is told the share that is done, and what it is
+    /// doing.
     pub fn end(
         &mut self,
         mut progress: impl FnMut(f64, String),

@@ -4,7 +4,8 @@ use hysteron_work::tasks::Task;
 
 use crate::jobs::{Job, Runs, ended};
 
-/// The last result for an input, and the job for the next: one that is dragged shows every result that could be computed meanwhile.
+/// The last result for an input, and the job for the next: one that is dragged shows every result that could be
+/// computed meanwhile.
 pub struct Live<I, T: Task> {
     /// Input of the job that runs or ran last.
     asked: Option<I>,

@@ -12,7 +12,8 @@ use hysteron_work::reading::Reading;
 /// Files that are remembered.
 const MOST: usize = 8;
 
-/// Bytes of all texts that are kept: a browser has room for some five million. Where paths are kept there are hardly any.
+/// Bytes of all texts that are kept: a browser has room for some five million. Where paths are kept there are hardly
+/// any.
 const MOST_BYTES: usize = 1_000_000;
 
 /// A file that was opened before.

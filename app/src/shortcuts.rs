@@ -111,8 +111,8 @@ pub fn pressed(ctx: &egui::Context, pages: &[&'static str], commands: &mut Vec<C
     });
 }
 
-/// Takes a key where it is pressed with just these modifiers: a digit with Shift is another sign. Where a keyboard needs
-/// Shift for the question mark, it must not count.
+/// Takes a key where it is pressed with just these modifiers: a digit with Shift is another sign. Where a keyboard
+/// needs Shift for the question mark, it must not count.
 fn consume(input: &mut egui::InputState, wanted: KeyboardShortcut) -> bool {
     let KeyboardShortcut {
         modifiers: wished,

@@ -193,8 +193,8 @@ pub fn line(text: &mut String) -> egui::TextEdit<'_> {
     egui::TextEdit::singleline(text).align(egui::Align2::LEFT_CENTER)
 }
 
-/// What a page scrolls; by its own name, since pages stand in the same place and would scroll together. It is as wide as
-/// its panel: a panel that was made wider stays so when there is little in it.
+/// What a page scrolls; by its own name, since pages stand in the same place and would scroll together. It is as wide
+/// as its panel: a panel that was made wider stays so when there is little in it.
 pub fn scroll(name: &str) -> egui::ScrollArea {
     egui::ScrollArea::vertical()
         .id_salt(name)

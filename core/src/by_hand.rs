@@ -1,8 +1,9 @@
-//! What does the model say with other values? A replay with parameters that someone sets, beside a fit that is finished.
+//! What does the model say with other values? A replay with parameters that someone sets, beside a fit that is
+//! finished.
 //!
-//! The model runs through the record from the states with which the fit begins its windows. That takes one replay, so that
-//! a slider can have it while it is dragged. With other values other states would fit better: [`ByHand::settled`] finds them,
-//! by Gauss-Newton steps with the derivatives of each window with respect to its state.
+//! The model runs through the record from the states with which the fit begins its windows. That takes one replay, so
+//! that a slider can have it while it is dragged. With other values other states would fit better: [`ByHand::settled`]
+//! finds them, by Gauss-Newton steps with the derivatives of each window with respect to its state.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +24,8 @@ const MOVED: f64 = 1e-3;
 /// Fewest samples.
 const LEAST: usize = 10;
 
-/// Share by which the error with the fitted values may differ from that of the fit: a model with more states than are known
-/// here, such as a load that was felt, cannot be set by hand.
+/// Share by which the error with the fitted values may differ from that of the fit: a model with more states than are
+/// known here, such as a load that was felt, cannot be set by hand.
 const ALIKE: f64 = 0.1;
 
 /// What a model with values set by hand says.
@@ -122,7 +123,8 @@ impl ByHand {
                 let error = hand.replay(&values).error;
                 (error / step.error - 1.0).abs() < ALIKE
             };
-            // What the replay of the fit shows is the state itself, but for a slow sensor or a velocity that is not there.
+            // What the replay of the fit shows is the state itself, but for a slow sensor or a velocity that is not
+            // there.
             alike(&hand) || {
                 hand.starts = hand.settled_starts(&values);
                 alike(&hand)
@@ -157,7 +159,8 @@ impl ByHand {
         self.excitation.is_empty()
     }
 
-    /// The samples of the whole windows of a step that have these samples, the last one excluded, but no more than `most`.
+    /// The samples of the whole windows of a step that have these samples, the last one excluded, but no more than
+    /// `most`.
     pub fn windows_about(
         report: &StepReport,
         (from, to): (usize, usize),

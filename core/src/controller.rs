@@ -1,4 +1,5 @@
-//! Was the loop closed? In open loop the input knows nothing of what the output does by chance; a controller answers to it.
+//! Was the loop closed? In open loop the input knows nothing of what the output does by chance; a controller answers to
+//! it.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -18,11 +19,13 @@ const CONTROLLED: f64 = 0.99;
 /// Samples of the past that foretell the next: three resonances.
 const PAST: usize = 6;
 
-/// Share of what the past does not foretell of the input that must follow the output for the loop to have been closed: in open loop
-/// it is chance alone (at most 0.003 in records of 3,000 samples), with a controller that had the logged readings nearly all.
+/// Share of what the past does not foretell of the input that must follow the output for the loop to have been closed:
+/// in open loop it is chance alone (at most 0.003 in records of 3,000 samples), with a controller that had the logged
+/// readings nearly all.
 const ANSWERED: f64 = 0.5;
 
-/// Share of the variance of its changes down to which an input is foretold wholly: sums of squares are not known to less.
+/// Share of the variance of its changes down to which an input is foretold wholly: sums of squares are not known to
+/// less.
 const FORETOLD: f64 = 1e-6;
 
 /// Change of the input, in mean changes, from which it jumps: of noise it would be one in 10^15.
@@ -31,7 +34,8 @@ const JUMP: f64 = 10.0;
 /// Samples between two limits of the input from which on it may show what it follows: twice the past that foretells it.
 const SHORTEST_STRETCH: usize = 2 * PAST;
 
-/// Changes of the input from which the share that follows the output is told: of as many as the past has terms, chance takes all.
+/// Changes of the input from which the share that follows the output is told: of as many as the past has terms, chance
+/// takes all.
 const LEAST_CHANGES: usize = 10 * PAST;
 
 /// Samples that are looked at: a controller shows in so many, or not at all.
@@ -71,8 +75,8 @@ struct Term {
     about: Option<f64>,
 }
 
-/// The controller that made the input, if one did. Where the input is at its limits it follows nothing, and what an integral holds
-/// afterwards is not known: each stretch between them has an offset of its own.
+/// The controller that made the input, if one did. Where the input is at its limits it follows nothing, and what an
+/// integral holds afterwards is not known: each stretch between them has an offset of its own.
 pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
     let stretches = between_limits(logged);
     let free = stretches.iter().flat_map(|s| &logged.input[s.clone()]);
@@ -132,7 +136,8 @@ fn integral(output: &[f64], step: f64) -> Term {
     }
 }
 
-/// Stretches of the record without a gap in which the input is between its limits and does not jump, as it does with a set point.
+/// Stretches of the record without a gap in which the input is between its limits and does not jump, as it does with a
+/// set point.
 fn between_limits(logged: &Logged<'_>) -> Vec<Range<usize>> {
     let input = logged.input;
     let (least, most) = range(input);
@@ -167,8 +172,8 @@ struct Law {
     left: f64,
 }
 
-/// Gains of the terms, taken `later` samples after the input, by which the input follows them in each stretch, and the share of its
-/// variance there that they explain.
+/// Gains of the terms, taken `later` samples after the input, by which the input follows them in each stretch, and the
+/// share of its variance there that they explain.
 fn follows(input: &[f64], terms: &[Term], stretches: &[Range<usize>], later: usize) -> Option<Law> {
     let integrates = terms.iter().any(|t| t.about.is_some());
     let of_stretches = |values: &[f64], later: usize| -> Vec<f64> {
@@ -209,8 +214,9 @@ fn line(values: &[f64]) -> [f64; 2] {
     [mean, moment.sum::<f64>() / squares.max(f64::MIN_POSITIVE)]
 }
 
-/// Whether the input answers to what the output does by chance: of its changes, what its own past and that of the output do not
-/// foretell follows the change of the output. An input that is foretold wholly, as a sine is, tells nothing of that.
+/// Whether the input answers to what the output does by chance: of its changes, what its own past and that of the
+/// output do not foretell follows the change of the output. An input that is foretold wholly, as a sine is, tells
+/// nothing of that.
 fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
     let changes = |values: &[f64], before: usize| -> Vec<f64> {
         let parts = stretches
@@ -239,9 +245,9 @@ fn answers(input: &[f64], output: &[f64], stretches: &[Range<usize>]) -> bool {
     news > FORETOLD && told - foretold > ANSWERED * news
 }
 
-/// Whether a law that the input follows was made by a controller, and not by the plant itself. A drive is controlled by what opposes
-/// its motion: what grows with it holds a spring or drags through a liquid. The output of a process that settles within a sample
-/// follows the input, and tells the one of the sample before better than its own.
+/// Whether a law that the input follows was made by a controller, and not by the plant itself. A drive is controlled by
+/// what opposes its motion: what grows with it holds a spring or drags through a liquid. The output of a process that
+/// settles within a sample follows the input, and tells the one of the sample before better than its own.
 fn is_control(logged: &Logged<'_>, law: &Law, terms: &[Term], stretches: &[Range<usize>]) -> bool {
     match logged.kind {
         Kind::Drive => law.gains.first().is_some_and(|gain| *gain < 0.0),

@@ -11,7 +11,8 @@ pub trait Hands: Send + Sync {
         1
     }
 
-    /// Calls `part` with every number below `count`, and returns when all are done. A part may hand out parts of its own.
+    /// Calls `part` with every number below `count`, and returns when all are done. A part may hand out parts of its
+    /// own.
     fn each(&self, count: usize, part: &(dyn Fn(usize) + Sync));
 }
 

@@ -1,7 +1,7 @@
 //! Equations as they stand in a book, read from the text that files have.
 //!
-//! What is understood: `J1`, `c_s` and `u_acting` have an index, `x^3` and `e^(Ah)` an exponent, `tau` is a Greek letter,
-//! and `dv1/dt`, `v / v_s` and `4k/(πa)` are fractions. Words stay words.
+//! What is understood: `J1`, `c_s` and `u_acting` have an index, `x^3` and `e^(Ah)` an exponent, `tau` is a Greek
+//! letter, and `dv1/dt`, `v / v_s` and `4k/(πa)` are fractions. Words stay words.
 
 /// Letters by the names that they have in files.
 const GREEK: [(&str, &str); 7] = [

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-/// Replaces the values, whose number is a power of two, by their sums with `exp(-2 pi i j k / n)` for k = 0 .. n - 1; of
-/// another number nothing is changed.
+/// Replaces the values, whose number is a power of two, by their sums with `exp(-2 pi i j k / n)` for k = 0 .. n - 1;
+/// of another number nothing is changed.
 ///
-/// Cooley and Tukey (1965), "An algorithm for the machine calculation of complex Fourier series": values in the order of
-/// their reversed bits, then pairs of halves, quarters and so on.
+/// Cooley and Tukey (1965), "An algorithm for the machine calculation of complex Fourier series": values in the order
+/// of their reversed bits, then pairs of halves, quarters and so on.
 pub(crate) fn transform(values: &mut [Complex64]) {
     let count = values.len();
     if count < 2 || !count.is_power_of_two() {

@@ -35,7 +35,8 @@ impl FittedModel {
         })
     }
 
-    /// The model that is simulated, with what each of its effects puts into it; a formula of the user's own is left out.
+    /// The model that is simulated, with what each of its effects puts into it; a formula of the user's own is left
+    /// out.
     fn built(&self, baseline: Baseline, values: &[f64]) -> Model {
         let mut model = baseline.model(values);
         for effect in self.effects.iter().filter_map(|id| find(*id)) {

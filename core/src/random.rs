@@ -1,4 +1,5 @@
-//! Seeded random numbers, the same on every machine, where a bench or a test wants no more than uniform and normal ones.
+//! Seeded random numbers, the same on every machine, where a bench or a test wants no more than uniform and normal
+//! ones.
 
 /// The increment of `SplitMix64`: 2^64 over the golden ratio.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -15,7 +16,8 @@ fn share(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// The number at place `i` of one series that is evenly spread over 0 to 1 and without pattern: any place, in any order.
+/// The number at place `i` of one series that is evenly spread over 0 to 1 and without pattern: any place, in any
+/// order.
 pub(crate) fn dither(i: usize) -> f64 {
     share(spread((i as u64).wrapping_add(1).wrapping_mul(STEP)))
 }

@@ -85,8 +85,8 @@ pub(crate) struct Peak {
     pub best: (f64, f64),
 }
 
-/// The one maximum of `f` between `low` and `high` by so many golden sections (Kiefer 1953); a value above `enough` ends
-/// the search.
+/// The one maximum of `f` between `low` and `high` by so many golden sections (Kiefer 1953); a value above `enough`
+/// ends the search.
 pub(crate) fn golden_section(
     (mut low, mut high): (f64, f64),
     sections: usize,

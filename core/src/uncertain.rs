@@ -26,7 +26,8 @@ const THOUSANDS_FROM: usize = 5;
 const SMALLER: [(f64, &str); 4] = [(1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
 const LARGER: [(f64, &str); 2] = [(1e6, "M"), (1e3, "k")];
 
-/// Inertias and masses: the kilogram has a prefix already. Each with the least size for which it is taken, in kg m² or kg.
+/// Inertias and masses: the kilogram has a prefix already. Each with the least size for which it is taken, in kg m² or
+/// kg.
 const INERTIAS: [(f64, f64, &str); 3] = [
     (1e-2, 1.0, "kg m²"),
     (1e-8, 1e-6, "kg mm²"),
@@ -183,8 +184,8 @@ pub fn brief_quantity(value: f64, unit: &str) -> String {
     sized(value, unit, BRIEF)
 }
 
-/// A value with its standard error in per cent and its unit, as `40.3 mN m ± 0.3 %`; alone where the error is not known;
-/// and that the record does not determine it, where it does not.
+/// A value with its standard error in per cent and its unit, as `40.3 mN m ± 0.3 %`; alone where the error is not
+/// known; and that the record does not determine it, where it does not.
 pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     if !is_told(value, error) {
         return NOT_TOLD.to_owned();
@@ -305,7 +306,8 @@ pub fn titled(name: &str, unit: &str) -> String {
     }
 }
 
-/// A unit as it is shown, nothing for a plain number: files and JSON have `kg m^2`, which is easier to type than `kg m²`.
+/// A unit as it is shown, nothing for a plain number: files and JSON have `kg m^2`, which is easier to type than `kg
+/// m²`.
 pub fn shown_unit(unit: &str) -> String {
     match unit {
         "1" => String::new(),

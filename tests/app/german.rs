@@ -266,13 +266,15 @@ fn no_page_leaves_a_text_in_english() {
 #[test]
 fn the_sentences_of_an_experiment_stay_in_their_order() {
     let said = german().translate(
-        "To tell Gain asymmetry and Constant load apart, measure again with a relay with gains 0.55 and 0.16 N m in turn, \
-         0.035 s each, hysteresis 0.39 rad/s. The models would then differ by 132 times the noise; in this record \
-         they differ by less than 0.01. 0.07 s are enough for this; 1 s let all other effects be judged as well.",
+        "To tell Gain asymmetry and Constant load apart, measure again with a relay with gains 0.55 and 0.16 N m in \
+         turn, 0.035 s each, hysteresis 0.39 rad/s. The models would then differ by 132 times the noise; in this \
+         record they differ by less than 0.01. 0.07 s are enough for this; 1 s let all other effects be judged as \
+         well.",
     );
     assert!(said.complete, "{}", said.text);
-    let end = "Die Modelle würden sich dann um das 132-Fache des Rauschens unterscheiden; in dieser Aufzeichnung ist es \
-               weniger als das 0,01-Fache. Dafür genügen 0,07 s; mit 1 s lassen sich auch alle anderen Effekte beurteilen.";
+    let end = "Die Modelle würden sich dann um das 132-Fache des Rauschens unterscheiden; in dieser Aufzeichnung ist \
+               es weniger als das 0,01-Fache. Dafür genügen 0,07 s; mit 1 s lassen sich auch alle anderen Effekte \
+               beurteilen.";
     assert!(
         said.text.starts_with("Zur Unterscheidung ("),
         "{}",

@@ -1,5 +1,5 @@
-//! What people expect of any plot, on every page: it says what stands at the pointer or at the cursor that keys move, is
-//! zoomed and moved by either, marks what is pointed at in its neighbours, and gives itself away.
+//! What people expect of any plot, on every page: it says what stands at the pointer or at the cursor that keys move,
+//! is zoomed and moved by either, marks what is pointed at in its neighbours, and gives itself away.
 
 use std::collections::BTreeSet;
 use std::sync::mpsc::channel;

@@ -503,8 +503,8 @@ fn a_controller_with_a_dead_zone_heats_waits_and_cools() {
     }
 }
 
-/// A first-order lag of 400 s and 90 K whose heater may not come back for three minutes: it switches at whole seconds, and
-/// from these alone follows how warm it becomes. What heats acts 12 s later, for as long.
+/// A first-order lag of 400 s and 90 K whose heater may not come back for three minutes: it switches at whole seconds,
+/// and from these alone follows how warm it becomes. What heats acts 12 s later, for as long.
 #[test]
 fn a_thermostat_switches_at_whole_seconds() {
     let found = limit_cycle("one-sided-heater.toml");

@@ -195,7 +195,8 @@ fn bad_input_gets_one_line() {
     }
 }
 
-/// A room whose air comes and goes, and a heater that is switched on once and hardly felt in what is left of the record.
+/// A room whose air comes and goes, and a heater that is switched on once and hardly felt in what is left of the
+/// record.
 #[test]
 fn a_record_that_no_model_follows_gives_none() {
     let mut text = String::from("t [s],u [%],y [°C]\n");

@@ -28,8 +28,8 @@ fn check(d: &Diagnosis, missing: &[&str], parameters: &[(&str, f64)]) {
     found.sort();
     let wanted: Vec<Vec<&str>> = missing.iter().map(|e| vec![*e]).collect();
     assert_eq!(found, wanted, "{}", d.verdict.text);
-    // Where the body lets go may not be explained to the last count, but then less than a hundredth of the first error is left,
-    // and that is said.
+    // Where the body lets go may not be explained to the last count, but then less than a hundredth of the first error
+    // is left, and that is said.
     let (first, last) = (&d.steps[0], d.steps.last().unwrap());
     let nearly = last.error < 1e-2 * first.error && d.verdict.text.contains("more than noise");
     assert!(d.verdict.complete || nearly, "{}", d.verdict.text);
@@ -74,8 +74,8 @@ fn a_load_that_a_loop_holds_is_found() {
     );
 }
 
-/// Of a long record windows are compared that lie apart: how far the contact is bent where each begins is not as where the
-/// one before ended, and noise of the velocity would loosen it in every rest.
+/// Of a long record windows are compared that lie apart: how far the contact is bent where each begins is not as where
+/// the one before ended, and noise of the velocity would loosen it in every rest.
 #[test]
 fn a_tachometer_gives_away_friction_that_builds_up_slowly_in_a_long_record() {
     let level = 0.03;

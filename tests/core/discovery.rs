@@ -1,4 +1,5 @@
-//! Forces that nobody told the search: it finds their formula, or one that is as good, and says none where there is none.
+//! Forces that nobody told the search: it finds their formula, or one that is as good, and says none where there is
+//! none.
 
 #![allow(
     clippy::disallowed_methods,
@@ -32,7 +33,8 @@ fn search(record: &Measurement, effects: &[EffectId]) -> Discovery {
     }
 }
 
-/// Root mean square of the acceleration that a formula with its body has wrong along the record, over that of the hidden force.
+/// Root mean square of the acceleration that a formula with its body has wrong along the record, over that of the
+/// hidden force.
 fn off(found: &FoundFormula, hidden: &Hidden, truth: &Truth) -> f64 {
     let formula = Formula {
         name: found.name.clone(),

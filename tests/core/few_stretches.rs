@@ -82,8 +82,8 @@ fn what_may_be_chance_is_said_as_that() {
     assert!(change < 0.05, "{} for {}", with.step.error, offered.error);
 }
 
-/// A student's heater whose input steps eight times: what a dead time or a second lag explains is in the few stretches that
-/// hold a step, and a room wanders in all others.
+/// A student's heater whose input steps eight times: what a dead time or a second lag explains is in the few stretches
+/// that hold a step, and a room wanders in all others.
 #[test]
 fn a_lag_in_a_few_steps_is_said_as_a_class_that_may_be_chance() {
     let file = "failing/heater-steps-second-lag.csv";

@@ -1,8 +1,8 @@
 //! Do the intervals of gaps hold what they promise? Rigs that nobody tuned: heavy and light loads, soft and stiff
 //! contacts, with noise and without any, on the bench of other physics and by the exact simulation.
 //!
-//! `cargo test` runs a few of the development seeds. The table of 200 rigs with a gap and 50 without a contact is printed
-//! by
+//! `cargo test` runs a few of the development seeds. The table of 200 rigs with a gap and 50 without a contact is
+//! printed by
 //!
 //! ```text
 //! HYSTERON_BENCH=full cargo test -p hysteron-core --test core gap_coverage -- --nocapture
@@ -271,8 +271,8 @@ impl Found {
 /// Standard errors of a normal distribution within which 95 % lie.
 const NORMAL_95: f64 = 1.96;
 
-/// Of the rigs of a kind: how many, stated, held by their interval, and within 5 %; median error and standard error in per
-/// cent of the gap.
+/// Of the rigs of a kind: how many, stated, held by their interval, and within 5 %; median error and standard error in
+/// per cent of the gap.
 struct Row {
     count: usize,
     stated: usize,
@@ -366,7 +366,8 @@ fn intervals_hold_the_gap_of_rigs_that_nobody_tuned() {
         claimed.len()
     );
     assert_eq!(claimed, Vec::<String>::new());
-    // Of eight with a chance of 97 % each (what is stated of 200), seven or more: 98 %. All of them are asked for nine in ten.
+    // Of eight with a chance of 97 % each (what is stated of 200), seven or more: 98 %. All of them are asked for nine
+    // in ten.
     assert!(10 * row.stated >= 9 * row.count || row.count - row.stated <= 1);
     // Of eight with a chance of 95 % each, six or more: 99 %.
     assert!(100 * row.held >= 75 * row.stated);

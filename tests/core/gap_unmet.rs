@@ -1,8 +1,8 @@
-//! Drifting tests in which the load is never met, or hangs on a shaft: no switch of the relay, no round-off and no spring is
-//! taken for the end of a gap, however the torque was sampled.
+//! Drifting tests in which the load is never met, or hangs on a shaft: no switch of the relay, no round-off and no
+//! spring is taken for the end of a gap, however the torque was sampled.
 //!
-//! `cargo test` runs some of the development seeds; `HYSTERON_BENCH=full` runs fifty, and `HYSTERON_BENCH_SEEDS=N` fifty
-//! from seed N on.
+//! `cargo test` runs some of the development seeds; `HYSTERON_BENCH=full` runs fifty, and `HYSTERON_BENCH_SEEDS=N`
+//! fifty from seed N on.
 
 #![allow(
     clippy::disallowed_methods,
@@ -120,7 +120,8 @@ fn instantaneous(run: &drive::DriveRun, noise: f64, random: &mut Random) -> Meas
     }
 }
 
-/// What is claimed of each record, with its name and whether its load is held by dry friction; nothing where nothing is.
+/// What is claimed of each record, with its name and whether its load is held by dry friction; nothing where nothing
+/// is.
 fn claims(
     seeds: std::ops::Range<u64>,
     of: impl Fn(u64) -> (String, Measurement, bool) + Sync,

@@ -368,7 +368,8 @@ fn a_decimal_comma_that_comes_late_is_still_one() {
     );
 }
 
-/// What a controller calls input and output is the other way round in the loop; a set point is wanted of what comes out.
+/// What a controller calls input and output is the other way round in the loop; a set point is wanted of what comes
+/// out.
 #[test]
 fn beside_a_set_point_the_output_may_be_that_of_a_controller() {
     let log = |header: &str, swap: bool| {

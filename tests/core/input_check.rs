@@ -1,5 +1,5 @@
-//! An input is doubted only where it did not act: not where runs are joined, where a body sticks or hangs on a spring, where
-//! a valve is no straight line, or where a sensor is coarse.
+//! An input is doubted only where it did not act: not where runs are joined, where a body sticks or hangs on a spring,
+//! where a valve is no straight line, or where a sensor is coarse.
 
 use std::f64::consts::TAU;
 

@@ -959,7 +959,8 @@ fn foreign(name: &str) -> Option<Record> {
 
 #[test]
 fn heaters_of_others_give_their_models() {
-    // Known of six records of the chamber together: K 133 to 137, T 560 to 576, T2 39 to 45. Single ones give T 491 to 569.
+    // Known of six records of the chamber together: K 133 to 137, T 560 to 576, T2 39 to 45. Single ones give T 491 to
+    // 569.
     for name in ["incubator-exp1.csv", "incubator-exp2-mean-3-decimals.csv"] {
         let Some(record) = foreign(name) else {
             continue;

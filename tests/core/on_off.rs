@@ -51,8 +51,8 @@ fn cycle_of(settled: &Settled) -> &hysteron_core::on_off::OnOffCycle {
         .unwrap_or_else(|| panic!("{settled:?}"))
 }
 
-/// A heater at a first-order lag that must stay off for longer than the hysteresis asks: off from the upper threshold for
-/// this time, on from there to the upper threshold again.
+/// A heater at a first-order lag that must stay off for longer than the hysteresis asks: off from the upper threshold
+/// for this time, on from there to the upper threshold again.
 #[test]
 fn a_shortest_time_off_in_closed_form() {
     let (gain, time, off) = (2.0, 10.0, 6.0);
@@ -288,8 +288,8 @@ fn a_plant_in_discrete_time_as_its_recursion() {
     close(cycle.multiplier.unwrap(), 0.7_f64.powf(0.5 * samples), 1e-6);
 }
 
-/// The describing function comes near the exact cycle; without hysteresis there is an inner balance as well, which is not
-/// stable. Each by hand: the first harmonic of what the controller puts out for a sine, `N P = -1`.
+/// The describing function comes near the exact cycle; without hysteresis there is an inner balance as well, which is
+/// not stable. Each by hand: the first harmonic of what the controller puts out for a sine, `N P = -1`.
 #[test]
 fn the_first_harmonic_of_three_positions() {
     for hysteresis in [0.02, 0.0] {
@@ -334,7 +334,8 @@ fn harmonic_by_hand(amplitude: f64, on: f64, off: f64) -> num_complex::Complex<f
     num_complex::Complex::new(sum[0], sum[1])
 }
 
-/// A heater alone, 0 or 1: around half of what it can reach it is the relay of 0.5 to either side; elsewhere the mean counts.
+/// A heater alone, 0 or 1: around half of what it can reach it is the relay of 0.5 to either side; elsewhere the mean
+/// counts.
 #[test]
 fn the_first_harmonic_of_a_heater_alone() {
     let both = continuous(three_lags(0.0), relay(0.5, 0.05));

@@ -273,8 +273,8 @@ fn a_load_that_rubs_is_found_behind_its_shaft() {
     }
 }
 
-/// Nobody can simulate for long where such a load is: every contact multiplies what was wrong before it. The momentum that
-/// the motor loses tells it.
+/// Nobody can simulate for long where such a load is: every contact multiplies what was wrong before it. The momentum
+/// that the motor loses tells it.
 #[test]
 fn a_load_that_is_met_again_and_again_is_found_behind_its_gap() {
     let load = Load {
@@ -364,8 +364,8 @@ fn cogging_of_a_long_axis_is_found() {
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
-/// A loop too soft to carry the body over a tooth at every move: it lies in the troughs, and a model without them takes it
-/// for another body altogether.
+/// A loop too soft to carry the body over a tooth at every move: it lies in the troughs, and a model without them takes
+/// it for another body altogether.
 #[test]
 fn cogging_that_holds_the_body_is_found() {
     let (amplitude, teeth) = (0.03, 12.0);
@@ -378,7 +378,8 @@ fn cogging_that_holds_the_body_is_found() {
     assert!(d.verdict.complete, "{}", d.verdict.text);
 }
 
-/// A body of `drive` far off what a controller wants of it: only on its way there does the amplifier reach its `limit`, N m.
+/// A body of `drive` far off what a controller wants of it: only on its way there does the amplifier reach its `limit`,
+/// N m.
 fn starting_far_off(drive: &DriveRig, limit: f64, samples: usize) -> Measurement {
     const SUBSTEPS: usize = 50;
     let step = drive.sampling / SUBSTEPS as f64;

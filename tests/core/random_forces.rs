@@ -1,5 +1,5 @@
-//! A body that is pushed at random between the samples: what a controller that is faster than the record, or a rough way,
-//! does to it. No model can know that, and nothing is missing.
+//! A body that is pushed at random between the samples: what a controller that is faster than the record, or a rough
+//! way, does to it. No model can know that, and nothing is missing.
 
 use std::fmt::Write as _;
 

@@ -47,7 +47,8 @@ fn check_near(d: &Diagnosis, symbol: &str, known: f64, tolerance: f64) {
 
 const SPRING: &[&str] = &["gravity", "return_spring"];
 
-/// A robot servo with an arm, in volts: neither the arm's weight nor friction that grows with load explains it without the other.
+/// A robot servo with an arm, in volts: neither the arm's weight nor friction that grows with load explains it without
+/// the other.
 #[test]
 fn an_arm_has_weight_and_its_gears_rub_the_more_the_more_they_carry() {
     let Some(d) = diagnose_shared("servo-xl330-volts.csv") else {
@@ -56,8 +57,8 @@ fn an_arm_has_weight_and_its_gears_rub_the_more_the_more_they_carry() {
     check(&d, &[SPRING, &["load_dependent_friction"]]);
 }
 
-/// An electronic oscillator with a hardening spring, nine samples to a period: J 5.37e-6, d 2.25e-4, k 0.99, k3 3.9. It moves in
-/// metres: the weight of an arm goes with the sine of an angle, and is not in the class of the spring.
+/// An electronic oscillator with a hardening spring, nine samples to a period: J 5.37e-6, d 2.25e-4, k 0.99, k3 3.9. It
+/// moves in metres: the weight of an arm goes with the sine of an angle, and is not in the class of the spring.
 #[test]
 fn an_oscillator_has_its_hardening_spring() {
     let Some(d) = diagnose_shared("silverbox-as-drive.csv") else {
@@ -151,8 +152,8 @@ fn so_do_those_of_an_arm_that_is_made_here() {
     check_near(&d, "m", SHARE, 0.03);
 }
 
-/// A motor and a load behind a gap that bounces, under a random binary torque and without a drifting test: made by another
-/// simulator, with bodies of 2e-3 kg m^2, a half gap of 60 mrad and a contact of 300 N m/rad.
+/// A motor and a load behind a gap that bounces, under a random binary torque and without a drifting test: made by
+/// another simulator, with bodies of 2e-3 kg m^2, a half gap of 60 mrad and a contact of 300 N m/rad.
 #[test]
 fn a_gap_is_measured_under_a_random_binary_torque() {
     let Some(d) = diagnose_in("measurements-2", "prbs-backlash.csv") else {

@@ -1,5 +1,5 @@
-//! What a record tells of itself: noise and steps of its sensors however they are printed, the operating point of a process, and
-//! which ways it went.
+//! What a record tells of itself: noise and steps of its sensors however they are printed, the operating point of a
+//! process, and which ways it went.
 
 #![allow(
     clippy::large_types_passed_by_value,

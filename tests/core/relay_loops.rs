@@ -142,8 +142,8 @@ fn a_process_makes_its_cycle_with_its_second_lag_only() {
     );
 }
 
-/// A cart of 6.28 kg whose owner knows dry friction of 2.8 to 3.2 N and no other. Neither dry nor viscous friction explains the
-/// motion within a cycle, or does better, and both make the cycle.
+/// A cart of 6.28 kg whose owner knows dry friction of 2.8 to 3.2 N and no other. Neither dry nor viscous friction
+/// explains the motion within a cycle, or does better, and both make the cycle.
 #[test]
 fn friction_of_a_real_cart_may_be_dry() {
     for file in [

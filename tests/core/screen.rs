@@ -45,7 +45,8 @@ fn a_controller_is_not_taken_for_the_plant() {
     assert_eq!(ids(&found), Vec::<Vec<&str>>::new());
 }
 
-/// A ball-screw axis: mass within 5 % of what its authors identified, and with the sign of its input turned that is said.
+/// A ball-screw axis: mass within 5 % of what its authors identified, and with the sign of its input turned that is
+/// said.
 #[test]
 fn a_real_axis_has_its_mass() {
     let screened = |path: &str| {
@@ -111,8 +112,8 @@ fn effects_of_a_drive_are_named_alone() {
     check(&asymmetry.measure(), "gain_asymmetry", "a", 0.06, 0.05);
 }
 
-/// Motor and load of a record in which a load behind a gap is moved: inertia of both to a fifth, the half gap to a third. That is
-/// enough to begin an exact simulation, and no more: what bounces is taken for what does not.
+/// Motor and load of a record in which a load behind a gap is moved: inertia of both to a fifth, the half gap to a
+/// third. That is enough to begin an exact simulation, and no more: what bounces is taken for what does not.
 fn check_gap(found: &Screening, inertia: f64, load: f64, half_gap: f64) {
     let subset = &found.subsets[0];
     let ids: Vec<&str> = subset.effects.iter().map(|e| e.as_str()).collect();
@@ -134,8 +135,8 @@ fn check_gap(found: &Screening, inertia: f64, load: f64, half_gap: f64) {
     }
 }
 
-/// The moves of a servo show a load that nobody measured, without a relay and without a simulation: on a rig that steps as the
-/// project's own does not, and on the project's own.
+/// The moves of a servo show a load that nobody measured, without a relay and without a simulation: on a rig that steps
+/// as the project's own does not, and on the project's own.
 #[test]
 fn a_load_behind_a_gap_shows_in_the_moves_of_a_servo() {
     for (name, half_gap) in [("servo-backlash", 0.05), ("servo-backlash-dry", 0.06)] {
@@ -347,7 +348,8 @@ fn a_record_that_shows_the_controller_alone_is_not_complete() {
     assert!(!verdict.complete && verdict.unknown, "{}", verdict.text);
 }
 
-/// A sine and its response are phases of one another, as are the terms of a controller; but it does not answer to chance.
+/// A sine and its response are phases of one another, as are the terms of a controller; but it does not answer to
+/// chance.
 #[test]
 fn an_input_that_swings_by_itself_is_no_controller() {
     let at = |k: usize, period: f64| (k as f64 * std::f64::consts::TAU / period).sin();

@@ -9,8 +9,8 @@ use hysteron_core::rig::Random;
 
 const NOISE: f64 = 0.05;
 
-/// A tank that fills at this `rate` per second and unit of its input, and empties with this time constant, s; its input is
-/// `switched` every so many of its samples, ten seconds apart. As a file.
+/// A tank that fills at this `rate` per second and unit of its input, and empties with this time constant, s; its input
+/// is `switched` every so many of its samples, ten seconds apart. As a file.
 fn tank(seed: u64, rate: f64, time_constant: f64, switched: usize, samples: usize) -> String {
     let mut random = Random::new(seed);
     let mut level = 0.0;

@@ -24,7 +24,8 @@ const SAMPLES: usize = 1500;
 /// Steps between two samples, one second apart.
 const STEPS: usize = 200;
 
-/// A heater behind a wall and a dead time, switched by a relay, as a file; before the relay it is off for so many samples.
+/// A heater behind a wall and a dead time, switched by a relay, as a file; before the relay it is off for so many
+/// samples.
 fn heater(seed: u64, wall: f64, dead_time: f64, off: usize) -> String {
     let step = 1.0 / STEPS as f64;
     let mut random = Random::new(seed);
@@ -121,7 +122,8 @@ fn an_output_that_is_on_its_way_at_first_was_driven_before() {
     }
 }
 
-/// A record that was cut out of a longer one: the wall holds what the heater gave before, of which the record says nothing.
+/// A record that was cut out of a longer one: the wall holds what the heater gave before, of which the record says
+/// nothing.
 #[test]
 fn a_wall_that_is_warm_at_first_is_as_warm_as_the_record_shows() {
     let classes: &[&str] = &["second_lag", "sensor_lag"];

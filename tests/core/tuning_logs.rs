@@ -101,8 +101,8 @@ fn klippers_gains_alone_tell_what_it_read() {
     );
 }
 
-/// The reports of Marlin in a session, each as the power, 0 to 127, and the temperature make it; and by how much its 2 s
-/// slow the bench's plant down.
+/// The reports of Marlin in a session, each as the power, 0 to 127, and the temperature make it; and by how much its 2
+/// s slow the bench's plant down.
 fn reports(report: impl Fn(f64, f64) -> String) -> (f64, String) {
     let record = heated(1);
     let lines = record.input.iter().zip(&record.output);
@@ -144,8 +144,8 @@ fn the_bed_is_read_where_marlin_tunes_the_bed() {
 #[test]
 fn the_cycles_of_marlin_lead_to_gains() {
     let text = "PID Autotune start\n bias: 92 d: 92 min: 196.56 max: 203.75\n \
-                bias: 90 d: 90 min: 196.64 max: 203.82 Ku: 31.92 Tu: 39.45\n Classic PID\n Kp: 19.15 Ki: 0.97 Kd: 94.44\n\
-                PID Autotune finished! Put the last Kp, Ki and Kd constants from below into Configuration.h\n";
+                bias: 90 d: 90 min: 196.64 max: 203.82 Ku: 31.92 Tu: 39.45\n Classic PID\n Kp: 19.15 Ki: 0.97 Kd: \
+                94.44\nPID Autotune finished! Put the last Kp, Ki and Kd constants from below into Configuration.h\n";
     let result = session(text, Source::Marlin).tune(None).unwrap();
     let (cycle, told) = (result.cycle.unwrap(), result.ultimate.unwrap());
     assert_eq!(cycle.levels, [0.0, 180.0]);
@@ -308,8 +308,8 @@ fn home_assistants_gains_alone_tell_what_it_read() {
     let kp = gain / 34.0;
     let line = |rule: &str, kp: f64| {
         format!(
-            "2024-02-28 22:39:20.876 WARNING (MainThread) [custom_components.smart_thermostat.climate] Smart thermostat \
-             Living (climate.living) PID Autotuner output with {rule} rule: Kp={kp}, Ki={}, Kd={}\n",
+            "2024-02-28 22:39:20.876 WARNING (MainThread) [custom_components.smart_thermostat.climate] Smart \
+             thermostat Living (climate.living) PID Autotuner output with {rule} rule: Kp={kp}, Ki={}, Kd={}\n",
             kp / (period / 40.0),
             kp * period / 160.0
         )

@@ -75,7 +75,8 @@ const ROOMS: [&str; 45] = [
     "app: shell",
 ];
 
-/// The effects that are named elsewhere: what contacts tell of a gap, and what turns viscous friction into dry friction.
+/// The effects that are named elsewhere: what contacts tell of a gap, and what turns viscous friction into dry
+/// friction.
 const NAMED_ELSEWHERE: [(&str, &str); 2] = [
     ("core/src/criticism/dry_or_viscous.rs", "coulomb_friction"),
     ("core/src/criticism/knowledge.rs", "backlash"),

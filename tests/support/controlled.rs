@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use hysteron_core::measurement::{ImportOptions, Measurement, import};
 use hysteron_core::rig::Random;
 
-/// Two lags in a row under an input that may depend on the output, sampled each second: a process by other means than the model's.
+/// Two lags in a row under an input that may depend on the output, sampled each second: a process by other means than
+/// the model's.
 pub fn process(mut input: impl FnMut(usize, f64) -> f64) -> Measurement {
     let mut random = Random::new(11);
     let (mut heater, mut sensor, mut surroundings) = (0.0, 0.0, 0.0);

@@ -1,5 +1,5 @@
-//! Forces that no search knows beforehand, drawn from a grammar of their own, on a drive that uses nothing of the model under test:
-//! Runge-Kutta steps, a sampled controller, sensors with white noise.
+//! Forces that no search knows beforehand, drawn from a grammar of their own, on a drive that uses nothing of the model
+//! under test: Runge-Kutta steps, a sampled controller, sensors with white noise.
 
 use hysteron_core::measurement::Measurement;
 use hysteron_core::rig::Random;

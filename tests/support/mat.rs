@@ -75,8 +75,8 @@ fn doubles(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// A file with a timeseries of each name, its times and values, as Simulink logs them: the variables only refer to objects,
-/// which a subsystem at the end describes. After what is known of the format (`MATLAB` does not publish it).
+/// A file with a timeseries of each name, its times and values, as Simulink logs them: the variables only refer to
+/// objects, which a subsystem at the end describes. After what is known of the format (`MATLAB` does not publish it).
 pub fn timeseries(logged: &[(&str, Vec<f64>, Vec<f64>)]) -> Vec<u8> {
     // The names that the description uses, counted from 1.
     const NAMES: [&str; 3] = ["timeseries", "Time_", "Data_"];

@@ -38,8 +38,8 @@ pub struct Arguments {
     /// to fit, and where they start if you like: "bump: -a*exp(-((x-b)/c)^2); b = 0.5"
     #[arg(long, value_name = "NAME: FORMULA", allow_hyphen_values = true)]
     pub effect: Vec<String>,
-    /// Look for a formula of what the effects leave: an expression of x, v, u, t (a process: y, u, t) with its parameters,
-    /// up to three terms
+    /// Look for a formula of what the effects leave: an expression of x, v, u, t (a process: y, u, t) with its
+    /// parameters, up to three terms
     #[arg(long)]
     pub discover: bool,
     /// How far the next experiment may go where effects cannot be told apart: the largest input, the longest record

@@ -142,8 +142,8 @@ fn silence(map: &BacklashMap, scale: f64, unit: &str) -> String {
                 .to_owned()
         }
         Some(MapSilence::Yields { span }) => format!(
-            "it moves within {:.3} {unit} of the motor, and what joins them yields over most of that, as a shaft does: its \
-             map shows no gap",
+            "it moves within {:.3} {unit} of the motor, and what joins them yields over most of that, as a shaft does: \
+             its map shows no gap",
             scale * span
         ),
         Some(MapSilence::OneWay) | None => {

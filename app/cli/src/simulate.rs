@@ -24,7 +24,8 @@ pub struct Arguments {
     /// Loop, drive or servo to run: tables [plant] or [drive], [relay] and [run]; or [servo] and [run]
     #[arg(value_name = "SCENARIO.toml")]
     file: PathBuf,
-    /// Where to write time, input and output; the output is what the relay or controller sees, with the noise if there is some
+    /// Where to write time, input and output; the output is what the relay or controller sees, with the noise if there
+    /// is some
     #[arg(long, value_name = "OUT.csv")]
     csv: Option<PathBuf>,
 }

@@ -1,8 +1,8 @@
 //! Lessons: texts in `assets/lessons/` with live buttons and a question that the app checks.
 //!
-//! A lesson is a file for each language and a line in `SOURCES`. Its text is Markdown: `# title`, `## heading`, paragraphs,
-//! `- points`, `**strong**`, `` `formula` ``, and links to states of the app, `[Set ε to 0.5](#v1;explore;...)`.
-//! Lines that begin with a key say the rest:
+//! A lesson is a file for each language and a line in `SOURCES`. Its text is Markdown: `# title`, `## heading`,
+//! paragraphs, `- points`, `**strong**`, `` `formula` ``, and links to states of the app, `[Set ε to
+//! 0.5](#v1;explore;...)`. Lines that begin with a key say the rest:
 //!
 //! ```text
 //! minutes: 5

@@ -8,8 +8,8 @@ use crate::language::tr;
 use crate::theme;
 use crate::widgets::typed::{DECIMALS, Typed};
 
-/// A slider over `value * scale`, reset by a double click or by Delete. A value from elsewhere (a map, a dragged line, a
-/// link) may lie beyond the slider and stays.
+/// A slider over `value * scale`, reset by a double click or by Delete. A value from elsewhere (a map, a dragged line,
+/// a link) may lie beyond the slider and stays.
 pub fn slider(
     ui: &mut egui::Ui,
     value: &mut f64,

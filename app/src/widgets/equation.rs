@@ -6,7 +6,8 @@ use std::sync::Arc;
 use egui::{Color32, FontId, Galley, Painter, Pos2, Rect, Sense, Ui, Vec2, vec2};
 use hysteron_core::equation::{Part, Piece, parse, pieces};
 
-/// Size of an index and of an exponent, by how much they are moved, and the parts of a fraction, in sizes of the letter.
+/// Size of an index and of an exponent, by how much they are moved, and the parts of a fraction, in sizes of the
+/// letter.
 const SMALL: f32 = 0.72;
 const LOWERED: f32 = 0.22;
 const RAISED: f32 = 0.42;

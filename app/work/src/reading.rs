@@ -1,5 +1,5 @@
-//! How a file is read that does not say itself what its columns are: as the options of the command line say it, so that it
-//! can be kept, and read again elsewhere.
+//! How a file is read that does not say itself what its columns are: as the options of the command line say it, so that
+//! it can be kept, and read again elsewhere.
 
 use hysteron_core::measurement::{ImportOptions, Kind, Mapping, MappingError, PeriodError};
 use serde::{Deserialize, Serialize};

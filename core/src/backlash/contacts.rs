@@ -33,17 +33,17 @@ const LEADING: f64 = 0.35;
 const BEGIN_STEP: f64 = 0.125;
 const BEFORE: f64 = 2.5;
 
-/// Begins are alike whose squares differ by less than this of the noise (95 % of a normal distribution), or than this share
-/// of the change where there is none.
+/// Begins are alike whose squares differ by less than this of the noise (95 % of a normal distribution), or than this
+/// share of the change where there is none.
 const ALIKE: f64 = 2.0;
 const ROUND_OFF: f64 = 1e-6;
 
 /// Pause before a contact, in cycles, after which the load was free and not still touched.
 const FREE: f64 = 0.25;
 
-/// Cycles before and after a contact in which nothing acts, least samples of them, and the largest share of
-/// the force in a contact that may act there: on in the direction of the contact, in either direction, and below which three
-/// in four must lie. Loads in gaps have up to 0.18 in either direction, shafts 0.3 and more of the last two.
+/// Cycles before and after a contact in which nothing acts, least samples of them, and the largest share of the force
+/// in a contact that may act there: on in the direction of the contact, in either direction, and below which three in
+/// four must lie. Loads in gaps have up to 0.18 in either direction, shafts 0.3 and more of the last two.
 const ABOUT: f64 = 0.35;
 const LEAST_ABOUT: f64 = 4.0;
 const SHARP: f64 = 0.12;
@@ -173,8 +173,8 @@ pub(super) fn touches(
     }
 }
 
-/// Whether the asymmetry flips where a touch begins: what is unexplained there is the flip, which comes too seldom to be placed
-/// by what is usual.
+/// Whether the asymmetry flips where a touch begins: what is unexplained there is the flip, which comes too seldom to
+/// be placed by what is usual.
 fn flips_at(record: &Record, begin: f64) -> bool {
     let from = (begin - AT_FLIP).max(0.0) as usize;
     let to = ((begin + AT_FLIP).ceil().max(0.0) as usize + 1).min(record.len());
@@ -187,9 +187,9 @@ fn flips_at(record: &Record, begin: f64) -> bool {
 const AT_FLIP: f64 = 1.0;
 const FLIPS: f64 = 0.1;
 
-/// Whether the unexplained force acts within the contacts and not about them: a load is touched at one end
-/// of the cycle and left when the motor turns round, while a force that depends on position, speed or time acts all through
-/// it, and a shaft pulls back after it has pushed.
+/// Whether the unexplained force acts within the contacts and not about them: a load is touched at one end of the cycle
+/// and left when the motor turns round, while a force that depends on position, speed or time acts all through it, and
+/// a shaft pulls back after it has pushed.
 fn is_sharp(values: &[f64], touches: &[Touch], cycles: &Cycles) -> bool {
     let last = values.len() - 1;
     let at = |sample: f64| values[(sample.max(0.0) as usize).min(last)];
@@ -267,9 +267,9 @@ fn cumulative_sum(values: &[f64], sign: f64, noise: f64, wait: usize) -> Vec<(us
 
 /// Begin of a contact between the samples `span`, between samples: its leading edge is a broken line.
 ///
-/// Hinkley 1969, "Inference about the intersection in two-phase regression", Biometrika 56. A damped
-/// contact pushes at once, so that the velocity falls linearly at first. Of begins that explain the edge alike the middle
-/// one is taken: of a hard impact only the sample is seen in which it was.
+/// Hinkley 1969, "Inference about the intersection in two-phase regression", Biometrika 56. A damped contact pushes at
+/// once, so that the velocity falls linearly at first. Of begins that explain the edge alike the middle one is taken:
+/// of a hard impact only the sample is seen in which it was.
 fn begin(values: &[f64], span: (usize, usize), leading: usize, noise: f64) -> Option<f64> {
     let from = span.0.saturating_sub(AROUND);
     let change = values[span.1] - values[span.0];

@@ -17,13 +17,13 @@ use super::verdict;
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Systematic error of a contact's begin where the velocity was measured, samples, and as share of how long it lasts: a
-/// straight edge is found up to so much early or late at a hard, a soft, a little and a much damped contact (damping ratio
-/// 0.1 to 0.6).
+/// straight edge is found up to so much early or late at a hard, a soft, a little and a much damped contact (damping
+/// ratio 0.1 to 0.6).
 const PLACE: f64 = 0.1;
 const PLACE_SHARE: f64 = 0.06;
 
-/// Share of the way that the load flies during a traverse by which that may be wrong: no law of friction is right to more
-/// digits.
+/// Share of the way that the load flies during a traverse by which that may be wrong: no law of friction is right to
+/// more digits.
 const FLIGHT: f64 = 0.03;
 /// The same in samples where the velocity was not measured.
 const POSITION_PLACE: f64 = 0.5;
@@ -264,9 +264,9 @@ fn disagree(contacts: &[Contact], fit: &Fit) -> bool {
     disagreement(&traverses(contacts, fit), 2.0 * fit.play.half_gap) >= AGREE
 }
 
-/// Where the traverses disagree touches too light to be seen may have pushed the load along: the fit that counts with it.
-/// They can push along what moves by itself only: a load that dry friction stops between two cycles is hit in each anew, and
-/// that is seen. `period` is that of a cycle, s.
+/// Where the traverses disagree touches too light to be seen may have pushed the load along: the fit that counts with
+/// it. They can push along what moves by itself only: a load that dry friction stops between two cycles is hit in each
+/// anew, and that is seen. `period` is that of a cycle, s.
 fn pushed_unseen(
     contacts: &[Contact],
     events: &[SeenContact],
@@ -290,7 +290,8 @@ fn pushed_unseen(
     (stopped < SLOWED * median(&mut pushes)).then_some(again)
 }
 
-/// Share of the speed that a contact gives the load which dry friction may take within a cycle of one that moves by itself.
+/// Share of the speed that a contact gives the load which dry friction may take within a cycle of one that moves by
+/// itself.
 const SLOWED: f64 = 0.1;
 
 /// Contacts at one end of the gap between two at the other from which the motor did not go anything like the gap: what

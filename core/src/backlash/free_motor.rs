@@ -16,8 +16,8 @@ const LAGS: (usize, usize) = (FRICTION_LAGS, 14);
 /// Times the median change anywhere that the median one at a switch may be unexplained if the torque is as written.
 const AT_SWITCHES: f64 = 3.0;
 
-/// Share of the velocity's swing to which a free motor is known at best: no equation of a motor is right to more digits, and
-/// a record without noise would show the error of ours instead.
+/// Share of the velocity's swing to which a free motor is known at best: no equation of a motor is right to more
+/// digits, and a record without noise would show the error of ours instead.
 const DISCREPANCY: f64 = 3e-4;
 
 /// Rounds of reweighting; the weights settle within a few.
@@ -61,8 +61,8 @@ impl FreeMotor {
     /// Where most cycles push the load they would pass for the motor's own, so that it is then fitted
     /// to the cycles that are free by their drift. `None` where that has no answer.
     ///
-    /// The torque of a sample is taken as it was written, or with its switches placed inside the samples by the velocity:
-    /// as the record shows it, by what either leaves unexplained where the relay switches.
+    /// The torque of a sample is taken as it was written, or with its switches placed inside the samples by the
+    /// velocity: as the record shows it, by what either leaves unexplained where the relay switches.
     pub fn new(record: &Record, cycles: &Cycles) -> Option<Self> {
         let written = Self::with_input(record, cycles, &record.input)?;
         let switches = Switches::new(record, 2.0 * cycles.gain);
@@ -90,8 +90,8 @@ impl FreeMotor {
         }
     }
 
-    /// Standard deviation of the unexplained change of velocity from sample `from` to `to` by switches that could not be
-    /// placed, rad/s or m/s.
+    /// Standard deviation of the unexplained change of velocity from sample `from` to `to` by switches that could not
+    /// be placed, rad/s or m/s.
     pub fn unsure(&self, from: usize, to: usize) -> f64 {
         let part = self
             .unsure
@@ -281,8 +281,8 @@ fn noise(record: &Record, unexplained: &[f64], cycles: &Cycles) -> f64 {
     [1, 3, far].into_iter().map(level).fold(0.0, f64::max)
 }
 
-/// What the calmer cycles show from the least to the largest unexplained velocity, as the standard deviation of a noise that
-/// would.
+/// What the calmer cycles show from the least to the largest unexplained velocity, as the standard deviation of a noise
+/// that would.
 fn calm(unexplained: &[f64], cycles: &Cycles) -> f64 {
     let mut ranges: Vec<f64> = cycles
         .starts

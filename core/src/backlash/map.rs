@@ -20,15 +20,16 @@ const PUSHED: f64 = 0.25;
 /// dry friction slows the load with a force against its motion as well, but near the other branch.
 const OUTER: f64 = 0.3;
 
-/// Second difference of the load's position, as share of the motor's travel, below which it does not move: an encoder of
-/// 30 bits over the travel resolves no less, and what a computed load does there is round-off.
+/// Second difference of the load's position, as share of the motor's travel, below which it does not move: an encoder
+/// of 30 bits over the travel resolves no less, and what a computed load does there is round-off.
 const RESOLVED: f64 = 1e-9;
 
-/// Share of the span of `x1 - x2` that a gap must be: what the contacts yield is the rest, and a spring that yields more than
-/// it joins has no gap that could be told from it.
+/// Share of the span of `x1 - x2` that a gap must be: what the contacts yield is the rest, and a spring that yields
+/// more than it joins has no gap that could be told from it.
 const MOSTLY_GAP: f64 = 0.5;
 
-/// Part of the gap about its middle, on either side, and the share of the samples in it in which the load may be pushed.
+/// Part of the gap about its middle, on either side, and the share of the samples in it in which the load may be
+/// pushed.
 const INNER: f64 = 0.25;
 const FREE_OF_PUSHES: f64 = 0.05;
 
@@ -75,7 +76,8 @@ pub enum MapSilence {
     NotMoved,
     /// It was pushed one way at most.
     OneWay,
-    /// What joins the masses yields over most of the way that they move against each other, as a shaft or preloaded gears do.
+    /// What joins the masses yields over most of the way that they move against each other, as a shaft or preloaded
+    /// gears do.
     Yields {
         /// From the least to the largest `x1 - x2`, rad or m.
         span: f64,
@@ -93,7 +95,8 @@ pub enum MapError {
     TooShort(usize),
 }
 
-/// The map of a record with `x1` and `x2` (Fig. 7 of the paper): the gap as a reference, and how unlike the branches are.
+/// The map of a record with `x1` and `x2` (Fig. 7 of the paper): the gap as a reference, and how unlike the branches
+/// are.
 ///
 /// Where the load accelerates outwards it is pushed, and there `x1 - x2` is the half gap plus what the
 /// contact yields, which grows with the acceleration. The branch is the offset where the line through
@@ -178,8 +181,8 @@ pub fn backlash_map(measurement: &Measurement) -> Result<BacklashMap, MapError> 
     })
 }
 
-/// Second differences of the load's position (rad or m in the window squared), and the half window; `None` where none stands
-/// out from what the sensor writes of a load at rest, or reaches `least`.
+/// Second differences of the load's position (rad or m in the window squared), and the half window; `None` where none
+/// stands out from what the sensor writes of a load at rest, or reaches `least`.
 fn accelerations(points: &[[f64; 2]], least: f64) -> Option<(usize, Vec<f64>)> {
     let quantum = points
         .windows(2)

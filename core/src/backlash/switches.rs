@@ -1,10 +1,10 @@
 //! Where in a sample does the relay switch?
 //!
-//! A recorder may write the torque at the instant of each sample, which says nothing of a switch between two samples: taken
-//! for the mean of the sample it is wrong by up to twice the gain there, which looks like an impact. The velocity shows the
-//! switch: it runs along one line before and along another one after it, and they meet where the torque changed (Hinkley
-//! 1969). A torque that was held from sample to sample, or averaged, has its change at the end of a sample, and the same
-//! construction finds it there.
+//! A recorder may write the torque at the instant of each sample, which says nothing of a switch between two samples:
+//! taken for the mean of the sample it is wrong by up to twice the gain there, which looks like an impact. The velocity
+//! shows the switch: it runs along one line before and along another one after it, and they meet where the torque
+//! changed (Hinkley 1969). A torque that was held from sample to sample, or averaged, has its change at the end of a
+//! sample, and the same construction finds it there.
 
 use super::record::Record;
 use crate::order::median;

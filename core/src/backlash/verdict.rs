@@ -21,8 +21,8 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
                 .to_owned()
         }
         Quality::NoEngagement if !flips => format!(
-            "no engagement seen: the motor met no load on its {travel} {unit} of travel, and the asymmetry of the relay \
-             never changed its sign, so that this is no drifting test either"
+            "no engagement seen: the motor met no load on its {travel} {unit} of travel, and the asymmetry of the \
+             relay never changed its sign, so that this is no drifting test either"
         ),
         Quality::NoEngagement => {
             format!(
@@ -42,7 +42,8 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
         ),
         Quality::AssumedCentre => format!(
             "the gap is {}, if the motor stood in its middle at the start: the load was met at one side only ({} \
-             contacts), and the travel from the start to the first contact counts as half a gap; no traverse confirms it",
+             contacts), and the travel from the start to the first contact counts as half a gap; no traverse confirms \
+             it",
             value(estimate),
             estimate.contacts.len()
         ),
@@ -58,8 +59,8 @@ pub(super) fn too_few_samples(per_cycle: Option<f64>) -> String {
         format!(": a cycle of the relay has {n:.1}")
     });
     format!(
-        "too few samples to see contacts within a cycle{known}, and {ENOUGH_SAMPLES:.0} are needed; sample faster, or make the \
-         cycle longer by more hysteresis or less torque"
+        "too few samples to see contacts within a cycle{known}, and {ENOUGH_SAMPLES:.0} are needed; sample faster, or \
+         make the cycle longer by more hysteresis or less torque"
     )
 }
 

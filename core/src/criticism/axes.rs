@@ -15,7 +15,8 @@ const ALIKE: f64 = 0.25;
 /// left is round-off.
 const STEADY: f64 = 1e-9;
 
-/// A position that is summed up from a noisy velocity is off by this share of the travel at most, half a part of the axis.
+/// A position that is summed up from a noisy velocity is off by this share of the travel at most, half a part of the
+/// axis.
 const MOST_WANDERING: f64 = 0.02;
 
 /// Turns that a motor makes at least for its angle within a turn to be an axis of its own.
@@ -87,7 +88,8 @@ impl Parts {
     }
 }
 
-/// Every axis on which the residual is looked at; `velocity_unit` is that of the drive's velocity or of the process output.
+/// Every axis on which the residual is looked at; `velocity_unit` is that of the drive's velocity or of the process
+/// output.
 pub(super) fn axes(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Axis> {
     let mut axes = vec![continuous("time", "s", data.time.clone(), |a, b, _| {
         let [from, to] = [a, b].map(|t| moment(t, b - a));
@@ -264,7 +266,8 @@ fn ups(data: &Data) -> Vec<usize> {
     (1..data.len()).filter(is_up).collect()
 }
 
-/// Whether the input switches upwards at times that are alike, as in a loop that a relay closed: not one that is drawn or a staircase.
+/// Whether the input switches upwards at times that are alike, as in a loop that a relay closed: not one that is drawn
+/// or a staircase.
 fn has_period(data: &Data) -> bool {
     let ups = ups(data);
     let length = |pair: &[usize]| data.time[pair[1]] - data.time[pair[0]];

@@ -13,8 +13,8 @@ const ONE_OF: usize = 20;
 /// Noise by which an output must move while the input stays as it was at first, to tell when it began to.
 const MOVES: f64 = 20.0;
 
-/// Share of that way at which it has begun, and up to which it is watched; of the time until then, the share before it has
-/// begun of what moves on at a steady rate. A process that was on its way, ever slower, begins sooner.
+/// Share of that way at which it has begun, and up to which it is watched; of the time until then, the share before it
+/// has begun of what moves on at a steady rate. A process that was on its way, ever slower, begins sooner.
 const BEGUN: f64 = 0.1;
 const HALFWAY: f64 = 0.5;
 const STEADY: f64 = BEGUN / HALFWAY;
@@ -38,8 +38,8 @@ pub(super) fn begins_at_zero(outputs: &[Output]) -> bool {
     moving.all(|o| o.values[0].abs() < AT_REST * o.noise)
 }
 
-/// Whether an output lay still at first, wherever that was, and went its way later though the input stayed about as it was:
-/// so that came on with the record, and the process is late.
+/// Whether an output lay still at first, wherever that was, and went its way later though the input stayed about as it
+/// was: so that came on with the record, and the process is late.
 fn began_late(input: &[f64], output: &Output) -> bool {
     // Without an input none came on: what moves then was stored before.
     if input[0] == 0.0 {

@@ -53,8 +53,8 @@ pub(super) fn released(session: &Session, model: &Trial) -> Trial {
     Trial::new(session, fit)
 }
 
-/// Known values that the data contradict: with all of them released the model is better, and these end elsewhere; or nothing
-/// but noise is left since the data were too strong for them.
+/// Known values that the data contradict: with all of them released the model is better, and these end elsewhere; or
+/// nothing but noise is left since the data were too strong for them.
 pub(super) fn contradictions(session: &Session, model: &Trial) -> Vec<Contradiction> {
     let own = &model.scored;
     let held = &own.fit.structure;

@@ -55,7 +55,8 @@ pub(super) fn in_motion(velocity: &[f64], length: usize) -> Vec<usize> {
         .collect()
 }
 
-/// First samples after gaps in `time`, where rows are missing or runs are joined: what the input did there is not known.
+/// First samples after gaps in `time`, where rows are missing or runs are joined: what the input did there is not
+/// known.
 pub(super) fn pauses(time: &[f64]) -> Vec<usize> {
     let mut found = gaps(time);
     // What stands between two of them may be too short for a window.
@@ -84,8 +85,8 @@ pub(super) fn between(pauses: &[usize], velocity: &[f64], length: usize) -> Vec<
 
 /// Windows each with one of the contacts that were `felt`, samples in order: every contact multiplies what was wrong
 /// before it, and from far away a load may be met one swing of the motor too early or too late. They begin some swings
-/// before the contact, which tell the motion without it, at most half way from the contact before. Without one, they are
-/// so short, `usual` at most, that a contact too weak to be felt does not go on to another.
+/// before the contact, which tell the motion without it, at most half way from the contact before. Without one, they
+/// are so short, `usual` at most, that a contact too weak to be felt does not go on to another.
 pub(super) fn at_contacts(felt: &[usize], velocity: &[f64], usual: usize) -> Vec<usize> {
     let n = velocity.len();
     let turns = |k: &usize| velocity[*k] * velocity[k + 1] <= 0.0;

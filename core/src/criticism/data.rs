@@ -30,9 +30,9 @@ const PROCESS_BLOCK: usize = 50;
 /// Samples around a window start from which its state is first guessed.
 const GUESS_SAMPLES: usize = 5;
 
-/// Pieces of motion for each sample after which no further model with a hidden body is tried, and none at all: where so many
-/// do not explain a record, more would not, and it would take minutes. (A gap with friction takes some fifteen thousand, three
-/// effects of which two show only together a hundred thousand.)
+/// Pieces of motion for each sample after which no further model with a hidden body is tried, and none at all: where so
+/// many do not explain a record, more would not, and it would take minutes. (A gap with friction takes some fifteen
+/// thousand, three effects of which two show only together a hundred thousand.)
 const MOST_MOVES: [f64; 2] = [40_000.0, 150_000.0];
 
 /// A measurement made ready for fitting.
@@ -164,8 +164,8 @@ impl Data {
         self.blocks = cut::one_each(&self.windows, self.len());
     }
 
-    /// The same with what is fitted held back, and fitted what is held back. Where a window is many blocks, the first of them is
-    /// always fitted: without it the state in which the window begins is not told.
+    /// The same with what is fitted held back, and fitted what is held back. Where a window is many blocks, the first
+    /// of them is always fitted: without it the state in which the window begins is not told.
     pub fn turned(&self) -> Self {
         let mut turned = self.clone();
         for (k, block) in turned.blocks.iter_mut().enumerate() {

@@ -1,8 +1,9 @@
 //! Dry friction in the place of viscous friction, where a relay loop shows one amplitude.
 //!
-//! A cycle of one amplitude tells the energy that friction takes in it: `pi d w A^2` of a viscous one, `4 c A` of a dry one
-//! (harmonic balance; Tsypkin 1984). Whichever of them is fitted makes the same period and amplitude, so that only the shape of the
-//! motion tells them apart. Where neither explains that shape, and neither is better, the loop has the last word.
+//! A cycle of one amplitude tells the energy that friction takes in it: `pi d w A^2` of a viscous one, `4 c A` of a dry
+//! one (harmonic balance; Tsypkin 1984). Whichever of them is fitted makes the same period and amplitude, so that only
+//! the shape of the motion tells them apart. Where neither explains that shape, and neither is better, the loop has the
+//! last word.
 
 use super::explain::{Trial, difference};
 use super::fit::{Fit, least};
@@ -30,7 +31,8 @@ pub(super) struct InsteadOfViscous {
 }
 
 impl InsteadOfViscous {
-    /// None where the record is no relay loop, the best model explains it, or one with dry friction does not do as well.
+    /// None where the record is no relay loop, the best model explains it, or one with dry friction does not do as
+    /// well.
     pub fn of(session: &Session, best: &Trial) -> Option<Self> {
         let with_viscous = best.in_loop?;
         let is_drive = session.kind() == Kind::Drive;
@@ -61,8 +63,8 @@ fn class(with_viscous: LoopError) -> Vec<EffectId> {
     }
 }
 
-/// The model with dry friction instead of viscous friction, fitted anew; none where it has dry friction already, or no viscous
-/// friction that can be told, or the user says something of that.
+/// The model with dry friction instead of viscous friction, fitted anew; none where it has dry friction already, or no
+/// viscous friction that can be told, or the user says something of that.
 fn with_dry_friction(session: &Session, best: &Trial) -> Option<Trial> {
     let own = &best.scored.fit;
     let effect = session.find(DRY)?;

@@ -65,8 +65,8 @@ fn chunk_length(data: &Data, v: &[f64]) -> usize {
 
 /// Sums of the regression.
 struct Sums {
-    /// Of products of `int w dt`, `-int v dt` and `t2 - t1`: the constant term keeps an offset of the input from bending
-    /// the other two.
+    /// Of products of `int w dt`, `-int v dt` and `t2 - t1`: the constant term keeps an offset of the input from
+    /// bending the other two.
     normal: Matrix3<f64>,
     /// Of their products with the differences of the velocity.
     right: Vector3<f64>,

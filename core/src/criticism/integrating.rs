@@ -7,8 +7,8 @@ use super::structure::Structure;
 use crate::effect::baseline::Baseline;
 
 impl Session {
-    /// Whether the output of a process may stay where the input leaves it, by its last model: an earlier one may miss a dead time,
-    /// and find the process slower than it is.
+    /// Whether the output of a process may stay where the input leaves it, by its last model: an earlier one may miss a
+    /// dead time, and find the process slower than it is.
     pub fn may_integrate(&self, scored: &Scored) -> bool {
         let fit = &scored.fit;
         let (symbols, duration) = (fit.structure.symbols(), self.scales.duration);

@@ -58,8 +58,8 @@ fn concentrations(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Rank
     ranked
 }
 
-/// The strongest findings, strongest first: for each axis that of the output which shows it best. What has a place in the
-/// record is said first, since it can be shown there.
+/// The strongest findings, strongest first: for each axis that of the output which shows it best. What has a place in
+/// the record is said first, since it can be shown there.
 fn strongest(mut ranked: Vec<Ranked>) -> Vec<Finding> {
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut findings: Vec<Finding> = Vec::new();

@@ -1,9 +1,9 @@
 //! Windows that start from a wrong state while the others are right.
 //!
-//! Where a body sticks, the motion depends on the state at the start of a window by leaps: a little slower and it
-//! stays where it is, a little faster and it breaks loose. So it does where a load comes up behind a gap, and is met or
-//! missed. A fit that follows derivatives stops on the wrong side of such a leap, and one window may then cost more than
-//! all the others. Its state is looked for about the present and the measured one.
+//! Where a body sticks, the motion depends on the state at the start of a window by leaps: a little slower and it stays
+//! where it is, a little faster and it breaks loose. So it does where a load comes up behind a gap, and is met or
+//! missed. A fit that follows derivatives stops on the wrong side of such a leap, and one window may then cost more
+//! than all the others. Its state is looked for about the present and the measured one.
 
 use super::cost::window_costs;
 use super::data::Data;
@@ -42,8 +42,8 @@ struct Tried {
 }
 
 impl Fit {
-    /// Looks for better states of odd windows, if the body sticks, has a load that was felt, or may stay on either side of
-    /// a hill of force, and takes what fits better.
+    /// Looks for better states of odd windows, if the body sticks, has a load that was felt, or may stay on either side
+    /// of a hill of force, and takes what fits better.
     pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) {
         let model = self.structure.model(&self.values);
         let sees_load = self.sees_load(data);
@@ -88,7 +88,8 @@ impl Fit {
         self.take_better(data, &better);
     }
 
-    /// Starts every window with the body a little quicker or slower than now or than measured, and keeps what fits best.
+    /// Starts every window with the body a little quicker or slower than now or than measured, and keeps what fits
+    /// best.
     fn try_quicker(&mut self, data: &Data, scales: &Scales) {
         // A state that suited other values may have led far from the measured one.
         let measured = data.guessed_starts();
@@ -142,7 +143,8 @@ impl Fit {
         }
     }
 
-    /// Tries the load of each window at one place of the grid, if any, and puts it in order among those that were tried.
+    /// Tries the load of each window at one place of the grid, if any, and puts it in order among those that were
+    /// tried.
     fn try_places(
         &self,
         at: &[Option<[usize; 2]>],

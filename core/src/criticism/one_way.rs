@@ -1,7 +1,7 @@
 //! A drive that turns one way only.
 //!
-//! Dry friction is then a constant, and so are a load and what a dead zone takes off the input: whatever the sampling rate, no
-//! such record tells them apart, since each shows itself only where the motion or the input turns.
+//! Dry friction is then a constant, and so are a load and what a dead zone takes off the input: whatever the sampling
+//! rate, no such record tells them apart, since each shows itself only where the motion or the input turns.
 
 use super::data::Data;
 use super::fit::Fit;
@@ -19,14 +19,15 @@ const CLEAR_OF_NOISE: f64 = 6.0;
 /// Share of the moving samples that may go the other way, by noise.
 const OTHER_WAY: f64 = 0.01;
 
-/// Times the speed from which on it moves that a load would have given a drive at rest: then it is friction that held it.
+/// Times the speed from which on it moves that a load would have given a drive at rest: then it is friction that held
+/// it.
 const TURNED_BACK: f64 = 2.0;
 
 /// Size of an effect that is looked at, as a share of its typical size.
 const SIZE: f64 = 0.1;
 
-/// How far, as a share of its median, the force of an effect may be off it while it is a constant, and in which share of the
-/// moving samples.
+/// How far, as a share of its median, the force of an effect may be off it while it is a constant, and in which share
+/// of the moving samples.
 const SAME: f64 = 0.1;
 const MOSTLY: f64 = 0.8;
 
@@ -77,8 +78,8 @@ impl OneWay {
         })
     }
 
-    /// Makes one class of what is missing and a constant: of `missing` effects, each with whether it only tells how the record
-    /// was made, and the `classes` of what could replace each. True if there is one.
+    /// Makes one class of what is missing and a constant: of `missing` effects, each with whether it only tells how the
+    /// record was made, and the `classes` of what could replace each. True if there is one.
     pub fn join(
         &self,
         session: &Session,

@@ -16,8 +16,8 @@ pub(super) struct Output {
     pub counted: bool,
     /// Step of the lattice on which its values lie; 0 where none is seen.
     pub step: f64,
-    /// Samples at which nothing was measured, readings that a channel held and glitches of several values: the values there
-    /// lie between those around and are compared with no model. Empty where every sample tells.
+    /// Samples at which nothing was measured, readings that a channel held and glitches of several values: the values
+    /// there lie between those around and are compared with no model. Empty where every sample tells.
     pub silent: Vec<bool>,
     /// Samples at which the sensor was at its limit: they are silent too.
     pub limited: usize,

@@ -82,8 +82,8 @@ pub(super) fn score(data: &Data, fit: &Fit) -> Score {
     }
 }
 
-/// Share of the motion that a model with this score misses on held-back data: root mean square of the residuals over that
-/// of the motion, each channel in units of its noise.
+/// Share of the motion that a model with this score misses on held-back data: root mean square of the residuals over
+/// that of the motion, each channel in units of its noise.
 pub(super) fn share_left(data: &Data, score: &Score, motion: &Motion) -> f64 {
     let held = |b: &Block| b.held_back;
     let error = if data.wander > 0.0 {
@@ -100,8 +100,8 @@ pub(super) fn share_left(data: &Data, score: &Score, motion: &Motion) -> f64 {
 }
 
 /// Mean square of the motion in these blocks, each channel in units of its noise. That of a velocity or of an output is
-/// about the mean, the news of it beyond a level that moves by a share of `gain` towards each sample; that of a position
-/// about a straight line in each block, since a drive may go anywhere.
+/// about the mean, the news of it beyond a level that moves by a share of `gain` towards each sample; that of a
+/// position about a straight line in each block, since a drive may go anywhere.
 pub(super) fn motion_square(data: &Data, gain: f64, is_one: impl Fn(&Block) -> bool) -> f64 {
     let blocks = || data.blocks.iter().filter(|b| is_one(b));
     let motion = |o: &Output| -> f64 {
@@ -119,8 +119,8 @@ pub(super) fn motion_square(data: &Data, gain: f64, is_one: impl Fn(&Block) -> b
     data.outputs.iter().map(motion).sum::<f64>() / count.max(1) as f64
 }
 
-/// Half a step of a counter in its standard deviations, with a tenth of a step more: where a body rests, all that is known of
-/// its state is the step in which it is.
+/// Half a step of a counter in its standard deviations, with a tenth of a step more: where a body rests, all that is
+/// known of its state is the step in which it is.
 const HALF_STEP: f64 = 1.2 * 1.732_050_8;
 
 /// Share of the residuals that must lie within half a step.

@@ -22,9 +22,9 @@ const SURE_NOISE_ERROR: f64 = 1.05;
 pub(super) const SMALL_SHARE: f64 = 2e-3;
 const SMALL_ERROR: f64 = 3.0;
 
-/// The same share where the input is known at its samples only, and what it did between them was found from the rest: a straight
-/// line between two samples is off by a quarter of their distance in radians, of what the shift does; this is that of an input
-/// with twelve samples to a radian.
+/// The same share where the input is known at its samples only, and what it did between them was found from the rest: a
+/// straight line between two samples is off by a quarter of their distance in radians, of what the shift does; this is
+/// that of an input with twelve samples to a radian.
 pub(super) const SAMPLED_SHARE: f64 = 2e-2;
 
 /// Share of the held-back blocks that may be more than noise, and share of the error there that may be
@@ -38,8 +38,8 @@ pub(super) fn outweighs(before: f64, after: f64) -> bool {
     explained > after.powi(2) - 1.0
 }
 
-/// Error up to which a residual of so many values may be noise, where it may be up to `usual` in a long record: its size
-/// and that of the noise, of as many values, are each known to so much only.
+/// Error up to which a residual of so many values may be noise, where it may be up to `usual` in a long record: its
+/// size and that of the noise, of as many values, are each known to so much only.
 fn noise_error(usual: f64, count: f64) -> f64 {
     usual.max(1.0 + CHANCE * (1.0 / count).sqrt())
 }
@@ -52,8 +52,8 @@ pub(super) fn is_plain_noise(score: &Score) -> bool {
         && (score.error < SURE_NOISE_ERROR || score.within_counts || uncorrelated)
 }
 
-/// Whether a model says all that counters show: what is left lies within their steps, which repeat with the motion, so that
-/// any effect may lower it a little.
+/// Whether a model says all that counters show: what is left lies within their steps, which repeat with the motion, so
+/// that any effect may lower it a little.
 pub(super) fn is_all_that_counters_show(score: &Score) -> bool {
     score.within_counts && score.error < 1.0 && score.error_fit < 1.0
 }
@@ -79,8 +79,8 @@ pub(super) fn is_trifle(error: f64, first: &Score, small: f64) -> bool {
     (error.powi(2) - 1.0).max(0.0).sqrt() < small * first.error
 }
 
-/// Whether the held-back blocks are noise, or a trifle more, but for a few, and these are explained to two hundredths of
-/// what was there: where dry friction lets go depends on less than an encoder sees.
+/// Whether the held-back blocks are noise, or a trifle more, but for a few, and these are explained to two hundredths
+/// of what was there: where dry friction lets go depends on less than an encoder sees.
 fn is_noise_but_for_stretches(score: &Score, first: &Score, small: f64) -> bool {
     if score.held_blocks.len() != first.held_blocks.len() {
         return false;

@@ -44,7 +44,8 @@ impl Scored {
         left * self.score.correlation.max(1.0)
     }
 
-    /// Whether a parameter that tells of the effect at a place is not 0 by these errors: its 95 % interval leaves 0 out.
+    /// Whether a parameter that tells of the effect at a place is not 0 by these errors: its 95 % interval leaves 0
+    /// out.
     pub fn tells_of(&self, place: usize) -> bool {
         let structure = &self.fit.structure;
         let errors = self.standard_errors();
@@ -339,9 +340,9 @@ impl Session {
         self.baseline = None;
     }
 
-    /// Settles sizes by the fitted baseline: where the screen told another body, by that, since a body that rests for most of
-    /// a record seems held by its own weight; where the guess had a far heavier one, by the fit, since a resonance turns a body
-    /// against its input and tells a regression nothing.
+    /// Settles sizes by the fitted baseline: where the screen told another body, by that, since a body that rests for
+    /// most of a record seems held by its own weight; where the guess had a far heavier one, by the fit, since a
+    /// resonance turns a body against its input and tells a regression nothing.
     pub fn settle_sizes(&mut self, fit: &Fit) {
         if self.kind() != Kind::Drive || !fit.structure.effects.is_empty() {
             return;
@@ -467,8 +468,8 @@ impl Session {
         }
     }
 
-    /// Whether all that the input gave in the whole record could not have brought a body as heavy as that of a fit to its
-    /// usual speed: such a model explains a motion by where its windows begin, and nothing by the input.
+    /// Whether all that the input gave in the whole record could not have brought a body as heavy as that of a fit to
+    /// its usual speed: such a model explains a motion by where its windows begin, and nothing by the input.
     fn is_too_heavy(&self, fit: &Fit) -> bool {
         let (scales, body) = (&self.scales, fit.values[0]);
         self.kind() == Kind::Drive && body * scales.speed > scales.force * scales.duration

@@ -1,9 +1,9 @@
 //! At which frequencies the model fails: the periodogram of a residual beside that of what was measured.
 //!
-//! By Parseval the lines of the periodogram share out the squared error. A band counts for what it has beyond its
-//! width (white noise has as much) and beyond its share of the measured motion: where a model is a little wrong
-//! throughout, the residual has the frequencies of the motion, and that is no finding. Where the model starts anew in every
-//! window, slow errors are taken up by the starting states, and what is left of them has the frequency of the windows: only
+//! By Parseval the lines of the periodogram share out the squared error. A band counts for what it has beyond its width
+//! (white noise has as much) and beyond its share of the measured motion: where a model is a little wrong throughout,
+//! the residual has the frequencies of the motion, and that is no finding. Where the model starts anew in every window,
+//! slow errors are taken up by the starting states, and what is left of them has the frequency of the windows: only
 //! what swings several times in a window is looked at.
 
 use super::data::Data;

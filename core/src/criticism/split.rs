@@ -34,10 +34,10 @@ const NOISY: f64 = 4.0;
 /// Holds back one of every two neighbouring windows, so that both parts know as much of what the baseline that
 /// begins at `values` does not explain.
 ///
-/// A window that holds most of it, or the one transient that there is, is cut into shorter ones first: a step that fell to
-/// the judge alone would leave the body unknown. A process runs through without a restart: what it
-/// leaves in a block is not that block's own, and the order of the blocks stays as it is. So does that of windows that
-/// begin where a load was felt: they are of no fixed length, and tell by turns of one end of the gap and of the other.
+/// A window that holds most of it, or the one transient that there is, is cut into shorter ones first: a step that fell
+/// to the judge alone would leave the body unknown. A process runs through without a restart: what it leaves in a block
+/// is not that block's own, and the order of the blocks stays as it is. So does that of windows that begin where a load
+/// was felt: they are of no fixed length, and tell by turns of one end of the gap and of the other.
 pub(super) fn hold_back(
     data: &mut Data,
     knowledge: &Knowledge,

@@ -62,7 +62,8 @@ impl Tell {
         self.dry = best.and_then(|best| InsteadOfViscous::of(session, best));
     }
 
-    /// Searches for the experiments that tell apart what this one cannot: none where the model does not explain the record.
+    /// Searches for the experiments that tell apart what this one cannot: none where the model does not explain the
+    /// record.
     pub fn designs(&self, session: &Session, explain: &Explain) -> Vec<Design> {
         let Some(best) = explain.trials.get(explain.best) else {
             return Vec::new();

@@ -17,7 +17,8 @@ use crate::uncertain::{in_unit, with_error};
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
 
-/// Standard error, as a share of it, up to which an inertia, or the gain of a process, is told: its 95 % interval is half of it.
+/// Standard error, as a share of it, up to which an inertia, or the gain of a process, is told: its 95 % interval is
+/// half of it.
 const DETERMINED: f64 = 0.25;
 
 /// What a model leaves that explains all there is.
@@ -112,8 +113,8 @@ fn contradiction(
     if released < error {
         let _ = write!(
             text,
-            "With the known values released the error falls from {error:.2} to {released:.2} times the noise: correct or \
-             free them before looking for effects."
+            "With the known values released the error falls from {error:.2} to {released:.2} times the noise: correct \
+             or free them before looking for effects."
         );
     } else {
         text.push_str("Correct or free what is known before looking for effects.");
@@ -168,8 +169,8 @@ pub(super) fn add_rest(
     if rest == Rest::NoiseWithMemory {
         let _ = write!(
             verdict.text,
-            " This noise remembers for some samples, as that of a sensor with a filter does: it is {error:.2} times what \
-             neighbouring samples show, and depends neither on the motion nor on the input."
+            " This noise remembers for some samples, as that of a sensor with a filter does: it is {error:.2} times \
+             what neighbouring samples show, and depends neither on the motion nor on the input."
         );
         return;
     }
@@ -181,15 +182,15 @@ pub(super) fn add_rest(
             let _ = write!(
                 verdict.text,
                 " is noise, and what small random forces leave, such as those of a controller that is faster than the \
-                 record: {error:.2} times the noise. It goes on a random walk, and depends neither on the motion nor on \
-                 the input."
+                 record: {error:.2} times the noise. It goes on a random walk, and depends neither on the motion nor \
+                 on the input."
             );
             return;
         }
         let _ = write!(
             verdict.text,
-            " is noise but for a trifle, or for short stretches: the error is {error:.2} times the noise, {share:.2} % of \
-             what it was at first."
+            " is noise but for a trifle, or for short stretches: the error is {error:.2} times the noise, {share:.2} % \
+             of what it was at first."
         );
         return;
     }
@@ -207,8 +208,8 @@ pub(super) fn add_rest(
 /// Says by what models were compared where the surroundings of a process wander.
 pub(super) fn add_wander(verdict: &mut Verdict) {
     verdict.text.push_str(
-        " Most of what any model leaves wanders slowly, as if the surroundings changed: each model is judged by how well it \
-         foretells a sample from those before it.",
+        " Most of what any model leaves wanders slowly, as if the surroundings changed: each model is judged by how \
+         well it foretells a sample from those before it.",
     );
 }
 
@@ -289,9 +290,9 @@ pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
     let [error, before] = dry.errors;
     let _ = write!(
         verdict.text,
-        " {lead}: with {level} of Coulomb friction in the place of the viscous friction, both halves of the record are left with \
-         {error:.2} times the noise instead of {before:.2}, too small a difference to count. Run free in its own relay loop, \
-         {with_dry}; with viscous friction {with_viscous}."
+        " {lead}: with {level} of Coulomb friction in the place of the viscous friction, both halves of the record are \
+         left with {error:.2} times the noise instead of {before:.2}, too small a difference to count. Run free in its \
+         own relay loop, {with_dry}; with viscous friction {with_viscous}."
     );
     verdict.missing.push(dry.class.clone());
     if dry.class.len() > 1 {
@@ -335,8 +336,8 @@ pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheW
         Refused::LeavesMore => {
             let _ = write!(
                 verdict.text,
-                " Part of the way, and not named since it leaves more than it explains: {listed}, with which the error is \
-                 {error:.2} times the noise."
+                " Part of the way, and not named since it leaves more than it explains: {listed}, with which the error \
+                 is {error:.2} times the noise."
             );
             verdict.part_of_the_way = class;
             return;
@@ -360,17 +361,17 @@ pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(Vec<EffectId>, f64)>
     if let Some((class, error)) = hint {
         let _ = write!(
             verdict.text,
-            " Perhaps {}: that would lower the error to {error:.2} times the noise, but not in enough independent stretches \
-             of the record to rule out chance.",
+            " Perhaps {}: that would lower the error to {error:.2} times the noise, but not in enough independent \
+             stretches of the record to rule out chance.",
             names(&in_registry_order(class), " or ")
         );
     }
 }
 
-/// Says first where the input does not explain the motion: where its sign is turned, or it follows the output and the record does
-/// not tell the plant, no physics is named, for that would be physics of another machine. A model that leaves noise alone has
-/// explained the motion, which a controller may have made.
-/// That the inertia is not told is not said beside one that is.
+/// Says first where the input does not explain the motion: where its sign is turned, or it follows the output and the
+/// record does not tell the plant, no physics is named, for that would be physics of another machine. A model that
+/// leaves noise alone has explained the motion, which a controller may have made. That the inertia is not told is not
+/// said beside one that is.
 pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, parameters: &[Parameter]) {
     let inertia = parameters.first();
     let is_told = inertia.is_some_and(|p| p.std_error < DETERMINED * p.value.abs());
@@ -395,7 +396,8 @@ pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, paramet
     }
 }
 
-/// Says which effects of the user's model the data do not need: `idle` ones leave no trace, `unsure` ones lower the error.
+/// Says which effects of the user's model the data do not need: `idle` ones leave no trace, `unsure` ones lower the
+/// error.
 pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId], unsure: &[EffectId]) {
     if !idle.is_empty() {
         let _ = write!(
@@ -436,12 +438,12 @@ const NEXT_EXPERIMENT: &str = "Repeat the measurement with an input of more than
     staircase or a relay with changing gain: what acts alike at one pair of levels differs at another.";
 
 /// The same where the input has more levels than two already.
-const OTHER_EXPERIMENT: &str = "Repeat the measurement with another input, of other levels and other speeds of change: what \
-    acts alike in one motion differs in another.";
+const OTHER_EXPERIMENT: &str = "Repeat the measurement with another input, of other levels and other speeds of change: \
+    what acts alike in one motion differs in another.";
 
 /// For what is one constant while a drive turns one way.
-const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the motion, a \
-    dead zone with the input, and a constant load never.";
+const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the \
+    motion, a dead zone with the input, and a constant load never.";
 
 fn names(ids: &[EffectId], between: &str) -> String {
     let names: Vec<&str> = ids.iter().map(|id| name_of(*id)).collect();

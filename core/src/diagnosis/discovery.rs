@@ -51,8 +51,8 @@ pub struct Discovery {
     pub end: DiscoveryEnd,
     /// Error of the model without a formula, in noise units.
     pub before: f64,
-    /// Place of the answer among the formulas: the shortest that this record cannot tell from the best one; none where there is
-    /// none.
+    /// Place of the answer among the formulas: the shortest that this record cannot tell from the best one; none where
+    /// there is none.
     pub answer: Option<usize>,
     /// What was tried, shorter ones first.
     pub formulas: Vec<FoundFormula>,

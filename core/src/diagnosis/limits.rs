@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct Limits {
     /// Largest input in either direction, in its unit.
     pub input: f64,
-    /// Whether the input goes one way only, from 0 to that size (1) or to its negative (-1), as a heater does; 0: both ways.
+    /// Whether the input goes one way only, from 0 to that size (1) or to its negative (-1), as a heater does; 0: both
+    /// ways.
     #[serde(default)]
     pub side: i8,
     /// Longest record, s.

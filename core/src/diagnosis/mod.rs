@@ -1,6 +1,7 @@
 //! What a diagnosis says: plain values, the same in JSON, on the command line and on screen.
 //!
-//! Nothing is fitted or simulated here: the jobs of [`criticism`](crate::criticism) fill these values, everything else reads them.
+//! Nothing is fitted or simulated here: the jobs of [`criticism`](crate::criticism) fill these values, everything else
+//! reads them.
 
 mod answer;
 mod discovery;

@@ -29,7 +29,8 @@ pub struct InputCheck {
     pub verdict: InputVerdict,
     /// In a sentence, with numbers.
     pub text: String,
-    /// Whether what is said of the plant holds: in a closed loop, whether the record tells the plant from the controller.
+    /// Whether what is said of the plant holds: in a closed loop, whether the record tells the plant from the
+    /// controller.
     #[serde(default)]
     pub plant_told: bool,
 }

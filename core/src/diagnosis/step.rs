@@ -57,8 +57,8 @@ pub struct Step {
     pub error: f64,
     /// The same on the data used for the fit.
     pub error_fit: f64,
-    /// Share of the motion that the model misses on held-back data, noise included: root mean square of the residuals over
-    /// that of the motion.
+    /// Share of the motion that the model misses on held-back data, noise included: root mean square of the residuals
+    /// over that of the motion.
     #[serde(default)]
     pub left: f64,
     /// How far its cycle in the relay loop of the record is off; `None` where the record is no relay loop.

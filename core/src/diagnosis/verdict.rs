@@ -68,8 +68,8 @@ pub struct Verdict {
     /// The missing effects in the order found; each a class that this data cannot tell apart. What tells how the record
     /// was made ([`is_of_record`](crate::effect::is_of_record)) is not among them.
     pub missing: Vec<Vec<EffectId>>,
-    /// Effects, of which one would explain a part for certain: named as no cause, since more than that would be left, or since what
-    /// is missing may look like them. This data cannot tell them apart.
+    /// Effects, of which one would explain a part for certain: named as no cause, since more than that would be left,
+    /// or since what is missing may look like them. This data cannot tell them apart.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub part_of_the_way: Vec<EffectId>,
     /// The residual that is left is noise.

@@ -187,8 +187,8 @@ fn map_has_two_branches(input: &DriveInput, run: &DriveRun, summary: &Summary) -
     ]
 }
 
-/// Across each impact, from the sample before it to the one after, the sum of both momenta changes by what the torque and the
-/// frictions give in that time at most.
+/// Across each impact, from the sample before it to the one after, the sum of both momenta changes by what the torque
+/// and the frictions give in that time at most.
 fn hands_its_momentum_over(input: &DriveInput, run: &DriveRun) -> Vec<Check> {
     let Drive { motor, load, .. } = input.drive;
     let (mut handed, mut lost, mut allowed) = (0.0_f64, 0.0_f64, true);

@@ -1,5 +1,5 @@
-//! What the theory says of a relay loop beside its describing function: equation (3) in the paper's z-form, and play before
-//! the relay.
+//! What the theory says of a relay loop beside its describing function: equation (3) in the paper's z-form, and play
+//! before the relay.
 
 use super::{PlayCycle, cycles_with_play, play_describing_function, relay_seen_through_play};
 use crate::explore::{ExploreData, ExploreInput, compute};
@@ -25,8 +25,8 @@ pub struct LoopTheory {
 const PLAY_REACH: f64 = 30.0;
 const PLAY_POINTS: usize = 120;
 
-/// What the theory says of a loop, of which `plain` is known, with play of this half gap (in the unit of the output) before its
-/// relay; 0 for none.
+/// What the theory says of a loop, of which `plain` is known, with play of this half gap (in the unit of the output)
+/// before its relay; 0 for none.
 pub fn loop_theory(input: &ExploreInput, plain: &ExploreData, half_gap: f64) -> LoopTheory {
     let (plant, relay) = (&input.plant, &input.relay);
     let space = plant.state_space();

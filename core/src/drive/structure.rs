@@ -1,5 +1,5 @@
-//! Fig. 8 of the paper, the two-mass structure, at each instant of a run: which of its blocks act, the distance `d` in the
-//! gap, and the momentum that equation (11) conserves.
+//! Fig. 8 of the paper, the two-mass structure, at each instant of a run: which of its blocks act, the distance `d` in
+//! the gap, and the momentum that equation (11) conserves.
 
 use serde::{Deserialize, Serialize};
 

@@ -5,8 +5,8 @@
 //! process   J y' + d y    = u + F + sum theta_i g_i        J = T/K, d = 1/K, F = ambient/K
 //! ```
 //!
-//! An atom gives the columns `g_i` as functions of what was measured. The coefficients `theta_i` are fitted; what enters
-//! nonlinearly, its [`Shape`], is tried on a grid (variable projection: Golub and Pereyra 1973).
+//! An atom gives the columns `g_i` as functions of what was measured. The coefficients `theta_i` are fitted; what
+//! enters nonlinearly, its [`Shape`], is tried on a grid (variable projection: Golub and Pereyra 1973).
 
 /// Inertia and viscous friction of a body, and values of an effect that go with them.
 pub type BodyStart = ([f64; 2], Vec<f64>);
@@ -174,7 +174,8 @@ pub fn not_negative(solved: &Solved) -> Option<BodyStart> {
     possible.then(|| (solved.body, solved.coefficients.to_vec()))
 }
 
-/// `count` numbers from the first to the last at equal ratios, as shapes of one number; none where there is no such range.
+/// `count` numbers from the first to the last at equal ratios, as shapes of one number; none where there is no such
+/// range.
 pub fn geometric(first: f64, last: f64, count: usize) -> Vec<Shape> {
     if !(first > 0.0 && last > first && last.is_finite()) || count < 2 {
         return Vec::new();

@@ -50,8 +50,9 @@ const DAMPING_RATIO: f64 = 0.3;
 /// A contact that a fit left soft may as well be as many times as stiff.
 const STIFFER: [f64; 3] = [6.0, 40.0, 250.0];
 
-/// Damping ratio of a contact that bounces, and its stiffnesses in times of that which the screen finds: a load that follows a
-/// noisy motion through it bounces at other times than it did, so that a contact that swallows all it can explains more there.
+/// Damping ratio of a contact that bounces, and its stiffnesses in times of that which the screen finds: a load that
+/// follows a noisy motion through it bounces at other times than it did, so that a contact that swallows all it can
+/// explains more there.
 const BOUNCING: f64 = 0.05;
 const HARDER: [f64; 2] = [1.0, 4.0];
 
@@ -84,8 +85,8 @@ const PROMISING: f64 = 0.995;
 /// Share of the unexplained force that may be left by a gap seen in the record for no other to be tried.
 const WELL_SEEN: f64 = 0.2;
 
-/// Times the share that a gap may leave from which on, where all leave more on a smoothed motion, none will leave less than
-/// that on the motion as it was measured.
+/// Times the share that a gap may leave from which on, where all leave more on a smoothed motion, none will leave less
+/// than that on the motion as it was measured.
 const WITHIN_REACH: f64 = 4.0;
 
 fn gap_shares() -> impl Iterator<Item = f64> {
@@ -319,8 +320,9 @@ fn promising(scanned: &[Trial], share: f64) -> Vec<f64> {
     gaps
 }
 
-/// Half gaps that a regression tries: from the first to the second of these shares of the travel, so many; each with these
-/// rates of a free load's decay, in typical accelerations per typical speed, and dry decelerations, in typical accelerations.
+/// Half gaps that a regression tries: from the first to the second of these shares of the travel, so many; each with
+/// these rates of a free load's decay, in typical accelerations per typical speed, and dry decelerations, in typical
+/// accelerations.
 const SCREENED_GAPS: [f64; 2] = [1.0 / 400.0, 1.0 / 6.0];
 const GAPS: usize = 14;
 const RATES: [f64; 2] = [0.05, 0.3];
@@ -469,7 +471,8 @@ impl Effect for Backlash {
         std::iter::once(gap.error).chain(load).collect()
     }
 
-    /// A load of unit inertia follows the measured motion through the gap; what the motor gives it is linear in its inertia.
+    /// A load of unit inertia follows the measured motion through the gap; what the motor gives it is linear in its
+    /// inertia.
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Body(|track, numbers| {
             vec![Series {

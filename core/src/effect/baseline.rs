@@ -230,7 +230,8 @@ impl Baseline {
         LOAD
     }
 
-    /// Whether a record of this length, s, does not tell a lag with these values and standard errors from an integrator.
+    /// Whether a record of this length, s, does not tell a lag with these values and standard errors from an
+    /// integrator.
     pub fn may_integrate(self, values: &[f64], errors: &[f64], duration: f64) -> bool {
         let Self::Lag { .. } = self else {
             return false;

@@ -14,8 +14,8 @@ pub(super) const ID: EffectId = EffectId::new("cogging");
 
 pub(super) struct Cogging;
 
-/// Samples in the shortest wave that is looked for, at the typical speed; frequencies that are tried for each wave that the
-/// travel holds, half of what tells two waves apart; and how many at most.
+/// Samples in the shortest wave that is looked for, at the typical speed; frequencies that are tried for each wave that
+/// the travel holds, half of what tells two waves apart; and how many at most.
 const LEAST_SAMPLES: f64 = 8.0;
 const FREQUENCIES_PER_TURN: f64 = 2.0;
 const MOST_FREQUENCIES: f64 = 160.0;

@@ -24,7 +24,8 @@ pub trait Effect: Sync {
     /// Its parameters, in the order in which every slice of values has them.
     fn parameters(&self) -> &'static [ParameterSpec];
     /// Values from which a fit may start, most likely first; several where the error has several valleys. The effect is
-    /// only asked for if it leaves less than this `share` of the squared error: what takes long to search for need not be.
+    /// only asked for if it leaves less than this `share` of the squared error: what takes long to search for need not
+    /// be.
     fn starts(&self, probe: &Probe, share: f64) -> Vec<Vec<f64>>;
     /// The same with inertia and viscous friction of the body, where the record tells them together.
     fn starts_with_body(&self, _probe: &Probe, _share: f64) -> Vec<BodyStart> {
@@ -36,8 +37,8 @@ pub trait Effect: Sync {
         Vec::new()
     }
 
-    /// Values from which a fit may come to a lower valley, where it has stalled at these; a hidden load goes on from window
-    /// to window, or is where it must be if the body moved as measured.
+    /// Values from which a fit may come to a lower valley, where it has stalled at these; a hidden load goes on from
+    /// window to window, or is where it must be if the body moved as measured.
     fn other_valleys(&self, _values: &[f64], _goes_on: bool) -> Vec<Vec<f64>> {
         Vec::new()
     }
@@ -52,8 +53,8 @@ pub trait Effect: Sync {
         &[]
     }
 
-    /// Least standard errors of these values, where the record shows a gap: a fit that has many valleys side by side knows
-    /// its own only.
+    /// Least standard errors of these values, where the record shows a gap: a fit that has many valleys side by side
+    /// knows its own only.
     fn least_errors(&self, _values: &[f64], _gap: &SeenGap) -> Vec<f64> {
         Vec::new()
     }
@@ -62,8 +63,8 @@ pub trait Effect: Sync {
         &[]
     }
 
-    /// Effects that it comes near to at the ends of the ranges of its values: in the place of one of these that explains the
-    /// data it says no more.
+    /// Effects that it comes near to at the ends of the ranges of its values: in the place of one of these that
+    /// explains the data it says no more.
     fn limits(&self) -> &'static [EffectId] {
         &[]
     }
@@ -74,8 +75,8 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Whether with these `values`, in this model of a record that has a sample every `step` seconds, it only tells what
-    /// happened between the samples that were kept: how the record was made, too.
+    /// Whether with these `values`, in this model of a record that has a sample every `step` seconds, it only tells
+    /// what happened between the samples that were kept: how the record was made, too.
     fn is_between_samples(&self, _values: &[f64], _model: &Model, _step: f64) -> bool {
         false
     }
@@ -91,8 +92,8 @@ pub trait Effect: Sync {
         false
     }
 
-    /// What it adds to the equation of motion of such a system: columns of a regression that may find it. Several where it
-    /// may be in several places; each alone is the effect. None where the screen is not to look for it.
+    /// What it adds to the equation of motion of such a system: columns of a regression that may find it. Several where
+    /// it may be in several places; each alone is the effect. None where the screen is not to look for it.
     fn atoms(&self, _kind: Kind) -> Vec<Atom> {
         Vec::new()
     }

@@ -8,8 +8,8 @@ pub(super) const ID: EffectId = EffectId::new("end_stop");
 
 pub(super) struct EndStop;
 
-/// Natural frequencies of the body on a stop that a fit begins with, in radians per sample: from one that gives way over many
-/// samples to one that throws the body back within a few.
+/// Natural frequencies of the body on a stop that a fit begins with, in radians per sample: from one that gives way
+/// over many samples to one that throws the body back within a few.
 const STIFFNESSES: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 
 /// Most of the travel that a stop takes.
@@ -96,8 +96,8 @@ impl Effect for EndStop {
         let (back, forth) = probe.velocity_range();
         let (travel, fastest) = (high - low, forth.max(-back));
         let (step, scale) = (probe.scales.step, probe.scales.of(Dimension::Stiffness));
-        // What is left of a model that runs on through a stop says little of it: its places follow from where the body rests at the
-        // ends of the way, or else from how far it can run in.
+        // What is left of a model that runs on through a stop says little of it: its places follow from where the body
+        // rests at the ends of the way, or else from how far it can run in.
         let all = STIFFNESSES.iter().flat_map(|radians| {
             let stiffness = radians * radians * scale;
             let deep = depth(*radians, fastest, step, travel);

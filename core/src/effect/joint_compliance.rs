@@ -23,8 +23,8 @@ const FINER_DAMPING: [f64; 3] = [0.05, 0.015, 0.003];
 const FINER: f64 = 1.008;
 const FINER_STEPS: i32 = 3;
 
-/// Share of the unexplained force that a frequency may leave to be looked at more closely; and times the share asked for,
-/// since damping that blurs a resonance leaves more than its own.
+/// Share of the unexplained force that a frequency may leave to be looked at more closely; and times the share asked
+/// for, since damping that blurs a resonance leaves more than its own.
 const PROMISING: f64 = 0.997;
 const BLURRED: f64 = 2.0;
 
@@ -50,8 +50,8 @@ struct Guess {
     dry: f64,
 }
 
-/// Share of the unexplained force that a load would leave where the probe explains what it does `beside`, and the effect's
-/// values.
+/// Share of the unexplained force that a load would leave where the probe explains what it does `beside`, and the
+/// effect's values.
 fn trial(probe: &Probe, beside: &Probe, guess: Guess) -> Option<(f64, Guess, Vec<f64>)> {
     let inertia = probe.scales.inertia.abs();
     let load = Load {
@@ -90,8 +90,8 @@ fn best(mut trials: Vec<(f64, Guess, Vec<f64>)>) -> Vec<(f64, Guess, Vec<f64>)> 
 
 /// The best loads on this stretch of a record where one may leave less than this share of the unexplained force.
 fn loads(stretch: &Probe, share: f64) -> Vec<(f64, Guess, Vec<f64>)> {
-    // Below its resonance a load shows in little more than a shift of phase, as of an input that runs on by the changes of
-    // its samples.
+    // Below its resonance a load shows in little more than a shift of phase, as of an input that runs on by the changes
+    // of its samples.
     let beside = &stretch.beside(&stretch.input_changes());
     let tried = |guesses: Vec<Guess>| -> Vec<_> {
         let trial = |i: usize| trial(stretch, beside, guesses[i]);
@@ -226,8 +226,8 @@ impl Effect for JointCompliance {
         &[coulomb_friction::ID, presliding_friction::ID]
     }
 
-    /// On a joint too stiff to be seen, the load is a part of the body; a load that its friction holds makes of the joint a
-    /// spring to the ground.
+    /// On a joint too stiff to be seen, the load is a part of the body; a load that its friction holds makes of the
+    /// joint a spring to the ground.
     fn marks(&self) -> &'static [&'static str] {
         &["K", "J2"]
     }
@@ -242,7 +242,8 @@ impl Effect for JointCompliance {
         found.chain(moving).map(|t| t.2).collect()
     }
 
-    /// The load follows the measured motion through a spring; what the motor gives it is linear in its inertia and friction.
+    /// The load follows the measured motion through a spring; what the motor gives it is linear in its inertia and
+    /// friction.
     fn atoms(&self, _: Kind) -> Vec<Atom> {
         const COLUMNS: &[Part] = &[Part::Body(|track, [frequency, ratio, ..]| {
             load_columns(&on_spring(track, *frequency, *ratio), track.step)

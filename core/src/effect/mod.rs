@@ -100,8 +100,9 @@ pub fn registry() -> &'static [&'static dyn Effect] {
     ]
 }
 
-/// Effects that only the screen looks for, since a diagnosis has them under another name: in motion, friction that differs by
-/// direction is dry friction with a constant load, and a loss that grows is a static curvature of the balance.
+/// Effects that only the screen looks for, since a diagnosis has them under another name: in motion, friction that
+/// differs by direction is dry friction with a constant load, and a loss that grows is a static curvature of the
+/// balance.
 fn screened_only() -> &'static [&'static dyn Effect] {
     &[
         &directional_friction::DirectionalFriction,
@@ -109,8 +110,8 @@ fn screened_only() -> &'static [&'static dyn Effect] {
     ]
 }
 
-/// Whether few machines have the effect with this id, or its curve can stand in for much else: it is tried last, where all others
-/// leave more than noise, and named only where it leaves little.
+/// Whether few machines have the effect with this id, or its curve can stand in for much else: it is tried last, where
+/// all others leave more than noise, and named only where it leaves little.
 pub fn is_seldom(id: EffectId) -> bool {
     [
         rate_limit::ID,

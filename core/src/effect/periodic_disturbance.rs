@@ -13,7 +13,8 @@ pub(super) const ID: EffectId = EffectId::new("periodic_disturbance");
 
 pub(super) struct PeriodicDisturbance;
 
-/// Waves in the record: at least so many, or nothing has come back twice and it may be any drift, at most so many, and so many frequencies for each.
+/// Waves in the record: at least so many, or nothing has come back twice and it may be any drift, at most so many, and
+/// so many frequencies for each.
 const LEAST_WAVES: f64 = SEEN_PERIODS;
 const MOST_WAVES: f64 = 60.0;
 const FREQUENCIES_PER_WAVE: f64 = 2.0;

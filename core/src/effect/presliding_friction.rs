@@ -29,8 +29,8 @@ fn starts(level: f64, probe: &Probe) -> Vec<Vec<f64>> {
     values.to_vec()
 }
 
-/// Values with the longer deflections that leave least of the unexplained force, beside friction that needs none, if that
-/// is less than this `share` of it; and the body that goes with them.
+/// Values with the longer deflections that leave least of the unexplained force, beside friction that needs none, if
+/// that is less than this `share` of it; and the body that goes with them.
 fn long_starts(probe: &Probe, share: f64) -> Vec<BodyStart> {
     let shortest = CROSSINGS[3] * probe.scales.crossed();
     let ratio = libm::pow(probe.scales.travel / shortest, 1.0 / f64::from(LONGER));

@@ -54,8 +54,8 @@ const LEAST_FRICTION: f64 = 0.01;
 /// Largest asymmetry of the input to start from.
 const LARGEST_ASYMMETRY: f64 = 0.5;
 
-/// A search for starting values whose best one leaves more than this share of the unexplained force has found nothing: a
-/// fit from there would not lower the error by the three per cent that count.
+/// A search for starting values whose best one leaves more than this share of the unexplained force has found nothing:
+/// a fit from there would not lower the error by the three per cent that count.
 const FOUND: f64 = 0.99;
 
 /// A measured motion and what a present model leaves of it.
@@ -360,8 +360,9 @@ impl Probe {
         range(&self.velocity)
     }
 
-    /// Where a spring of this stiffness begins on which the body rests, by the input that holds it there, among the samples at rest
-    /// at these places: their median, in the unit of the position. None where it rests there for fewer than so many samples.
+    /// Where a spring of this stiffness begins on which the body rests, by the input that holds it there, among the
+    /// samples at rest at these places: their median, in the unit of the position. None where it rests there for fewer
+    /// than so many samples.
     pub fn spring_at_rest(
         &self,
         stiffness: f64,
@@ -473,8 +474,8 @@ impl Probe {
         part
     }
 
-    /// The same with loads that follow the position as it was measured: what is free of noise is rounded where a load is
-    /// met between two samples.
+    /// The same with loads that follow the position as it was measured: what is free of noise is rounded where a load
+    /// is met between two samples.
     #[must_use]
     pub fn as_measured(&self) -> Self {
         Self {

@@ -10,8 +10,8 @@ pub(super) const ID: EffectId = EffectId::new("second_lag");
 
 pub(super) struct SecondLag;
 
-/// Body of the slower of two lags and time constant of the faster one, where `inertia y' + damping y` stands beside this
-/// coefficient times `y''`; none where one of them would not settle.
+/// Body of the slower of two lags and time constant of the faster one, where `inertia y' + damping y` stands beside
+/// this coefficient times `y''`; none where one of them would not settle.
 fn lags([inertia, damping]: [f64; 2], coefficient: f64) -> Option<([f64; 2], f64)> {
     // Of the polynomial 1 + sum s + product s^2.
     let (sum, product) = (inertia / damping, coefficient / damping);

@@ -159,8 +159,8 @@ pub const SHORT_CROSSINGS: f64 = 8.0;
 /// Nor can it be seen within this many times the noise of the position.
 pub const BLURRED: f64 = 1.0;
 
-/// Below this share of it the contact cannot be told from a rigid one: the impulse that friction lacks while it builds up
-/// goes with the root of it, and adds up from turn to turn.
+/// Below this share of it the contact cannot be told from a rigid one: the impulse that friction lacks while it builds
+/// up goes with the root of it, and adds up from turn to turn.
 pub const RIGID_CROSSINGS: f64 = 1e-4;
 
 /// Share of it at which a search begins with a contact that is all but rigid.
@@ -175,8 +175,8 @@ pub const HARDEST: f64 = 300.0;
 /// A load lighter than this share of the motor is part of it.
 pub const LIGHTEST: f64 = 0.03;
 
-/// Radians in the travel from which a periodic force is seen to repeat, a turn and a half; less of it may look like any other
-/// force.
+/// Radians in the travel from which a periodic force is seen to repeat, a turn and a half; less of it may look like any
+/// other force.
 pub const SEEN_TURN: f64 = 1.5 * TAU;
 
 /// Periods in a record from which on something is seen to come back: once may be chance, and a slow one any drift.
@@ -220,8 +220,8 @@ impl ParameterSpec {
         )
     }
 
-    /// Whether a wave is at the end of its range, so that the record shows too little of it to tell that it repeats, or a
-    /// displacement over which friction builds up is most of the way, so that it may as well be a spring.
+    /// Whether a wave is at the end of its range, so that the record shows too little of it to tell that it repeats, or
+    /// a displacement over which friction builds up is most of the way, so that it may as well be a spring.
     pub fn is_too_long(&self, value: f64, scales: &Scales) -> bool {
         match self.range {
             Range::Repeating => value <= AT_END * (SEEN_TURN * scales.of(self.dimension)),

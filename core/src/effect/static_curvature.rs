@@ -1,7 +1,7 @@
 //! Static curvature: the static characteristic is bent.
 //!
-//! Three places can bend: the balance of the process (its time constant then changes with the output), the sensor and the
-//! valve. All are fitted.
+//! Three places can bend: the balance of the process (its time constant then changes with the output), the sensor and
+//! the valve. All are fitted.
 
 use super::atom::Values;
 use super::{

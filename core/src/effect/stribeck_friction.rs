@@ -17,8 +17,8 @@ pub(super) struct StribeckFriction;
 /// Stribeck speeds that are tried, in typical speeds.
 const SPEEDS: [f64; 8] = [0.03, 0.06, 0.12, 0.2, 0.3, 0.45, 0.7, 1.1];
 
-/// The same friction in a contact that is all but rigid, and in one that can be seen to give way: at every turn a body on
-/// a rigid one rubs at its excess, so that a search on too soft a contact gives it another Stribeck speed.
+/// The same friction in a contact that is all but rigid, and in one that can be seen to give way: at every turn a body
+/// on a rigid one rubs at its excess, so that a search on too soft a contact gives it another Stribeck speed.
 fn contacts(soft: Vec<f64>, crossed: f64) -> [Vec<f64>; 2] {
     let mut rigid = soft.clone();
     rigid[3] = HARD_CROSSINGS * crossed;

@@ -1,8 +1,8 @@
 //! Whether a servo comes to rest, or the cycle in which it ends.
 //!
-//! The motion is looked at where the motor comes to a standstill: position, integral and play are all that is left of the
-//! state there. Once a sequence of standstills repeats, Newton's method finds the state that repeats exactly; the slope of
-//! the map from one period to the next says what becomes of small disturbances.
+//! The motion is looked at where the motor comes to a standstill: position, integral and play are all that is left of
+//! the state there. Once a sequence of standstills repeats, Newton's method finds the state that repeats exactly; the
+//! slope of the map from one period to the next says what becomes of small disturbances.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -62,7 +62,8 @@ const OFTEN: f64 = 30.0;
 /// Most standstills in a period.
 const LONGEST_PATTERN: usize = 16;
 
-/// Share by which standstills may differ that are taken for the same: to begin Newton's method, and to be called settled.
+/// Share by which standstills may differ that are taken for the same: to begin Newton's method, and to be called
+/// settled.
 const ALIKE: f64 = 1e-2;
 const SETTLED: f64 = 1e-6;
 
@@ -125,8 +126,8 @@ pub fn settled(servo: &Servo) -> Result<Settled, ServoError> {
     }
     let text = match exact.as_ref().or(simulated.as_ref()) {
         Some(cycle) => format!(
-            "It hunts: the measured position swings to and fro by {} (half of peak to peak) with a period of {:.4} s, and the \
-             motor sticks for {:.0} % of the time.",
+            "It hunts: the measured position swings to and fro by {} (half of peak to peak) with a period of {:.4} s, \
+             and the motor sticks for {:.0} % of the time.",
             digits(cycle.amplitude, DIGITS),
             cycle.period,
             100.0 * cycle.stuck

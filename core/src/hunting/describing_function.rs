@@ -4,8 +4,8 @@
 //! -J w^2 + N_c(A) + jw (viscous + D + N_f(w A)) + (P + I/(jw)) N_p(A) = 0
 //! ```
 //!
-//! with the describing functions of dry friction at the velocity, of cogging and of play at the position (Gelb and Vander
-//! Velde 1968). What sticks is beyond it: friction is that of a sine, which never rests.
+//! with the describing functions of dry friction at the velocity, of cogging and of play at the position (Gelb and
+//! Vander Velde 1968). What sticks is beyond it: friction is that of a sine, which never rests.
 
 use std::f64::consts::PI;
 

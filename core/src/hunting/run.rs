@@ -49,8 +49,8 @@ pub(super) fn at_rest(servo: &Servo) -> (Place, f64) {
     (place, if size > 0.0 { size } else { 1.0 })
 }
 
-/// Runs a servo for `duration` s with samples every `step` s; with noise on the position that the controller sees, if there
-/// is some (the velocity that it sees is that of the motor).
+/// Runs a servo for `duration` s with samples every `step` s; with noise on the position that the controller sees, if
+/// there is some (the velocity that it sees is that of the motor).
 ///
 /// # Errors
 /// What of the servo, of these times or of the noise cannot be.

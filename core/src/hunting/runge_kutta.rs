@@ -1,5 +1,5 @@
-//! The explicit pair of orders 5 and 4 of Dormand and Prince (1980), "A family of embedded Runge-Kutta formulae", J. Comp.
-//! Appl. Math. 6.
+//! The explicit pair of orders 5 and 4 of Dormand and Prince (1980), "A family of embedded Runge-Kutta formulae", J.
+//! Comp. Appl. Math. 6.
 
 /// Coefficients of the stages, and of the difference of both orders.
 const A: [&[f64]; 6] = [

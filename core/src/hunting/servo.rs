@@ -38,8 +38,8 @@ pub struct Controller {
     pub derivative: f64,
     /// Largest output in either direction, N m (or N); above 0. `None`: there is none.
     pub limit: Option<f64>,
-    /// Time constant with which the integral is led back while the output is limited (back-calculation, Åström and Hägglund
-    /// 2006), s; above 0. `None`: it winds up.
+    /// Time constant with which the integral is led back while the output is limited (back-calculation, Åström and
+    /// Hägglund 2006), s; above 0. `None`: it winds up.
     pub tracking_time: Option<f64>,
 }
 
@@ -57,8 +57,8 @@ pub struct Servo {
     pub friction: Friction,
     /// Cogging.
     pub cogging: Option<Cogging>,
-    /// Half of the play between the motor and what is measured, rad (or m); at least 0. What is behind it has no inertia and
-    /// stays where it is until it is taken along.
+    /// Half of the play between the motor and what is measured, rad (or m); at least 0. What is behind it has no
+    /// inertia and stays where it is until it is taken along.
     #[serde(default)]
     pub half_gap: f64,
     /// The controller.

@@ -52,8 +52,8 @@ const MAX_NEWTON: usize = 40;
 /// Smallest step of the way from a symmetric relay to an asymmetric one.
 const SMALLEST_STEP: f64 = 1.0 / 256.0;
 
-/// Multipliers this close to 1 do not tell whether a disturbance dies out: several half periods within a delay that is far
-/// longer than all that the plant does just come round again, but for round-off.
+/// Multipliers this close to 1 do not tell whether a disturbance dies out: several half periods within a delay that is
+/// far longer than all that the plant does just come round again, but for round-off.
 const NEUTRAL: f64 = 1e-12;
 
 /// Switches of the run that looks for an asymmetric cycle where continuation fails.
@@ -254,7 +254,8 @@ impl Search {
         found
     }
 
-    /// Step of the scan from the half period `h`: a delay has cycles about `h^2/delay` apart, of which none may be missed.
+    /// Step of the scan from the half period `h`: a delay has cycles about `h^2/delay` apart, of which none may be
+    /// missed.
     fn scan_step(&self, h: f64) -> f64 {
         let step = (SCAN_RATIO - 1.0) * h;
         if h < self.least_of_family() {

@@ -226,8 +226,8 @@ fn noisy_result(
 }
 
 impl LongRunResult {
-    /// The cycle of which equation (9) speaks: not one of a continuum, of which each has another gain, and none whose relay
-    /// slides.
+    /// The cycle of which equation (9) speaks: not one of a continuum, of which each has another gain, and none whose
+    /// relay slides.
     pub fn of_two_levels(&self) -> Option<Cycle> {
         let told = self.outcome != Some(Outcome::Continuum) && self.slides == 0.0;
         self.cycle.filter(|_| told)

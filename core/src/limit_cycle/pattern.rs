@@ -21,8 +21,8 @@ const SEEN: usize = 3;
 /// Cycles that show growth.
 const GROWTH_CYCLES: usize = 16;
 
-/// Growth in the last quarter of the cycles per growth in the third quarter from which on it goes on for ever: growth by
-/// `k^-p` in cycle `k` has a bound from `p = 1` on, where this ratio is 5/7.
+/// Growth in the last quarter of the cycles per growth in the third quarter from which on it goes on for ever: growth
+/// by `k^-p` in cycle `k` has a bound from `p = 1` on, where this ratio is 5/7.
 const GOES_ON: f64 = 0.75;
 
 /// Relative growth a cycle that is none but round-off.

@@ -295,8 +295,8 @@ fn trust_of_continuum(plant: &TransferFunction, relay: &Relay, cycle: &Cycle) ->
         period_error: Some(error),
         amplitude_error: None,
         text: format!(
-            "The describing function {verdict} here: it sees a continuum as well, and at the same amplitude its period is off \
-             by {:+.1} %.",
+            "The describing function {verdict} here: it sees a continuum as well, and at the same amplitude its period \
+             is off by {:+.1} %.",
             100.0 * error
         ),
     }

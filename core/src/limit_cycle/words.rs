@@ -117,8 +117,8 @@ pub(super) fn chatters() -> String {
 
 /// No input of the relay's brings it back.
 pub(super) fn unstable() -> String {
-    "The output grows without bound: the plant is unstable, and has gone farther than the relay's push can bring it back \
-     from."
+    "The output grows without bound: the plant is unstable, and has gone farther than the relay's push can bring it \
+     back from."
         .to_owned()
 }
 
@@ -190,8 +190,8 @@ pub(super) fn irregular(cycles: &[OneCycle]) -> String {
 pub(super) fn leaves(exact: &ExactCycle, cycles: &[OneCycle]) -> String {
     let multiplier = exact.multiplier.unwrap_or(f64::NAN);
     format!(
-        "It leaves the unstable cycle of {} slowly: a disturbance grows by the factor {multiplier:.7} in each period, and \
-         after {} cycles the run has not settled.",
+        "It leaves the unstable cycle of {} slowly: a disturbance grows by the factor {multiplier:.7} in each period, \
+         and after {} cycles the run has not settled.",
         values(&[exact.cycle.period, exact.cycle.amplitude]),
         cycles.len()
     )
@@ -207,9 +207,9 @@ pub(super) fn noisy(
     let [period, amplitude] = [found.period, found.amplitude].map(uncertain);
     if found.chatters() {
         return format!(
-            "The relay chatters in the noise: {:.0} switches in a cycle where two would do. Make its hysteresis ({}) larger \
-             than the noise (standard deviation {}): three times as large is usual. Mean period {period} s, amplitude \
-             {amplitude}.",
+            "The relay chatters in the noise: {:.0} switches in a cycle where two would do. Make its hysteresis ({}) \
+             larger than the noise (standard deviation {}): three times as large is usual. Mean period {period} s, \
+             amplitude {amplitude}.",
             found.switches,
             significant(relay.hysteresis),
             significant(noise.std_dev)

@@ -6,8 +6,8 @@
 //! H_h(z) = z^-(m+1) C (z I - e^{Ah})^-1 [z G(h-L') + e^{A(h-L')} G(L')],   G(t) = int_0^t e^{As} ds B
 //! ```
 //!
-//! (Åström and Wittenmark 1997). A symmetric limit cycle is the input `k, -k, k, ...`, which is `z = -1`: its half period
-//! solves `H_h(-1) = -eps/k`, the same as `(I + e^{Ah}) x0 = ...`, `C x0 = eps` (Tsypkin 1984; Åström 1995).
+//! (Åström and Wittenmark 1997). A symmetric limit cycle is the input `k, -k, k, ...`, which is `z = -1`: its half
+//! period solves `H_h(-1) = -eps/k`, the same as `(I + e^{Ah}) x0 = ...`, `C x0 = eps` (Tsypkin 1984; Åström 1995).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -32,8 +32,8 @@ pub fn z_form(plant: &StateSpace, lag: f64, guess: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// `H_h(-1)` of a plant with the delay `lag` in s for the half period `h` in s; `None` where the cycle is a mode of the plant,
-/// so that it has no value.
+/// `H_h(-1)` of a plant with the delay `lag` in s for the half period `h` in s; `None` where the cycle is a mode of the
+/// plant, so that it has no value.
 pub fn pulse_transfer_at_minus_one(plant: &StateSpace, lag: f64, h: f64) -> Option<f64> {
     let time = |v: f64| v.is_finite() && v > 0.0;
     if plant.validate().is_err() || !time(h) || !(lag == 0.0 || time(lag)) {

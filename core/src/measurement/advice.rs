@@ -17,8 +17,8 @@ const POSITION: Role = Role::Measured(Quantity::Position);
 const VELOCITY: Role = Role::Measured(Quantity::Velocity);
 const OUTPUT: Role = Role::Measured(Quantity::Output);
 
-/// Adds to an error about what the columns are the words with which the file is read, or its values at least: tried out,
-/// so that they are no promise. `columns` finds what the file has, and `refused` says why it is not read in a way.
+/// Adds to an error about what the columns are the words with which the file is read, or its values at least: tried
+/// out, so that they are no promise. `columns` finds what the file has, and `refused` says why it is not read in a way.
 pub(super) fn advise(
     error: ImportError,
     options: &ImportOptions,

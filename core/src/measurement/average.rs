@@ -9,8 +9,8 @@ const LEAST: usize = 5_000;
 /// Share of the power of the input that means may lose.
 const LOST: f64 = 0.005;
 
-/// Stretches in each of which means are compared with what they stand for, how many times the square of the noise they may
-/// leave, and the share of stretches, one in so many, in which something stands out for other reasons.
+/// Stretches in each of which means are compared with what they stand for, how many times the square of the noise they
+/// may leave, and the share of stretches, one in so many, in which something stands out for other reasons.
 const STRETCHES: usize = 2000;
 const LEFT: f64 = 3.0;
 const ODD: usize = 500;
@@ -25,8 +25,8 @@ const HELD: f64 = 0.8;
 /// Times of the usual step in time above which rows are missing.
 const GAP: f64 = 8.0;
 
-/// Puts means of so many samples in the place of a long record of a process where nothing but noise is lost by it, and says
-/// so. The input is the mean of what was held from one time to the next, and an output the mean around its time.
+/// Puts means of so many samples in the place of a long record of a process where nothing but noise is lost by it, and
+/// says so. The input is the mean of what was held from one time to the next, and an output the mean around its time.
 pub(super) fn thin(
     kind: Kind,
     time: &mut Vec<f64>,
@@ -190,8 +190,8 @@ mod tests {
     const SAMPLES: usize = 48_000;
     const NOISE: f64 = 0.02;
 
-    /// Samples that are left of a process with a time constant of so many, whose input goes up and down every `half`, and
-    /// how far its output is off there, at most.
+    /// Samples that are left of a process with a time constant of so many, whose input goes up and down every `half`,
+    /// and how far its output is off there, at most.
     fn left(constant: f64, half: usize) -> (usize, f64) {
         let mut random = Random::new(3);
         let mut time: Vec<f64> = (0..SAMPLES).map(|k| 0.05 * k as f64).collect();

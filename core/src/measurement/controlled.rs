@@ -7,8 +7,8 @@ use super::resembling::{is_set_point, is_warm, resembles};
 const INPUT: Role = Role::Measured(Quantity::Input);
 const OUTPUT: Role = Role::Measured(Quantity::Output);
 
-/// Gives the columns of a controller's log the roles that they have in the loop, and says so: where another column than the one that
-/// is called output is what comes out, that one is the controller's.
+/// Gives the columns of a controller's log the roles that they have in the loop, and says so: where another column than
+/// the one that is called output is what comes out, that one is the controller's.
 pub(super) fn as_in_the_loop(
     fields: &mut [Field],
     rows: impl Iterator<Item = Vec<Option<f64>>>,

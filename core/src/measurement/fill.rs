@@ -131,8 +131,8 @@ fn is_output(role: Role) -> bool {
     matches!(role, Role::Measured(Output | Position | Velocity))
 }
 
-/// The only column that can still be the input when time and outputs have theirs: one that goes up and down, and was not
-/// only wanted.
+/// The only column that can still be the input when time and outputs have theirs: one that goes up and down, and was
+/// not only wanted.
 fn only_left(columns: &[FoundColumn], free: &[usize], found: &[Candidates]) -> Option<usize> {
     let taken = |i: usize| {
         found

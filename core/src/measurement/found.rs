@@ -61,8 +61,8 @@ impl Numbers {
         self.falls == 0
     }
 
-    /// Whether they increase but for a few times at which they are back where they began, as the times of runs that follow
-    /// one another are, or stand still.
+    /// Whether they increase but for a few times at which they are back where they began, as the times of runs that
+    /// follow one another are, or stand still.
     pub fn increase_in_runs(&self) -> bool {
         let Some([least, largest]) = self.range.filter(|_| self.falls > 0) else {
             return false;

@@ -6,8 +6,8 @@ use super::Kind;
 const GAP: f64 = 1.6;
 const RARE: usize = 50;
 
-/// Where the clock is so uneven that there are more, one is a gap that is this many times as long as the longest of the others:
-/// of intervals as random as those of a decay, one in a billion.
+/// Where the clock is so uneven that there are more, one is a gap that is this many times as long as the longest of the
+/// others: of intervals as random as those of a decay, one in a billion.
 const FAR_LONGER: f64 = 5.0;
 
 /// Average steps from which a gap of a process is said: over a shorter one hardly anything moves.

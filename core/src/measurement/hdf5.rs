@@ -1,7 +1,8 @@
 //! HDF5, as MATLAB's `save -v7.3` and others write it, read by the crate `hdf5-pure`.
 //!
-//! Groups are structures. MATLAB writes its arrays column by column with the sizes turned round, so that a matrix read by
-//! the turned sizes is the one that was saved; arrays of structures are, field by field, references to their elements.
+//! Groups are structures. MATLAB writes its arrays column by column with the sizes turned round, so that a matrix read
+//! by the turned sizes is the one that was saved; arrays of structures are, field by field, references to their
+//! elements.
 
 use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group, Object};
 

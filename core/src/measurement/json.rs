@@ -9,7 +9,8 @@ use super::header::shorten;
 use super::series::{Builder, Series};
 use super::text::{Located, decoded};
 
-/// The series of a file, each by the names on the way to it: `log.u`; `None` where the file does not begin as JSON does.
+/// The series of a file, each by the names on the way to it: `log.u`; `None` where the file does not begin as JSON
+/// does.
 pub(super) fn read(bytes: &[u8]) -> Result<Option<Vec<Series>>, Located> {
     let begin = bytes.trim_ascii_start();
     let begin = begin.strip_prefix(b"\xef\xbb\xbf").unwrap_or(begin);
@@ -54,7 +55,8 @@ struct Walk {
     path: String,
 }
 
-/// A place in the file: what stands there goes to the series of its path, and to this row of it, if the rows have begun.
+/// A place in the file: what stands there goes to the series of its path, and to this row of it, if the rows have
+/// begun.
 struct Place<'a> {
     walk: &'a mut Walk,
     row: Option<usize>,

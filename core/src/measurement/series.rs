@@ -37,8 +37,8 @@ pub(super) struct Builder {
     series: Vec<(Series, Clock)>,
     places: HashMap<String, usize>,
     mark: Mark,
-    /// How many values more there may be, with those that are missing between others: each that is there takes a byte of
-    /// the file at least.
+    /// How many values more there may be, with those that are missing between others: each that is there takes a byte
+    /// of the file at least.
     left: usize,
 }
 
@@ -118,8 +118,8 @@ impl Builder {
 /// The series of a file.
 pub(super) struct Table {
     pub series: Vec<Series>,
-    /// Whether the names say what is what, as those of a header do; a workspace of MATLAB has many a variable called x or
-    /// v.
+    /// Whether the names say what is what, as those of a header do; a workspace of MATLAB has many a variable called x
+    /// or v.
     pub named: bool,
 }
 

@@ -12,8 +12,8 @@ const BEGIN: usize = 100;
 /// Steps of noise by which the output of a process moves at least.
 const MOVES: f64 = 5.0;
 
-/// Puts a row at rest without input before the first where the input is constant and all that was measured begins at rest,
-/// and says so.
+/// Puts a row at rest without input before the first where the input is constant and all that was measured begins at
+/// rest, and says so.
 pub(super) fn from_rest(
     time: &mut Vec<f64>,
     input: &mut Channel,

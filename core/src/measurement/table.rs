@@ -11,21 +11,22 @@ use super::{Kind, MIN_SAMPLES, Measurement};
 use super::{found, json, log, text};
 
 /// Reads a measurement, by what the file is and not by its name: a text with columns, JSON (an array or lines of
-/// objects, or an object of arrays), lines of names with values (`t: 0.01 u: 3`), or a file of MATLAB (`save -v6`, `-v7`
-/// and, as HDF5, `-v7.3`).
+/// objects, or an object of arrays), lines of names with values (`t: 0.01 u: 3`), or a file of MATLAB (`save -v6`,
+/// `-v7` and, as HDF5, `-v7.3`).
 ///
-/// The header of a text names the columns with units in brackets: `t [s],u [N m],x1 [rad],v1 [rad/s]` for a
-/// drive, `t [s],u [1],y [1]` for a process. They are divided by comma, semicolon, tab or, where none of
-/// these is there, blanks; with semicolon and tab a decimal comma is understood. What a device says about itself above the
-/// header is passed over. Lines that start with `#` are comments, of which the last one before the numbers is the header
-/// where the file has no other and it names as many columns as there are. Units may stand in a row of their own below the
-/// names. Times are numbers, dates (ISO 8601) or counts from 1970; words such as `True` and `off` are 1 and 0.
+/// The header of a text names the columns with units in brackets: `t [s],u [N m],x1 [rad],v1 [rad/s]` for a drive, `t
+/// [s],u [1],y [1]` for a process. They are divided by comma, semicolon, tab or, where none of these is there, blanks;
+/// with semicolon and tab a decimal comma is understood. What a device says about itself above the header is passed
+/// over. Lines that start with `#` are comments, of which the last one before the numbers is the header where the file
+/// has no other and it names as many columns as there are. Units may stand in a row of their own below the names. Times
+/// are numbers, dates (ISO 8601) or counts from 1970; words such as `True` and `off` are 1 and 0.
 ///
 /// Everything but the signals of a process is converted to SI units; encoder counts state their resolution in the
-/// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). The kind is told by the columns if it is not given. What no
-/// column is called is taken from the only one whose name resembles it, with a warning, and the input from the only one
-/// that is left. Beside a set point the output may be that of a controller, which is the input here: the values tell, and it is
-/// said. A few lines at the end that are no rows are left out with a warning. Other columns are ignored with a warning.
+/// brackets (`x1 [counts, 4096/rev]`, `x1 [counts, 0.001 mm]`). The kind is told by the columns if it is not given.
+/// What no column is called is taken from the only one whose name resembles it, with a warning, and the input from the
+/// only one that is left. Beside a set point the output may be that of a controller, which is the input here: the
+/// values tell, and it is said. A few lines at the end that are no rows are left out with a warning. Other columns are
+/// ignored with a warning.
 ///
 /// A MATLAB file has names but no units, so it needs a mapping, such as
 /// `t=time [s], u=log.current [A], x1=enc [counts:4096]`. Variables in structures are addressed as in

@@ -151,8 +151,8 @@ fn unwrapped(line: &str) -> &str {
 }
 
 /// What stands below each name, where a row has nothing but units in it, or nothing for a column without one; or where
-/// the names have no units, units and names of another kind: a device calls its channels by numbers, and says below what
-/// was recorded on them.
+/// the names have no units, units and names of another kind: a device calls its channels by numbers, and says below
+/// what was recorded on them.
 fn labels(row: &str, separator: char, fields: &[Field]) -> Option<Vec<String>> {
     let mut texts = Vec::with_capacity(fields.len());
     split_row(row, separator, &mut texts);

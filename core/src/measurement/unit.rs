@@ -45,12 +45,12 @@ impl Measures {
 }
 
 /// What is accepted, for messages.
-pub(super) const ACCEPTED: &str = "time s, ms, us, ns, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage V, mV; command %, PWM, counts, 1; angle rad, mrad, deg, rev; \
-    length m, mm, um; velocity rad/s, deg/s, rpm, m/s, mm/s; counts with their resolution, such as [counts, 4096/rev] \
-    or [counts, 0.001 mm]";
+pub(super) const ACCEPTED: &str = "time s, ms, us, ns, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage \
+    V, mV; command %, PWM, counts, 1; angle rad, mrad, deg, rev; length m, mm, um; velocity rad/s, deg/s, rpm, m/s, \
+    mm/s; counts with their resolution, such as [counts, 4096/rev] or [counts, 0.001 mm]";
 
-/// Units that a column of a drive in this role often has, of which counts need their resolution; none for the output of a
-/// process, which may have any.
+/// Units that a column of a drive in this role often has, of which counts need their resolution; none for the output of
+/// a process, which may have any.
 pub fn usual_units(role: Role) -> &'static [&'static str] {
     match role {
         Role::Time => &["s", "ms", "us", "min"],

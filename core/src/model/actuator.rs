@@ -5,8 +5,8 @@
 pub enum Actuator {
     /// It moves towards the command at this rate at most, input unit per s; above 0.
     Rate(f64),
-    /// A valve that sticks and slips (He, Wang, Pottmann and Qin 2007; after Choudhury, Thornhill and Shah 2005, whose `J` is
-    /// the jump and whose `S` is the jump and twice the distance).
+    /// A valve that sticks and slips (He, Wang, Pottmann and Qin 2007; after Choudhury, Thornhill and Shah 2005, whose
+    /// `J` is the jump and whose `S` is the jump and twice the distance).
     Stiction {
         /// How far the stem stays behind the command; at least 0.
         behind: f64,

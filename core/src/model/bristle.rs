@@ -14,8 +14,8 @@ const FORGOTTEN: f64 = 37.0;
 const TOLD: f64 = 5.0;
 const MOST_TOLD: usize = 2_000;
 
-/// Displacement over which friction builds up, in standard deviations of the noise, from which on trembling hardly bends
-/// the contact, and less than the way would that is lost where it is taken out.
+/// Displacement over which friction builds up, in standard deviations of the noise, from which on trembling hardly
+/// bends the contact, and less than the way would that is lost where it is taken out.
 const LONG: f64 = 500.0;
 
 /// The way of a body.
@@ -105,8 +105,8 @@ impl<'e> Bristle<'e> {
         }
     }
 
-    /// Sample from which on the motion tells the deflection at this one, whatever it was before, or so much of the record
-    /// before.
+    /// Sample from which on the motion tells the deflection at this one, whatever it was before, or so much of the
+    /// record before.
     pub fn told_from(&self, sample: usize) -> usize {
         let travelled = &self.way.travelled;
         let since = travelled[sample] - TOLD * self.friction.presliding;

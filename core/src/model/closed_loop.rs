@@ -30,7 +30,8 @@ pub fn run_controlled(
     })
 }
 
-/// The same from a position and a velocity (output of a process); `command` is told the position before the velocity too.
+/// The same from a position and a velocity (output of a process); `command` is told the position before the velocity
+/// too.
 pub fn run_controlled_from(
     model: &Model,
     step: f64,

@@ -26,8 +26,8 @@ const PIECE: f64 = 0.3;
 const LONGEST_PIECE: f64 = 5.0;
 const PIECE_RADIANS: f64 = 0.35;
 
-/// A bristle settles within this many times `s`; a body so fast that its acceleration changes its square of speed by less
-/// than one part in so many within `s` is past that before it has felt more than the impulse of it.
+/// A bristle settles within this many times `s`; a body so fast that its acceleration changes its square of speed by
+/// less than one part in so many within `s` is past that before it has felt more than the impulse of it.
 const SETTLED: f64 = 8.0;
 const FLYING: f64 = 1e3;
 
@@ -55,7 +55,8 @@ pub(super) struct Contact {
     damping: f64,
 }
 
-/// Deflection of a bristle that slips at `limit` after a displacement `moved` one way from the deflection `z` (Dahl 1968).
+/// Deflection of a bristle that slips at `limit` after a displacement `moved` one way from the deflection `z` (Dahl
+/// 1968).
 pub(crate) fn dahl(z: f64, moved: f64, limit: f64) -> f64 {
     let steady = limit * moved.signum();
     steady + (z - steady) * libm::exp(-moved.abs() / limit)
@@ -74,8 +75,8 @@ impl Bent<'_> {
         steady + (self.z - steady) * short::exp(-moved.abs() * self.acting.inverse)
     }
 
-    /// Size of the change of deflection per displacement over `moved`, and by how much its mean over the displacement lies
-    /// above the middle of its ends; `None` where it does not move.
+    /// Size of the change of deflection per displacement over `moved`, and by how much its mean over the displacement
+    /// lies above the middle of its ends; `None` where it does not move.
     fn chord(&self, moved: f64) -> Option<(f64, f64)> {
         let way = moved.abs() * self.acting.inverse;
         if way <= f64::MIN_POSITIVE {
@@ -209,8 +210,8 @@ impl Contact {
             && motion.v.abs() * left > SETTLED * acting.limit
     }
 
-    /// Change of velocity while the deflection grows by `ahead` to where the bristle slips, over what slipping itself does: the
-    /// impulse of `stiffness ahead exp(-|v| t / limit)`, and of the damping of the contact.
+    /// Change of velocity while the deflection grows by `ahead` to where the bristle slips, over what slipping itself
+    /// does: the impulse of `stiffness ahead exp(-|v| t / limit)`, and of the damping of the contact.
     fn kick(&self, acting: &Acting, ahead: f64, v: f64) -> f64 {
         self.b * ahead * (self.stiffness * acting.limit / v.abs() - self.damping)
     }
@@ -232,8 +233,8 @@ impl Contact {
         let held = acting.force - self.stiffness * z;
         let time = self.piece(acting, start.v, start.z + held, share.abs(), left);
         let guess = self.spring(share).moved(here, acting.w, held, time);
-        // The spring that joins the ends of the piece instead of the one at its start, and by how much its mean force is
-        // off: the bristle's is bent between them.
+        // The spring that joins the ends of the piece instead of the one at its start, and by how much its mean force
+        // is off: the bristle's is bent between them.
         let (share, missing) = match bent.chord(guess) {
             Some((joined, missing)) => {
                 let size = joined.clamp(SLIP_SHARE * 0.5, 2.0);
@@ -263,8 +264,8 @@ impl Contact {
         used
     }
 
-    /// Time of a piece of at most `left` seconds in which neither the bristle bends far, under the force `net` on the body,
-    /// nor the contact swings far; `share` of its stiffness is left.
+    /// Time of a piece of at most `left` seconds in which neither the bristle bends far, under the force `net` on the
+    /// body, nor the contact swings far; `share` of its stiffness is left.
     fn piece(&self, acting: &Acting, v: f64, net: f64, share: f64, left: f64) -> f64 {
         let (v, a) = (v.abs(), (net * self.b).abs());
         let mut time = left;

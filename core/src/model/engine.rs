@@ -353,8 +353,8 @@ impl<'m> Engine<'m> {
         }
     }
 
-    /// What makes a process slower one way than the other: with the inertia `J (1 + a)` when it falls and `J (1 - a)` when
-    /// it rises, `held` acts like a force more on `J`.
+    /// What makes a process slower one way than the other: with the inertia `J (1 + a)` when it falls and `J (1 - a)`
+    /// when it rises, `held` acts like a force more on `J`.
     fn slower(&self, state: &State, held: f64) -> f64 {
         let asymmetry = self.model.slow_fall;
         if asymmetry == 0.0 {

@@ -1,10 +1,10 @@
 //! A load behind a gap, known by the force that the body felt.
 //!
 //! Where body and load meet again and again, a load that is simulated from its beginning is lost soon, whether the body
-//! is simulated too or moved as measured: every contact multiplies what was wrong before it. What the known forces do not
-//! explain of the body's measured motion is the push of the load, and the same push moves the load: its momentum is told
-//! by that of the body, contact by contact, without that growth. Its place is that momentum's integral, which drifts;
-//! while they touch, it is told by the gap. A Kalman filter (1960) joins both.
+//! is simulated too or moved as measured: every contact multiplies what was wrong before it. What the known forces do
+//! not explain of the body's measured motion is the push of the load, and the same push moves the load: its momentum is
+//! told by that of the body, contact by contact, without that growth. Its place is that momentum's integral, which
+//! drifts; while they touch, it is told by the gap. A Kalman filter (1960) joins both.
 
 use super::flow::Motion;
 use super::followed::Followed;
@@ -25,7 +25,8 @@ const STILL: f64 = 0.01;
 const PUSH: f64 = 6.0;
 const WEAKEST: f64 = 0.01;
 
-/// Uncertainty of the load's velocity that grows in so many samples, as a share of the body's usual speed, and the least.
+/// Uncertainty of the load's velocity that grows in so many samples, as a share of the body's usual speed, and the
+/// least.
 const GROWN: f64 = 0.01;
 const GROWING: f64 = 1000.0;
 const LEAST: f64 = 0.003;

@@ -5,8 +5,8 @@ use super::friction::{Mode, slide};
 use super::load::Load;
 use super::swing::{Parabola, Swing};
 
-/// Times the noise of a joint's load by which it may be off: encoders do not err at random, and between samples the body
-/// moves in a way of its own.
+/// Times the noise of a joint's load by which it may be off: encoders do not err at random, and between samples the
+/// body moves in a way of its own.
 const WIDELY: f64 = 10.0;
 
 /// Standard deviation of the noise of what a load follows: measured position, or the integral of measured velocity.
@@ -133,8 +133,8 @@ impl<'m> Follower<'m> {
         self.follow(position, sample, h, |_, _| ());
     }
 
-    /// Follows up to sample `to`; `h` tells the time from a sample to the next, and `torque` takes the mean torque or force
-    /// on the load after each.
+    /// Follows up to sample `to`; `h` tells the time from a sample to the next, and `torque` takes the mean torque or
+    /// force on the load after each.
     fn follow(
         &mut self,
         position: &[f64],
@@ -198,8 +198,8 @@ impl<'m> Follower<'m> {
         }
     }
 
-    /// Follows up to sample `to` as long as a load behind a gap meets neither side and does not turn: what [`Self::step`]
-    /// does, without asking at each sample what else may happen.
+    /// Follows up to sample `to` as long as a load behind a gap meets neither side and does not turn: what
+    /// [`Self::step`] does, without asking at each sample what else may happen.
     fn coast(
         &mut self,
         position: &[f64],

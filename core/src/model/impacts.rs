@@ -1,8 +1,8 @@
 //! Body and load that come together and part between two samples.
 //!
 //! Each flies freely until the twist reaches the half gap; in contact both move on the joint, until that would pull.
-//! Coming and going are located as events: with a damped contact the force jumps there, so that steps of any given length
-//! would be off by a part of such a jump, and after some contacts the whole motion would.
+//! Coming and going are located as events: with a damped contact the force jumps there, so that steps of any given
+//! length would be off by a part of such a jump, and after some contacts the whole motion would.
 
 use super::Load;
 use super::flow::Flow;
@@ -14,8 +14,8 @@ use crate::root::falsi;
 /// Events in one interval after which the rest is left to small steps.
 const MAX_EVENTS: usize = 24;
 
-/// Radians of the contact's oscillation in one piece, over which its power series is exact, and parts of a piece at which
-/// it is looked whether the contact has ended.
+/// Radians of the contact's oscillation in one piece, over which its power series is exact, and parts of a piece at
+/// which it is looked whether the contact has ended.
 const PIECE_RADIANS: f64 = 0.5;
 const PARTS: u32 = 4;
 
@@ -38,8 +38,8 @@ pub(super) struct Impacts<'a> {
 }
 
 impl Impacts<'_> {
-    /// Moves `state` on for `h` seconds, but for what is returned: the rest after very many events, or after a turn from
-    /// which friction bends. The number of pieces is added to `pieces`.
+    /// Moves `state` on for `h` seconds, but for what is returned: the rest after very many events, or after a turn
+    /// from which friction bends. The number of pieces is added to `pieces`.
     pub fn advance(&self, state: &mut State, h: f64, pieces: &mut u32) -> f64 {
         let mut left = h;
         let mut touches = self.pushes(state);
@@ -186,8 +186,8 @@ impl Impacts<'_> {
         next
     }
 
-    /// Motion in contact for a piece of at most `left` seconds, or until an event; the time used, and whether the contact goes
-    /// on.
+    /// Motion in contact for a piece of at most `left` seconds, or until an event; the time used, and whether the
+    /// contact goes on.
     fn press(&self, state: &mut State, left: f64) -> (f64, bool) {
         let joint = &self.load.coupling;
         let side = state.twist.signum();

@@ -5,8 +5,8 @@
 //! T = K s + D (v - u)
 //! ```
 //!
-//! with the twist `s`, the velocity `u` of the load, and `w` (input), `q` and `p` (friction and load) held. It is linear,
-//! so that one matrix exponential carries it over a sampling interval, however fast the joint swings in it.
+//! with the twist `s`, the velocity `u` of the load, and `w` (input), `q` and `p` (friction and load) held. It is
+//! linear, so that one matrix exponential carries it over a sampling interval, however fast the joint swings in it.
 
 use nalgebra::{DMatrix, SMatrix, SVector};
 
@@ -129,8 +129,8 @@ impl Joint {
         }
     }
 
-    /// Motion from here under these forces, over times in which the joint does not swing far; body or load may be held by dry
-    /// friction.
+    /// Motion from here under these forces, over times in which the joint does not swing far; body or load may be held
+    /// by dry friction.
     pub fn series(&self, joined: &Joined, forces: &Forces, [body, load]: [bool; 2]) -> Series {
         let all = joined.vector(forces);
         let mut terms = [all.fixed_rows::<MOVING>(0).into_owned(); TERMS];
@@ -155,7 +155,8 @@ impl Joint {
         }
     }
 
-    /// Rates of change of what moves. Two thirds of the matrix are 0, and contacts take most of the time of a fit with a gap.
+    /// Rates of change of what moves. Two thirds of the matrix are 0, and contacts take most of the time of a fit with
+    /// a gap.
     fn rate(
         &self,
         moving: &SVector<f64, MOVING>,

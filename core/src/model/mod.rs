@@ -1,11 +1,11 @@
 //! A model put together from mechanisms, and its motion under a measured input.
 //!
-//! Input path, body, dry friction, further forces, a load and the sensor are the mechanisms; an
-//! effect sets the ones that it needs. The order is: static maps of the input, an actuator with a memory, dead time, lag,
-//! body, sensor. Between events the motion of body and load is an exact flow; sticking and slipping are
-//! modes with guards, and so is contact: where body and load come together or apart is located as an event. Smooth
-//! forces, and all that acts with them or with a soft bristle between body and load, are held at their value at the middle
-//! of steps short against their change (exponential midpoint rule, second order).
+//! Input path, body, dry friction, further forces, a load and the sensor are the mechanisms; an effect sets the ones
+//! that it needs. The order is: static maps of the input, an actuator with a memory, dead time, lag, body, sensor.
+//! Between events the motion of body and load is an exact flow; sticking and slipping are modes with guards, and so is
+//! contact: where body and load come together or apart is located as an event. Smooth forces, and all that acts with
+//! them or with a soft bristle between body and load, are held at their value at the middle of steps short against
+//! their change (exponential midpoint rule, second order).
 
 mod actuator;
 mod bristle;
@@ -124,8 +124,8 @@ pub struct Model {
     pub delay: f64,
     /// Time constant of the input lag, s; above 0.
     pub lag: Option<f64>,
-    /// Share of the input of a process that passes by the lag, so that it acts at once; below 0, it first acts the wrong
-    /// way.
+    /// Share of the input of a process that passes by the lag, so that it acts at once; below 0, it first acts the
+    /// wrong way.
     pub direct: f64,
     /// Share by which a process takes longer to fall than in the mean, and shorter to rise; -1 to 1.
     pub slow_fall: f64,

@@ -14,8 +14,8 @@ use super::{Engine, Load, Model, State};
 pub struct Start {
     /// Index of the first sample.
     pub sample: usize,
-    /// Position there, rad or m; 0 where it cannot be known. A process has none: at its first sample this is by how much what
-    /// its lag had stored, or what its slow sensor showed, is off what the input and the output there say.
+    /// Position there, rad or m; 0 where it cannot be known. A process has none: at its first sample this is by how
+    /// much what its lag had stored, or what its slow sensor showed, is off what the input and the output there say.
     pub position: f64,
     /// Velocity there, rad/s or m/s; the output of a process.
     pub velocity: f64,
@@ -165,11 +165,11 @@ impl Excitation {
 
     /// Runs `model` through the record and writes position and velocity at every simulated sample.
     ///
-    /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state
-    /// given there. Of the hidden states the lagged input goes on from the window before; a load (`follow`)
-    /// and the deflection of a friction contact are where they must be if the body moved as measured. Where the velocity
-    /// alone was measured, the contact goes on as well, and comes to the begin of a run by itself. Returns the pieces of
-    /// motion that this took, one an interval at least unless nothing moves.
+    /// At each of `starts` (ascending, the first at sample 0) the body restarts from the state given there. Of the
+    /// hidden states the lagged input goes on from the window before; a load (`follow`) and the deflection of a
+    /// friction contact are where they must be if the body moved as measured. Where the velocity alone was measured,
+    /// the contact goes on as well, and comes to the begin of a run by itself. Returns the pieces of motion that this
+    /// took, one an interval at least unless nothing moves.
     pub fn replay(
         &self,
         model: &Model,
@@ -244,7 +244,8 @@ impl Excitation {
         }
     }
 
-    /// What is stored before the body at first, under an input that was `before`: where the body rests, what keeps it there.
+    /// What is stored before the body at first, under an input that was `before`: where the body rests, what keeps it
+    /// there.
     fn stored(&self, model: &Model, starts: &[Start], before: f64) -> f64 {
         match starts.first().filter(|_| model.load_before_lag) {
             Some(start) if self.at_rest => model.viscous * start.velocity,
@@ -252,8 +253,8 @@ impl Excitation {
         }
     }
 
-    /// Whether a process holds more than its output tells at first: the input before the record is not known, and what a lag
-    /// had stored of it, or had not shown yet, is a state of its own. Where nothing moved before, it is.
+    /// Whether a process holds more than its output tells at first: the input before the record is not known, and what
+    /// a lag had stored of it, or had not shown yet, is a state of its own. Where nothing moved before, it is.
     pub(crate) fn doubts_store_of(&self, model: &Model) -> bool {
         let slow = model.lag.is_some() || model.sensor_lag.is_some();
         self.position.is_empty() && !self.at_rest && slow

@@ -50,8 +50,8 @@ pub struct Play {
 }
 
 impl Play {
-    /// Velocity of a load with velocity `v` after the push of a contact. Its dry friction takes a part from the push of a
-    /// load at rest; one that moves was slowed by it on its way to the centre of the push.
+    /// Velocity of a load with velocity `v` after the push of a contact. Its dry friction takes a part from the push of
+    /// a load at rest; one that moves was slowed by it on its way to the centre of the push.
     fn pushed(&self, v: f64, contact: &SeenContact) -> f64 {
         let gained = self.ratio * contact.jump;
         if v == 0.0 {
@@ -161,8 +161,8 @@ impl LoadState {
         [gx, gv]
     }
 
-    /// Whether the motor went through the load, which cannot be: touches too light to be seen pushed it along, and it is
-    /// lost. What is within the noise of places is no such thing.
+    /// Whether the motor went through the load, which cannot be: touches too light to be seen pushed it along, and it
+    /// is lost. What is within the noise of places is no such thing.
     pub fn is_passed(&self, turn: &Turn, half_gap: f64, sharpness: &Sharpness) -> bool {
         let within = turn.side * (turn.position - self.x) - half_gap;
         within > PASSED * (self.covariance[0] + sharpness.place.powi(2)).sqrt()

@@ -16,8 +16,8 @@ pub(super) struct SlowSensor<'a> {
 }
 
 impl SlowSensor<'_> {
-    /// Passes a run of a signal through the lag, straight between its samples. A run that begins within
-    /// the record begins as if the signal had come the same way before, or so that what was shown comes out best; the record
+    /// Passes a run of a signal through the lag, straight between its samples. A run that begins within the record
+    /// begins as if the signal had come the same way before, or so that what was shown comes out best; the record
     /// itself with a sensor that is `off` the signal.
     pub fn pass(&self, signal: &mut [f64], (from, end): (usize, usize)) {
         let lag = self.lag;

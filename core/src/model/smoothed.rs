@@ -1,20 +1,21 @@
 //! The position of a body without the noise of its sensors, from all of them.
 //!
-//! A Kalman filter and a smoother back over it (Rauch, Tung and Striebel 1965), with an acceleration that is white noise.
-//! How strong that is, the record tells: the strength under which the innovations are most likely. A stiff contact that
-//! follows the measured position itself would be pressed by its noise.
+//! A Kalman filter and a smoother back over it (Rauch, Tung and Striebel 1965), with an acceleration that is white
+//! noise. How strong that is, the record tells: the strength under which the innovations are most likely. A stiff
+//! contact that follows the measured position itself would be pressed by its noise.
 
 /// An output and the standard deviation of its noise.
 pub type Seen<'a> = (&'a [f64], f64);
 
-/// Strengths that are tried, in times of that at which one sample of acceleration stands out of the noise, as powers of 4.
+/// Strengths that are tried, in times of that at which one sample of acceleration stands out of the noise, as powers of
+/// 4.
 const POWERS: std::ops::RangeInclusive<i32> = -9..=9;
 
 /// Samples on which they are tried.
 const TRIED: usize = 4_000;
 
-/// Position at every sample; at least one of `position` and `velocity` is seen. The integral of the velocity from 0 where
-/// only that is seen.
+/// Position at every sample; at least one of `position` and `velocity` is seen. The integral of the velocity from 0
+/// where only that is seen.
 pub fn smoothed(time: &[f64], position: Option<Seen>, velocity: Option<Seen>) -> Vec<f64> {
     let sensors = Sensors { position, velocity };
     let n = time.len();

@@ -86,8 +86,8 @@ impl Swing {
         force * self.h * self.h / self.inertia
     }
 
-    /// Place of the load from where the body begins, and its velocity times `h`, after the interval; from where it begins,
-    /// whatever the body's `from`.
+    /// Place of the load from where the body begins, and its velocity times `h`, after the interval; from where it
+    /// begins, whatever the body's `from`.
     pub fn next(&self, [place, velocity]: [f64; 2], body: &Parabola, pull: f64) -> [f64; 2] {
         let f = &self.flow;
         // The load's own part last: the next interval waits for it.

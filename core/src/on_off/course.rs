@@ -1,5 +1,5 @@
-//! The run from event to event: arrivals of changes, ends of holds, sampling instants, and crossings of thresholds, which
-//! are roots of the series that carry the output over a step.
+//! The run from event to event: arrivals of changes, ends of holds, sampling instants, and crossings of thresholds,
+//! which are roots of the series that carry the output over a step.
 
 use std::collections::VecDeque;
 

@@ -1,8 +1,8 @@
 //! The cycle in which a loop ends.
 //!
 //! A run shows its pattern: positions, and why each ends. Newton's method then finds the state and the durations that
-//! repeat exactly, `x(T) = x(0)` with `C x = threshold` at each switch that a crossing causes; those that a clock causes are
-//! known. A replay checks that the controller switches then and only then.
+//! repeat exactly, `x(T) = x(0)` with `C x = threshold` at each switch that a crossing causes; those that a clock
+//! causes are known. A replay checks that the controller switches then and only then.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};

@@ -57,10 +57,10 @@ fn gain(loop_: &OnOffLoop, amplitude: f64) -> Complex<f64> {
     )
 }
 
-/// All balances, by rising frequency; `None` where the first harmonic is not known: three positions with outputs that differ
-/// or a reference that is not 0, and these in discrete time. With two positions they are a bias, and the mean balances as
-/// well. A sampled controller acts half its sampling time later in the mean; in discrete time the samples of plant and
-/// controller are the same, and do not. A balance that breaks a shortest time is left out.
+/// All balances, by rising frequency; `None` where the first harmonic is not known: three positions with outputs that
+/// differ or a reference that is not 0, and these in discrete time. With two positions they are a bias, and the mean
+/// balances as well. A sampled controller acts half its sampling time later in the mean; in discrete time the samples
+/// of plant and controller are the same, and do not. A balance that breaks a shortest time is left out.
 pub fn describing_function(loop_: &OnOffLoop) -> Option<Vec<Balance>> {
     loop_.validate().ok()?;
     let relay = &loop_.relay;
@@ -91,7 +91,8 @@ pub(super) struct Curves {
 /// Points of each curve.
 const DRAWN: i32 = 600;
 
-/// What is drawn of `-1/N(A)`: amplitudes from this share above the least, up to so many times the largest that balances.
+/// What is drawn of `-1/N(A)`: amplitudes from this share above the least, up to so many times the largest that
+/// balances.
 const JUST_ABOVE: f64 = 1e-3;
 const FURTHER: f64 = 2.5;
 

@@ -1,9 +1,9 @@
-//! What does an on-off controller do as it is built? A dead zone between heating and cooling, minimum on and off times, a
-//! sampling time; around a plant in continuous time, or in discrete time.
+//! What does an on-off controller do as it is built? A dead zone between heating and cooling, minimum on and off times,
+//! a sampling time; around a plant in continuous time, or in discrete time.
 //!
-//! [`run`] simulates it, from event to event by exact flows; [`settled`] finds the cycle in which it ends, its switches to
-//! round-off, and whether it is stable; [`describing_function`] predicts it by the first harmonic; [`view`] gives all of it for
-//! drawing.
+//! [`run`] simulates it, from event to event by exact flows; [`settled`] finds the cycle in which it ends, its switches
+//! to round-off, and whether it is stable; [`describing_function`] predicts it by the first harmonic; [`view`] gives
+//! all of it for drawing.
 
 mod course;
 mod cycle;

@@ -110,7 +110,8 @@ impl OnOffRelay {
         [self.reference + low, self.reference + high]
     }
 
-    /// The next position after the plant's output has left the guards upwards or downwards; `output` may be further out.
+    /// The next position after the plant's output has left the guards upwards or downwards; `output` may be further
+    /// out.
     pub fn next(&self, position: Position, upwards: bool, output: f64) -> Position {
         let outward = if upwards {
             Position::Down

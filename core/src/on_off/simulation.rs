@@ -5,8 +5,8 @@ use super::run::{OnOffLoop, OnOffRun};
 use crate::plant::MAX_ORDER;
 use crate::simulate::{MAX_SWITCHES, Noise, Options, SimulateError};
 
-/// Runs a loop for `duration` s with samples every `step` s, or at every sample of a plant in discrete time; with noise on
-/// the output that the controller sees, if there is some. What is recorded is the output without it.
+/// Runs a loop for `duration` s with samples every `step` s, or at every sample of a plant in discrete time; with noise
+/// on the output that the controller sees, if there is some. What is recorded is the output without it.
 ///
 /// # Errors
 /// What is wrong with the loop, with these times or with the noise.

@@ -1,9 +1,9 @@
 //! Do small disturbances of a cycle die out?
 //!
 //! Disturbances of the state and of the instants of switches are followed through a period. A crossing comes later by
-//! `-C dx/(C v)`, `v` the velocity just before; what a clock decides comes at its time, and the end of a hold as late as the
-//! switch at its begin. A change of the input that arrives later by `dt` leaves `B (u_before - u_after) dt`. Of a loop
-//! without a clock one eigenvalue is 1, that of a shift in time, which is no disturbance.
+//! `-C dx/(C v)`, `v` the velocity just before; what a clock decides comes at its time, and the end of a hold as late
+//! as the switch at its begin. A change of the input that arrives later by `dt` leaves `B (u_before - u_after) dt`. Of
+//! a loop without a clock one eigenvalue is 1, that of a shift in time, which is no disturbance.
 
 use std::collections::VecDeque;
 

@@ -48,8 +48,8 @@ pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
         &mut out,
         tongue,
         &picture(tongue, discovery, &fronts),
-        "Every formula that was simulated: its length in names, numbers and signs, and what it leaves of blocks that its fit \
-         did not see, in units of the noise.",
+        "Every formula that was simulated: its length in names, numbers and signs, and what it leaves of blocks that \
+         its fit did not see, in units of the noise.",
     );
     let others = fronts.into_iter().filter(|f| !f.in_class);
     let rows: Vec<Vec<Cell>> = discovery

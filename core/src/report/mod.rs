@@ -94,8 +94,8 @@ fn answer(out: &mut String, input: &ReportInput) {
     let tongue = input.tongue;
     let title = format!("What is missing from the model of {}?", measurement.name);
     let facts = format!(
-        "{} samples of a {kind} over {} s. Error of the model on the part of the record that it was not fitted to: {} × \
-         the measurement noise; a perfect model would leave {}.",
+        "{} samples of a {kind} over {} s. Error of the model on the part of the record that it was not fitted to: {} \
+         × the measurement noise; a perfect model would leave {}.",
         measurement.len(),
         brief(duration),
         brief(step.error),

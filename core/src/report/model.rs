@@ -172,8 +172,9 @@ pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
             &rows,
         );
     }
-    let explained = "Error: after a refit, on the part of the record that the model was not fitted to, in units of the noise. \
-                     Evidence: change of the Bayesian information criterion on the fitted data, negative is better.";
+    let explained = "Error: after a refit, on the part of the record that the model was not fitted to, in units of the \
+                     noise. Evidence: change of the Bayesian information criterion on the fitted data, negative is \
+                     better.";
     let _ = writeln!(out, "<p class=\"small\">{}</p>", tongue.page(explained));
     out
 }

@@ -36,7 +36,8 @@ pub enum AnyScenario {
 }
 
 impl AnyScenario {
-    /// Reads a scenario: a drive if it has a table `[drive]`, a servo if it has `[servo]`, else a loop, of an on-off controller if a key says so.
+    /// Reads a scenario: a drive if it has a table `[drive]`, a servo if it has `[servo]`, else a loop, of an on-off
+    /// controller if a key says so.
     ///
     /// # Errors
     /// Line and column of what is no TOML or not expected, or the table and value that cannot be.

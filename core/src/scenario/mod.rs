@@ -33,8 +33,8 @@
 //! sampling = 1.0                         # s; it sees the output at these instants only
 //! ```
 //!
-//! With `sampling_time` in s beside them, `numerator` and `denominator` are polynomials in `z`; the relay then works at the
-//! plant's samples.
+//! With `sampling_time` in s beside them, `numerator` and `denominator` are polynomials in `z`; the relay then works at
+//! the plant's samples.
 //!
 //! With `[servo]` it is a controller of the position around a drive, without a relay; see [`crate::hunting`]:
 //!
@@ -52,8 +52,9 @@
 //! noise = { std_dev = 1e-4, interval = 0.01 }  # on the position that the controller sees; none if left out
 //! ```
 //!
-//! `[run]` is what `hysteron simulate` runs. *Explore* shows as much of a loop as its cycle needs: of `[run]` it takes the
-//! noise of a relay with two levels and the output at the start of an on-off controller, and says what it leaves out.
+//! `[run]` is what `hysteron simulate` runs. *Explore* shows as much of a loop as its cycle needs: of `[run]` it takes
+//! the noise of a relay with two levels and the output at the start of an on-off controller, and says what it leaves
+//! out.
 //!
 //! With `[drive]` in place of `[plant]` it is a motor and a load with play between them, under a relay on
 //! the motor's velocity; see [`crate::drive`] for its parameters.

@@ -175,7 +175,8 @@ impl<'a> Engine<'a> {
         self.channels[i].out.input.push([self.now, self.u[i]]);
     }
 
-    /// Runs until `end` s; false if the relay switched too often, or a plant much faster than the run takes too many steps.
+    /// Runs until `end` s; false if the relay switched too often, or a plant much faster than the run takes too many
+    /// steps.
     pub fn run(&mut self, end: f64) -> bool {
         let mut steps = 0;
         // A step that does not move time on is an event, and events are counted.

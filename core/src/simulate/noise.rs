@@ -22,8 +22,8 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// The noise on the output of a single loop at these times (s, increasing), as the relay of [`run`](super::run) sees
-    /// it there.
+    /// The noise on the output of a single loop at these times (s, increasing), as the relay of [`run`](super::run)
+    /// sees it there.
     pub fn at(self, times: &[f64]) -> Vec<f64> {
         let mut along = NoiseAlong::new(self, 0);
         let value = |t: &f64| {

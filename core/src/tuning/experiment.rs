@@ -82,8 +82,8 @@ impl RelayTest {
     /// Puts a valid `plant` under a valid `relay` and measures the settled cycle.
     ///
     /// # Errors
-    /// [`TuningError::Chattering`], [`TuningError::TooFast`], or [`TuningError::NoOscillation`] where the cycle does not come to
-    /// repeat itself with two switches a period.
+    /// [`TuningError::Chattering`], [`TuningError::TooFast`], or [`TuningError::NoOscillation`] where the cycle does
+    /// not come to repeat itself with two switches a period.
     pub fn run(plant: &TransferFunction, relay: &Relay) -> Result<Self, TuningError> {
         let space = plant.state_space();
         let lag = plant.dead_time + relay.delay;

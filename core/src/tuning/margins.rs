@@ -30,8 +30,8 @@ pub struct Margins {
 /// Largest turn of the characteristic function between two frequencies that is taken as it is.
 const TURN: f64 = 0.5;
 
-/// Angle, rad, by which a dead time turns the curve at most while it is followed: each turn takes work, and a fast lag with a
-/// dead time fades only after very many.
+/// Angle, rad, by which a dead time turns the curve at most while it is followed: each turn takes work, and a fast lag
+/// with a dead time fades only after very many.
 const FARTHEST: f64 = 1e4;
 
 /// Halvings of an interval in which it turns by more.

@@ -44,8 +44,8 @@ pub struct UltimateReport {
     pub amplitude_convention: String,
     /// By `K_u = |N(a)| = 4k/(pi a)`, equation (9), whatever the hysteresis.
     pub by_relay: Ultimate,
-    /// By `-1/Re(-1/N(a)) = 4k/(pi sqrt(a^2 - eps^2))`: where the line of the relay, moved along the imaginary axis, would
-    /// meet the real one (Åström and Hägglund 1984). Not the paper's (9).
+    /// By `-1/Re(-1/N(a)) = 4k/(pi sqrt(a^2 - eps^2))`: where the line of the relay, moved along the imaginary axis,
+    /// would meet the real one (Åström and Hägglund 1984). Not the paper's (9).
     pub on_real_axis: Ultimate,
     /// From the plant's phase crossover; `None` where its phase never falls through -180 degrees.
     pub truth: Option<Ultimate>,
@@ -57,7 +57,8 @@ pub struct UltimateReport {
     pub period_error: Option<f64>,
 }
 
-/// `|N(a)| = 4k/(pi a)`, equation (9), whatever the hysteresis: `gain` of the relay, amplitude `a` (half of peak to peak).
+/// `|N(a)| = 4k/(pi a)`, equation (9), whatever the hysteresis: `gain` of the relay, amplitude `a` (half of peak to
+/// peak).
 ///
 /// ```
 /// // The ideal relay around e^(-0.5 s)/(s + 1): amplitude 1 - e^(-0.5).
@@ -68,8 +69,8 @@ pub fn ultimate_gain(gain: f64, amplitude: f64) -> f64 {
     4.0 * gain / (PI * amplitude)
 }
 
-/// `4k/(pi sqrt(a^2 - eps^2))`: the inverse of the real part of `-1/N(a)` (Åström and Hägglund 1984); the paper's (9) is
-/// [`ultimate_gain`].
+/// `4k/(pi sqrt(a^2 - eps^2))`: the inverse of the real part of `-1/N(a)` (Åström and Hägglund 1984); the paper's (9)
+/// is [`ultimate_gain`].
 pub fn gain_on_real_axis(gain: f64, amplitude: f64, hysteresis: f64) -> f64 {
     let (a, eps) = (amplitude, hysteresis);
     ultimate_gain(gain, ((a - eps) * (a + eps)).max(0.0).sqrt())
@@ -161,9 +162,9 @@ impl StabilityLimits {
     }
 }
 
-/// The least range of gains in which a valid `plant` is stable, by the Nyquist criterion: from crossing to crossing of the
-/// negative real axis a pair of poles goes to the right (falling phase) or comes back. A real pole of an unstable plant
-/// crosses at frequency 0, so that the period of such a limit is infinite. Empty where no gain is stable.
+/// The least range of gains in which a valid `plant` is stable, by the Nyquist criterion: from crossing to crossing of
+/// the negative real axis a pair of poles goes to the right (falling phase) or comes back. A real pole of an unstable
+/// plant crosses at frequency 0, so that the period of such a limit is infinite. Empty where no gain is stable.
 pub fn stability_limits(plant: &TransferFunction) -> StabilityLimits {
     let mut crossings = crossings(plant);
     let gain = plant.dc_gain();
@@ -207,8 +208,8 @@ pub fn stability_limits(plant: &TransferFunction) -> StabilityLimits {
     limits
 }
 
-/// What a loop without limits is, by its poles at a gain of the plant's size; with a dead time it has none that could be
-/// computed, and is what it is at a small gain.
+/// What a loop without limits is, by its poles at a gain of the plant's size; with a dead time it has none that could
+/// be computed, and is what it is at a small gain.
 fn without_limit(plant: &TransferFunction, stable_at_small_gain: bool) -> Without {
     if plant.dead_time > 0.0 {
         return if stable_at_small_gain {
@@ -243,7 +244,8 @@ fn without_limit(plant: &TransferFunction, stable_at_small_gain: bool) -> Withou
     }
 }
 
-/// Real part of a pole, as share of the typical frequency, that is none but round-off; a double root has half of the digits.
+/// Real part of a pole, as share of the typical frequency, that is none but round-off; a double root has half of the
+/// digits.
 const ON_AXIS: f64 = 1e-7;
 
 /// Share of the typical frequency at which a Nyquist curve leaves frequency 0.
@@ -315,8 +317,8 @@ const AT_ULTIMATE: f64 = 5.0;
 
 /// The ultimate gain that a limit cycle of `plant` under `relay` gives, with what the cycle shows and the truth.
 ///
-/// An asymmetric relay pushes for unequal times, and `4k/(pi a)` does not hold for it: the ratio of the first harmonics of
-/// its output and of the plant's does, and that is `1/|P(jw)|`.
+/// An asymmetric relay pushes for unequal times, and `4k/(pi a)` does not hold for it: the ratio of the first harmonics
+/// of its output and of the plant's does, and that is `1/|P(jw)|`.
 pub fn relay_gain(plant: &TransferFunction, relay: &Relay, cycle: &Cycle) -> RelayGain {
     let shown = ShownPoint::new(plant, cycle.period);
     let symmetric = relay.is_symmetric();

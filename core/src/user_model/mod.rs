@@ -16,8 +16,9 @@
 //! formula = "-a*exp(-((x-b)/c)^2)"                 # x, v, u, t of a drive; y, u, t of a process
 //! ```
 //!
-//! An effect with a `formula` may stand under `[[effects]]` as well. What is not mentioned is free. `status` ("fixed", "prior", "free") says it outright; `unit`, if it is
-//! there, must be the one that the parameter has in the measurement.
+//! An effect with a `formula` may stand under `[[effects]]` as well. What is not mentioned is free. `status` ("fixed",
+//! "prior", "free") says it outright; `unit`, if it is there, must be the one that the parameter has in the
+//! measurement.
 
 mod form;
 mod read;

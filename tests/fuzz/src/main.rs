@@ -1,5 +1,5 @@
-//! Gives every reader of Hysteron inputs that were made wrong, and fails on a panic, on one that takes longer than 2 s, and
-//! on more than 1 GB of memory: `cargo xtask fuzz --minutes 5`. The same seed makes the same inputs.
+//! Gives every reader of Hysteron inputs that were made wrong, and fails on a panic, on one that takes longer than 2 s,
+//! and on more than 1 GB of memory: `cargo xtask fuzz --minutes 5`. The same seed makes the same inputs.
 
 mod doors;
 mod inputs;

@@ -1,5 +1,5 @@
-//! Fig. 8: the two-mass structure as a block diagram whose blocks light up by mode, with the distance in the gap and the
-//! momentum of equation (11) over time.
+//! Fig. 8: the two-mass structure as a block diagram whose blocks light up by mode, with the distance in the gap and
+//! the momentum of equation (11) over time.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 use egui_plot::{HLine, Line, LineStyle, VLine};

@@ -34,7 +34,8 @@ impl Compare {
         self.unknown.left.extend(searching.map(|s| s.effects));
     }
 
-    /// Takes what was found, and begins by itself where a diagnosis has ended as unknown and nothing else is to be done.
+    /// Takes what was found, and begins by itself where a diagnosis has ended as unknown and nothing else is to be
+    /// done.
     pub(super) fn take_discovery(&mut self, ctx: &egui::Context) {
         if let Some(searching) = &mut self.unknown.searching {
             let progress = &mut searching.progress;

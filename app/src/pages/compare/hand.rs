@@ -1,4 +1,5 @@
-//! Parameters that are set by hand: what is in view answers within the frame, the whole record when the slider is let go.
+//! Parameters that are set by hand: what is in view answers within the frame, the whole record when the slider is let
+//! go.
 
 use hysteron_core::by_hand::ByHand;
 use hysteron_work::tasks::HandTask;

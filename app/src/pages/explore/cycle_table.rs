@@ -4,7 +4,8 @@ use crate::language::{tr, tr_number};
 use crate::theme;
 use crate::widgets::chart::significant;
 
-/// What one way says of the cycle: numbers in the order of the titles, and whether it is stable; nothing where it sees none.
+/// What one way says of the cycle: numbers in the order of the titles, and whether it is stable; nothing where it sees
+/// none.
 pub type Row<const N: usize> = Option<([f64; N], Option<bool>)>;
 
 /// The three ways, in the order of [`ui`].

@@ -36,8 +36,8 @@ impl Explore {
                 let keys = report.left_out.join(", ");
                 self.left_out = (!keys.is_empty()).then(|| {
                     format!(
-                        "Explore shows as much as the cycle needs. Of the run in the file it leaves out: {keys}. The command line \
-                         has it: hysteron simulate."
+                        "Explore shows as much as the cycle needs. Of the run in the file it leaves out: {keys}. The \
+                         command line has it: hysteron simulate."
                     )
                 });
                 self.opened = Some(report.report);

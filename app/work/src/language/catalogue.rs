@@ -9,9 +9,9 @@
 //! Aus {2} wird {1} gelesen
 //! ```
 //!
-//! Two lines each, English first, an empty line between them. `{}` stands for a part that is translated on its
-//! own: a number (it gets a decimal comma), a name, a sentence that the core has made. `{*}` stands for what stays as it is: a name that
-//! the user has given. The translation has the same number of them; `{1}`, `{2}` say which, where their order
+//! Two lines each, English first, an empty line between them. `{}` stands for a part that is translated on its own: a
+//! number (it gets a decimal comma), a name, a sentence that the core has made. `{*}` stands for what stays as it is: a
+//! name that the user has given. The translation has the same number of them; `{1}`, `{2}` say which, where their order
 //! is another. `\n` is a new line.
 
 use std::collections::HashMap;

@@ -1,6 +1,6 @@
 //! The language of what is read. The app thinks in English; what it says is translated where it is drawn:
-//! `ui.label(tr("..."))`, and what the command line says where it is printed. So state, links, JSON, tests and files are
-//! the same in every language.
+//! `ui.label(tr("..."))`, and what the command line says where it is printed. So state, links, JSON, tests and files
+//! are the same in every language.
 //!
 //! A language is a folder of texts in `assets/` and a line in [`Language::ALL`]; see `docs/translation.md`.
 

@@ -70,8 +70,8 @@ fn typed(text: &str) -> Option<f64> {
     plain.parse().ok()
 }
 
-/// A number as someone types it into a field of this unit: alone, or with a unit that measures the same, as `5 ms` where
-/// seconds are meant.
+/// A number as someone types it into a field of this unit: alone, or with a unit that measures the same, as `5 ms`
+/// where seconds are meant.
 pub fn typed_in(unit: &str) -> impl Fn(&str) -> Option<f64> {
     let shown = unit.trim().to_owned();
     move |text| {

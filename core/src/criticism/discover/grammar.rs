@@ -7,8 +7,8 @@
 //! form      products of plains, of at most one bend, and of a coefficient
 //! ```
 //!
-//! A number in a bend has the unit of its variable (or its inverse), and every form a coefficient, which has the unit that makes
-//! it a force: so every formula is right in its units by the way it is built.
+//! A number in a bend has the unit of its variable (or its inverse), and every form a coefficient, which has the unit
+//! that makes it a force: so every formula is right in its units by the way it is built.
 
 use crate::effect::{Variable, variables};
 use crate::measurement::Kind;

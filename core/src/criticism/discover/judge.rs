@@ -20,7 +20,8 @@ pub(super) struct Simulated {
     pub trial: Trial,
 }
 
-/// The places of the formulas with the fewest numbers that the record cannot tell from the best one, the shortest first.
+/// The places of the formulas with the fewest numbers that the record cannot tell from the best one, the shortest
+/// first.
 pub(super) fn class(session: &Session, all: &[Simulated]) -> Vec<usize> {
     let error = |k: &usize| all[*k].trial.error();
     let Some(best) = (0..all.len()).min_by(|a, b| error(a).total_cmp(&error(b))) else {

@@ -1,5 +1,6 @@
-//! Which terms, and which sums of them, leave least of the regression? All terms and pairs are tried on grids of their numbers;
-//! those of the best are refined, and where the best pairs leave more than noise, a third term is tried beside them.
+//! Which terms, and which sums of them, leave least of the regression? All terms and pairs are tried on grids of their
+//! numbers; those of the best are refined, and where the best pairs leave more than noise, a third term is tried beside
+//! them.
 
 use std::collections::BTreeMap;
 

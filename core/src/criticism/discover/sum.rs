@@ -27,8 +27,8 @@ impl Sum {
     }
 }
 
-/// What is least for a formula that leaves little and is short: the logarithm of what it leaves of some hundred windows that tell
-/// something of their own, and a price for each part.
+/// What is least for a formula that leaves little and is short: the logarithm of what it leaves of some hundred windows
+/// that tell something of their own, and a price for each part.
 pub(super) fn score(loss: f64, length: usize) -> f64 {
     libm::log(loss.max(f64::MIN_POSITIVE)) + PRICE * length as f64
 }

@@ -9,12 +9,12 @@ pub(super) const WIDEST_SHARE: f64 = 1.0 / 40.0;
 /// Smallest share of the motion that a residual is taken to be: sums are integrals to a part in a thousand.
 pub(super) const EXACT: f64 = 1e-3;
 
-/// Share of a term that the body must not explain: one that is nearly viscous friction, or nearly a gain, tells a body of
-/// nonsense and itself together.
+/// Share of a term that the body must not explain: one that is nearly viscous friction, or nearly a gain, tells a body
+/// of nonsense and itself together.
 pub(super) const LEAST_TOLD: f64 = 0.03;
 
-/// Scales of a bend that are tried, at equal ratios from and to this share of the size of its variable: beyond them it is a
-/// power, or a jump.
+/// Scales of a bend that are tried, at equal ratios from and to this share of the size of its variable: beyond them it
+/// is a power, or a jump.
 pub(super) const SCALES: usize = 14;
 pub(super) const FIRST_SCALE: f64 = 0.03;
 pub(super) const LAST_SCALE: f64 = 3.0;
@@ -23,13 +23,13 @@ pub(super) const LAST_SCALE: f64 = 3.0;
 pub(super) const CENTRES: usize = 12;
 pub(super) const WIDTHS: [f64; 5] = [0.03, 0.06, 0.12, 0.24, 0.48];
 
-/// Waves over the range of a variable: up to so many, in steps of so many half waves, from one to the next of which a wave stays
-/// in step with itself over most of the range.
+/// Waves over the range of a variable: up to so many, in steps of so many half waves, from one to the next of which a
+/// wave stays in step with itself over most of the range.
 pub(super) const MOST_WAVES: f64 = 25.0;
 pub(super) const WAVE_STEP: f64 = 0.6;
 
-/// Values of the numbers of each form that go into pairs as the first term, and first terms in all: of a pair at least one term
-/// shows alone.
+/// Values of the numbers of each form that go into pairs as the first term, and first terms in all: of a pair at least
+/// one term shows alone.
 pub(super) const SHAPES_KEPT: usize = 2;
 pub(super) const FIRST_TERMS: usize = 300;
 
@@ -40,7 +40,8 @@ pub(super) const AT_A_TIME: usize = 24;
 pub(super) const REFINED: [usize; 3] = [30, 70, 16];
 pub(super) const PER_PART: usize = 6;
 
-/// Rounds of refinement of the numbers, what a step must leave at most to be one, and the smallest step as a share of the first.
+/// Rounds of refinement of the numbers, what a step must leave at most to be one, and the smallest step as a share of
+/// the first.
 pub(super) const MOST_STEPS: usize = 30;
 pub(super) const WORTH: f64 = 1.0 - 1e-5;
 pub(super) const LAST_STEP: f64 = 0.02;
@@ -52,8 +53,8 @@ pub(super) const TOLD: f64 = 5.0;
 /// information criterion, with two hundred windows that tell something of their own.
 pub(super) const PRICE: f64 = 0.01;
 
-/// Pairs beside which a third term is looked for; and what the windows are left with, in times of their noise, below which none
-/// is.
+/// Pairs beside which a third term is looked for; and what the windows are left with, in times of their noise, below
+/// which none is.
 pub(super) const THIRDS: usize = 6;
 pub(super) const NOISE_LEFT: f64 = 1.15;
 

@@ -4,9 +4,9 @@
 //! acceleration = (u - d v + held effects + terms) / J        y' = (K u - y + ambient + K terms) / T
 //! ```
 //!
-//! Both sides are multiplied with a smooth bump and integrated by parts, as in the screen; the acceleration, in which the noise
-//! is, is the target, and every window counts by what its noise lets it tell. Body, held effects and coefficients of terms are
-//! fitted together.
+//! Both sides are multiplied with a smooth bump and integrated by parts, as in the screen; the acceleration, in which
+//! the noise is, is the target, and every window counts by what its noise lets it tell. Body, held effects and
+//! coefficients of terms are fitted together.
 
 use super::grammar::{Form, Plain};
 use super::tuning::{EXACT, LEAST_TOLD, MOST_ROWS, WIDEST_SHARE};
@@ -100,8 +100,8 @@ impl Seen {
         [now, before]
     }
 
-    /// A form at every sample, with each column that it makes; the input jumps there, so that what follows it is the mean of both
-    /// sides.
+    /// A form at every sample, with each column that it makes; the input jumps there, so that what follows it is the
+    /// mean of both sides.
     fn values(&self, form: &Form, numbers: [f64; 2]) -> [Vec<f64>; 2] {
         let both = if form.has(Variable::Input) { 2 } else { 1 };
         let n = self.time.len();
@@ -169,7 +169,8 @@ pub(super) struct Weak {
     blocks: Vec<usize>,
     /// Root of the weight of each window.
     weights: Vec<f64>,
-    /// Windows as they are: the input (with what held effects make of it), the velocity, the ambient, columns of held effects.
+    /// Windows as they are: the input (with what held effects make of it), the velocity, the ambient, columns of held
+    /// effects.
     plain: Vec<Vec<f64>>,
     /// What each column of the body is.
     pub body: Vec<BodyColumn>,
@@ -288,7 +289,8 @@ impl Weak {
         columns.map(|values| rows.force(values)).collect()
     }
 
-    /// A column weighted, without what the body and these directions explain, of length 1; none where hardly anything is left.
+    /// A column weighted, without what the body and these directions explain, of length 1; none where hardly anything
+    /// is left.
     fn direction(&self, column: &[f64], beside: &[Vec<f64>]) -> Option<Vec<f64>> {
         let own = orthonormal(self.weighted(column), &self.base, LEAST_TOLD)?;
         orthonormal(own, beside, LEAST_TOLD)
@@ -348,8 +350,8 @@ impl Weak {
         Some(columns)
     }
 
-    /// Squared residuals of each block of the record, by the fit to every other one that does not hold it; none where either
-    /// half does not tell the columns.
+    /// Squared residuals of each block of the record, by the fit to every other one that does not hold it; none where
+    /// either half does not tell the columns.
     pub fn foretold(&self, columns: &[Vec<f64>]) -> Option<Vec<f64>> {
         let blocks = &self.blocks;
         let all = self.beside_body(columns);

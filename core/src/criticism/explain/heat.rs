@@ -57,8 +57,8 @@ impl Heat {
         self.waiting.is_empty() && self.over.is_empty()
     }
 
-    /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another one costs.
-    /// So many places of the model are open. A race that `gives_up` ends with its round, and nobody wins.
+    /// Does some iterations; true while there are more. What costs less than `alike` goes on, however little another
+    /// one costs. So many places of the model are open. A race that `gives_up` ends with its round, and nobody wins.
     pub fn advance(
         &mut self,
         session: &Session,
@@ -124,8 +124,8 @@ impl Heat {
         });
     }
 
-    /// So many sets of effects that cost least, and half as many more that may come to least: what began where it ends falls no
-    /// further, and what began far off says little by its cost.
+    /// So many sets of effects that cost least, and half as many more that may come to least: what began where it ends
+    /// falls no further, and what began far off says little by its cost.
     fn sets_in_turn(&self, count: usize) -> Vec<Vec<EffectId>> {
         let mut sets: Vec<Vec<EffectId>> = Vec::new();
         let mut take = |key: &dyn Fn(&(f64, Fit)) -> f64, most: usize| {
@@ -143,8 +143,8 @@ impl Heat {
         sets
     }
 
-    /// The best of each of so many sets of effects, of those that cost no more than a limit, and a second of the first; and
-    /// none is left.
+    /// The best of each of so many sets of effects, of those that cost no more than a limit, and a second of the first;
+    /// and none is left.
     pub fn best(&mut self, count: usize, limit: f64) -> Vec<Sketch> {
         let over = std::mem::take(self).over.into_iter();
         let mut sets: Vec<Vec<EffectId>> = Vec::new();

@@ -2,7 +2,8 @@
 
 use crate::effect::{Dimension, Effect};
 
-/// The place of the inertia of a second body, whose motion is not measured, among the values of an effect that brings one.
+/// The place of the inertia of a second body, whose motion is not measured, among the values of an effect that brings
+/// one.
 pub(super) fn hidden_inertia(effect: &dyn Effect) -> Option<usize> {
     let mut parameters = effect.parameters().iter();
     parameters.position(|p| p.dimension == Dimension::Inertia)

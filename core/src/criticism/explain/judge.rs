@@ -1,8 +1,8 @@
 //! Is one model better than another? By blocks that neither fit has seen.
 //!
-//! Two-fold blocked cross-validation: every block is judged by the fit to the other half. Two models are compared by the
-//! paired difference of the logarithm of what they leave of a block, beside its noise and what no model is right to, over the
-//! standard error of its mean (Student's t).
+//! Two-fold blocked cross-validation: every block is judged by the fit to the other half. Two models are compared by
+//! the paired difference of the logarithm of what they leave of a block, beside its noise and what no model is right
+//! to, over the standard error of its mean (Student's t).
 
 use super::Trial;
 use super::tuning::{
@@ -39,7 +39,8 @@ pub(in crate::criticism) fn difference(session: &Session, from: &Trial, to: &Tri
     let count = changes.len() as f64;
     let mean = changes.iter().sum::<f64>() / count;
     let squares: f64 = changes.iter().map(|c| (c - mean).powi(2)).sum();
-    // Of a slow process neighbouring blocks hang together, and tell less than as many others (Newey and West 1987, one lag).
+    // Of a slow process neighbouring blocks hang together, and tell less than as many others (Newey and West 1987, one
+    // lag).
     let neighbours = changes.windows(2).map(|c| (c[0] - mean) * (c[1] - mean));
     let together = 2.0 * neighbours.sum::<f64>().max(0.0);
     let t = if changes.len() < 2 {
@@ -97,8 +98,8 @@ impl Difference {
         self.blocks > FEW_BLOCKS && t > student(QUANTILE, self.blocks as f64 - 1.0)
     }
 
-    /// Whether the second model is better. A real machine does more than any model says: where a step explains more than it
-    /// leaves, in either half and not by one block, what is left beside may hide that from a test of the mean.
+    /// Whether the second model is better. A real machine does more than any model says: where a step explains more
+    /// than it leaves, in either half and not by one block, what is left beside may hide that from a test of the mean.
     pub fn is_better(&self) -> bool {
         let steady = self.least_fall.min(self.steady_fall) > STEADY_FALL;
         self.least_fall > GREAT_FALL || steady || self.fall > LEAST_FALL && self.is_certain(self.t)

@@ -1,7 +1,8 @@
-//! Which effects explain a record? Exact fits of the few subsets that the screen found, judged on blocks that they did not see.
+//! Which effects explain a record? Exact fits of the few subsets that the screen found, judged on blocks that they did
+//! not see.
 //!
-//! Subsets are fitted by their size. A larger one is taken where it is better than the best smaller one and each of its effects
-//! is needed; then every other effect that may is tried in the place of each.
+//! Subsets are fitted by their size. A larger one is taken where it is better than the best smaller one and each of its
+//! effects is needed; then every other effect that may is tried in the place of each.
 
 mod heat;
 mod hidden_body;
@@ -82,8 +83,8 @@ enum Stage {
 struct Level {
     /// Number of effects that are added.
     size: usize,
-    /// One of them brings a hidden body. Their fits are the longest by far, and the freest: of each size they come last, where
-    /// everything that acts on the body that is measured leaves more than noise.
+    /// One of them brings a hidden body. Their fits are the longest by far, and the freest: of each size they come
+    /// last, where everything that acts on the body that is measured leaves more than noise.
     hidden: bool,
 }
 
@@ -197,8 +198,8 @@ impl Explain {
         }
     }
 
-    /// Has a trial raced with each effect that can be added, or each hidden body: with the values that the screen tells, and
-    /// where it tells none with those that are found in what the trial leaves.
+    /// Has a trial raced with each effect that can be added, or each hidden body: with the values that the screen
+    /// tells, and where it tells none with those that are found in what the trial leaves.
     fn extend(&mut self, session: &Session, screened: &Screened, from: usize, hidden: bool) {
         let extended = &mut self.extended[usize::from(hidden)];
         if extended.contains(&from) {
@@ -304,8 +305,8 @@ impl Explain {
         })
     }
 
-    /// Has a trial fitted without each of the effects that were added; `again` where there is one: it may not have found the
-    /// valley in which this one is.
+    /// Has a trial fitted without each of the effects that were added; `again` where there is one: it may not have
+    /// found the valley in which this one is.
     fn take_out_of(&mut self, lead: usize, again: bool) {
         for place in self.held.len()..self.trials[lead].effects().len() {
             if again || self.without(lead, place).is_none() {

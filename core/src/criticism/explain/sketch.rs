@@ -93,8 +93,8 @@ impl Sketch {
         self.structure.begin(&mut self.values, 0);
     }
 
-    /// A fit with one more effect: with the values that the screen tells beside its effects and alone, and from where that finds
-    /// itself if the screen tells none, or not all that it may be.
+    /// A fit with one more effect: with the values that the screen tells beside its effects and alone, and from where
+    /// that finds itself if the screen tells none, or not all that it may be.
     pub fn beside(
         session: &Session,
         screened: &Screened,
@@ -115,8 +115,8 @@ impl Sketch {
         sketches
     }
 
-    /// A fit with one more effect, from where that finds itself in what the fit leaves. A body that was hidden may have been
-    /// taken for a part of the other.
+    /// A fit with one more effect, from where that finds itself in what the fit leaves. A body that was hidden may have
+    /// been taken for a part of the other.
     pub fn sought(session: &Session, fit: &Fit, effect: &'static dyn Effect) -> Vec<Self> {
         let probed = session.probed(fit);
         let own = probed.starts(effect, 1.0);
@@ -133,8 +133,8 @@ impl Sketch {
             .collect()
     }
 
-    /// Adds the same with each of these bodies where a fit ended with another one: what is missing may have bent it out of all
-    /// likeness.
+    /// Adds the same with each of these bodies where a fit ended with another one: what is missing may have bent it out
+    /// of all likeness.
     pub fn with_other_bodies(
         sketches: &mut Vec<Self>,
         fit: &Fit,
@@ -156,7 +156,8 @@ impl Sketch {
         sketches.extend(others);
     }
 
-    /// A fit from other starting points, if it has values that the screen cannot tell: it may be in a valley of its own.
+    /// A fit from other starting points, if it has values that the screen cannot tell: it may be in a valley of its
+    /// own.
     pub fn again(fit: &Fit) -> Option<Self> {
         let mut values = fit.values.clone();
         let open = displacements(&fit.structure);
@@ -167,8 +168,8 @@ impl Sketch {
         (!open.is_empty()).then_some(Self::from(fit, structure, values))
     }
 
-    /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way, and how a load bounces
-    /// in its gap.
+    /// The same with each of some values where the screen cannot tell one: how far a dry contact gives way, and how a
+    /// load bounces in its gap.
     pub fn variants(self, session: &Session) -> Vec<Self> {
         let mut all = Vec::new();
         for (k, effect) in self.structure.effects.iter().enumerate() {
@@ -221,8 +222,8 @@ impl Sketch {
         &self.structure.effects
     }
 
-    /// Its fit to a record, or to a part of it, not begun: of the states that are measured and those that are known, each window
-    /// takes the one that suits it.
+    /// Its fit to a record, or to a part of it, not begun: of the states that are measured and those that are known,
+    /// each window takes the one that suits it.
     fn on(&self, data: &Data, scales: &Scales) -> Fit {
         let mut starts = data.guessed_starts();
         let (structure, values) = (self.structure.clone(), self.values.clone());

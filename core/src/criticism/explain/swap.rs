@@ -35,14 +35,15 @@ fn carried(own: &dyn Effect, values: &[f64], other: &dyn Effect) -> Option<Vec<f
     places.map(|place| Some(values[place?])).collect()
 }
 
-/// Whether one effect may stand in the place of another: what has that as a part, or comes near to it, says the same with more.
+/// Whether one effect may stand in the place of another: what has that as a part, or comes near to it, says the same
+/// with more.
 pub(in crate::criticism) fn may_replace(effect: &dyn Effect, replaced: &dyn Effect) -> bool {
     !effect.has_part(replaced.id()) && !effect.limits().contains(&replaced.id())
 }
 
 impl Explain {
-    /// Places of the best model in which others are tried: of what was added; where that is nothing, of what the user added to
-    /// what is known.
+    /// Places of the best model in which others are tried: of what was added; where that is nothing, of what the user
+    /// added to what is known.
     fn open_places(&self, session: &Session) -> Vec<usize> {
         let effects = self.trials[self.best].effects();
         let own = |k: &usize| !session.knowledge.has(effects[*k].id());
@@ -75,8 +76,8 @@ impl Explain {
         }
     }
 
-    /// Effects to be tried in the place of one of the best model, which is there `without` it; and whether for the first time,
-    /// since another best model may have come to the same set before.
+    /// Effects to be tried in the place of one of the best model, which is there `without` it; and whether for the
+    /// first time, since another best model may have come to the same set before.
     fn open_replacements(
         &mut self,
         session: &Session,

@@ -73,8 +73,9 @@ impl Trial {
         [&self.scored, &self.other].into_iter()
     }
 
-    /// Standard errors of the values that either half shows by what the other says, with one degree of freedom: whatever correlates
-    /// the residual, or bends a fit, the halves do not share it (the jackknife of two groups; Quenouille 1956).
+    /// Standard errors of the values that either half shows by what the other says, with one degree of freedom:
+    /// whatever correlates the residual, or bends a fit, the halves do not share it (the jackknife of two groups;
+    /// Quenouille 1956).
     pub fn spreads(&self) -> Vec<f64> {
         let pairs = self.scored.fit.values.iter().zip(&self.other.fit.values);
         pairs

@@ -45,8 +45,8 @@ impl Explain {
         own < other || own == other && self.has_part_of(a, b)
     }
 
-    /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect must that is
-    /// added; where the part leaves noise, or a trifle of what there was at first, it is not.
+    /// Whether a simpler model does as well as another. What a whole has beside its part must be worth it as an effect
+    /// must that is added; where the part leaves noise, or a trifle of what there was at first, it is not.
     pub(super) fn does_as_well(&self, session: &Session, simpler: usize, other: usize) -> bool {
         let difference = self.difference(session, simpler, other);
         let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
@@ -85,8 +85,8 @@ impl Explain {
             .all(|place| self.needs(session, trial, place))
     }
 
-    /// Whether a model leaves noise where another one leaves more than that, however few blocks show it: what is met once is
-    /// explained all the same.
+    /// Whether a model leaves noise where another one leaves more than that, however few blocks show it: what is met
+    /// once is explained all the same.
     pub(super) fn explains(&self, session: &Session, before: usize, after: usize) -> bool {
         let outweighs = outweighs(self.trials[before].error(), self.trials[after].error());
         outweighs && self.is_noise(session, after) && !self.is_noise(session, before)

@@ -229,8 +229,8 @@ impl Fit {
         }
     }
 
-    /// Whether what makes an effect in the model what it is could be seen beside the noise, and within the way of the record.
-    /// `inflation` is that of the variance of the values.
+    /// Whether what makes an effect in the model what it is could be seen beside the noise, and within the way of the
+    /// record. `inflation` is that of the variance of the values.
     pub fn shows_marks_of(&self, effect: &dyn Effect, scales: &Scales, inflation: f64) -> bool {
         let marks = effect.marks();
         let mut effects = self.structure.effects.iter();

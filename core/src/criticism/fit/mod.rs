@@ -53,8 +53,8 @@ const RESTART_DAMPING: f64 = 1e-3;
 /// Share of the cost below which better states of odd windows are worth going on for.
 const MENDED: f64 = 0.999;
 
-/// Times that other valleys are looked for, the iterations that each is given, and the share of the cost below which one
-/// is lower.
+/// Times that other valleys are looked for, the iterations that each is given, and the share of the cost below which
+/// one is lower.
 const MOST_VALLEYS: usize = 2;
 const VALLEY_ITERATIONS: usize = 4;
 const LOWER_VALLEY: f64 = 0.98;

@@ -19,8 +19,8 @@ const CARRIED: f64 = 0.98;
 /// The same where a load is known by the force that the body felt: that is told with noise of its own.
 const FELT: f64 = 0.1;
 
-/// Shares of a window from which the state of a felt load is found one after the other, how often each, and the share of the
-/// cost that may be left for it to have been worth while.
+/// Shares of a window from which the state of a felt load is found one after the other, how often each, and the share
+/// of the cost that may be left for it to have been worth while.
 const GROWING: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 const GROWING_ROUNDS: usize = 3;
 const WON: f64 = 0.9;
@@ -59,8 +59,9 @@ impl Fit {
         }
     }
 
-    /// Improves the states of all windows with the values kept, window by window where it helps. That of a window which is held
-    /// back goes along with steps of the values that it has no say in, and may have gone astray: none is worse than the measured one.
+    /// Improves the states of all windows with the values kept, window by window where it helps. That of a window which
+    /// is held back goes along with steps of the values that it has no say in, and may have gone astray: none is worse
+    /// than the measured one.
     pub fn polish_starts(&mut self, data: &Data, scales: &Scales) {
         self.polish_until(f64::NEG_INFINITY, data, scales);
     }
@@ -78,8 +79,8 @@ impl Fit {
         }
     }
 
-    /// Improves the states of the windows that cost much more than with the motion `before`: each contact of a load that is
-    /// met again and again multiplies a change of the values, and some windows lose it.
+    /// Improves the states of the windows that cost much more than with the motion `before`: each contact of a load
+    /// that is met again and again multiplies a change of the values, and some windows lose it.
     pub(super) fn polish_lost(&mut self, before: &Motion, data: &Data, scales: &Scales) {
         let before = window_costs(data, before).into_iter();
         let costs = before.zip(window_costs(data, &self.motion));
@@ -126,8 +127,8 @@ impl Fit {
         gap && followed && !data.excitation.sees_load_of(&model)
     }
 
-    /// Takes a load behind a gap to be where the force that the body felt has moved it, if that fits far better than where
-    /// it would be if the body had moved as measured.
+    /// Takes a load behind a gap to be where the force that the body felt has moved it, if that fits far better than
+    /// where it would be if the body had moved as measured.
     pub(super) fn try_feeling(&mut self, data: &Data) {
         if !self.follows_hidden_load(data) {
             return;

@@ -1,10 +1,10 @@
 //! How large is the measurement noise? Estimated from the data alone, without a model.
 //!
-//! Differences of order p of a smooth signal vanish and leave `sqrt(binomial(2p, p))` times the
-//! noise. A switching input makes kinks, always at the same times after the switch: differences
-//! are therefore grouped by the number of samples since the input changed, and the quiet groups
-//! decide. Within a group a low quantile keeps what kinks remain from counting. Of a channel that holds its readings only
-//! the fresh ones tell. Of a quantised channel the lattice adds its own variance, however its values are printed.
+//! Differences of order p of a smooth signal vanish and leave `sqrt(binomial(2p, p))` times the noise. A switching
+//! input makes kinks, always at the same times after the switch: differences are therefore grouped by the number of
+//! samples since the input changed, and the quiet groups decide. Within a group a low quantile keeps what kinks remain
+//! from counting. Of a channel that holds its readings only the fresh ones tell. Of a quantised channel the lattice
+//! adds its own variance, however its values are printed.
 
 use super::tuning::{
     CHANCE, GROUPS, MIN_GROUP, NORMAL_QUANTILE, ORDERS, QUANTILE, QUANTISED, QUIET, REPEATED,
@@ -137,9 +137,9 @@ fn least_level(places: &[usize], values: &[f64], groups: &[usize]) -> f64 {
     }
 }
 
-/// The mean square of the noise over the states of the signal, where it depends on them: of a speed that is counted over a
-/// time, say, which is quiet at rest and rough in motion, neither part tells alone. `usual` is what the quiet differences
-/// show. `None` where the loudest part is no louder than the quietest, but for chance.
+/// The mean square of the noise over the states of the signal, where it depends on them: of a speed that is counted
+/// over a time, say, which is quiet at rest and rough in motion, neither part tells alone. `usual` is what the quiet
+/// differences show. `None` where the loudest part is no louder than the quietest, but for chance.
 fn mean_square_over_states(
     places: &[usize],
     values: &[f64],

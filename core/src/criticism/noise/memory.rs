@@ -1,9 +1,9 @@
 //! Is what is left noise that remembers for some samples, as of a sensor with a filter?
 //!
-//! Such noise is larger than differences of neighbouring samples show, so that it looks like more than noise. It is told
-//! from a missing effect by what it does not know: it forgets within a few samples, and neither its size nor its mean
-//! depends on time, on the motion or on the input. (Whiteness is no requirement on a residual for a model to be right,
-//! independence of the input is: Ljung, System Identification, 2nd edition, 1999, section 16.6.)
+//! Such noise is larger than differences of neighbouring samples show, so that it looks like more than noise. It is
+//! told from a missing effect by what it does not know: it forgets within a few samples, and neither its size nor its
+//! mean depends on time, on the motion or on the input. (Whiteness is no requirement on a residual for a model to be
+//! right, independence of the input is: Ljung, System Identification, 2nd edition, 1999, section 16.6.)
 
 use crate::criticism::axes::{Axis, axes};
 use crate::criticism::correlation::product;

@@ -1,9 +1,10 @@
 //! Is what is left what small random forces leave?
 //!
 //! A controller that is faster than the record, or a rough way, pushes a body at random between the samples. A model
-//! cannot know that: the velocity goes on a random walk, whose variance grows with the time. A missing effect is told from it
-//! by two things. What it leaves goes one way for a while, so that it grows faster, or comes back. And it depends on the
-//! motion or on the input, so that what one half of the windows shows of that foretells something of the other half.
+//! cannot know that: the velocity goes on a random walk, whose variance grows with the time. A missing effect is told
+//! from it by two things. What it leaves goes one way for a while, so that it grows faster, or comes back. And it
+//! depends on the motion or on the input, so that what one half of the windows shows of that foretells something of the
+//! other half.
 
 use crate::criticism::data::Data;
 use crate::criticism::fit::residuals;
@@ -12,8 +13,8 @@ use crate::criticism::output::Output;
 use crate::effect::Probe;
 use crate::measurement::Kind;
 
-/// Octaves of time over which the residual must grow as it should, up to one part in so many of a usual window: a position
-/// is compared over twice the time.
+/// Octaves of time over which the residual must grow as it should, up to one part in so many of a usual window: a
+/// position is compared over twice the time.
 const OCTAVES: u32 = 3;
 const VELOCITY_PART: usize = 2;
 const POSITION_PART: usize = 3;
@@ -21,16 +22,16 @@ const POSITION_PART: usize = 3;
 /// Growth beyond the noise, in times of it, from which on it is seen.
 const SEEN: f64 = 0.05;
 
-/// Powers of time with which the mean square may grow: of a velocity on a random walk the first, of its position the third.
-/// A force that goes one way brings the second and the fourth.
+/// Powers of time with which the mean square may grow: of a velocity on a random walk the first, of its position the
+/// third. A force that goes one way brings the second and the fourth.
 const VELOCITY_POWERS: (f64, f64) = (0.3, 1.5);
 const POSITION_POWERS: (f64, f64) = (1.8, 3.5);
 
 /// Share of what is left beyond the noise that may be foretold.
 const FORETOLD: f64 = 0.3;
 
-/// Whether small random forces leave what a model of a drive with this `error` (in noise units) leaves; `probe` gives the
-/// force that it leaves unexplained.
+/// Whether small random forces leave what a model of a drive with this `error` (in noise units) leaves; `probe` gives
+/// the force that it leaves unexplained.
 pub(in crate::criticism) fn is_left_by_random_forces(
     data: &Data,
     motion: &Motion,
@@ -91,8 +92,8 @@ fn walks(data: &Data, output: &Output, residual: &[f64]) -> Option<bool> {
     Some(seen >= 2 && powers.all(|power| least < power && power < most))
 }
 
-/// Mean square of what a residual changes by in so many samples of a window: of a position, whose window may begin with a
-/// wrong velocity, of what it changes by once more.
+/// Mean square of what a residual changes by in so many samples of a window: of a position, whose window may begin with
+/// a wrong velocity, of what it changes by once more.
 fn mean_square_change(data: &Data, output: &Output, residual: &[f64], lag: usize) -> Option<f64> {
     let reach = if output.is_velocity { lag } else { 2 * lag };
     let (mut sum, mut count) = (0.0, 0_usize);

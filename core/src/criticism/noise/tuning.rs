@@ -18,8 +18,8 @@ pub(super) const NORMAL_QUANTILE: f64 = 0.385_320_466_407_567_6;
 /// Share of the differences that lies in quieter groups than the one that decides.
 pub(super) const QUIET: f64 = 0.4;
 
-/// Three standard errors of a level that is read off one difference, relative to it; of many, this over the root of their
-/// number.
+/// Three standard errors of a level that is read off one difference, relative to it; of many, this over the root of
+/// their number.
 pub(super) const CHANCE: f64 = 4.8;
 
 /// Excess of the variance over that of quantisation up to which it is quantisation alone.
@@ -28,8 +28,8 @@ pub(super) const QUANTISED: f64 = 1.25;
 /// Share of the fresh readings of a channel that may be as the one before, by a rest; more are steps that are counted.
 pub(super) const REPEATED: f64 = 0.3;
 
-/// Parts of a signal, by its size, whose noise is compared; order of the differences that tell it; and ratio of the loudest to
-/// the quietest from which on noise depends on the state.
+/// Parts of a signal, by its size, whose noise is compared; order of the differences that tell it; and ratio of the
+/// loudest to the quietest from which on noise depends on the state.
 pub(super) const STATES: usize = 5;
 pub(super) const STATE_ORDER: usize = 3;
 pub(super) const UNLIKE: f64 = 2.0;

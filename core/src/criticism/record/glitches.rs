@@ -5,8 +5,9 @@
 //! neighbours without it, is put there (the idea of Hampel's filter: Hampel 1974, The influence curve).
 //!
 //! Two or three in a row may be an impact. They are a sensor's where they go far beyond all that the record shows
-//! elsewhere, at once, while what is before and after them each runs on evenly, and nothing else in the record comes and
-//! goes as quickly: as the first speeds that are counted over a time in which the machine stood. Nothing is known there.
+//! elsewhere, at once, while what is before and after them each runs on evenly, and nothing else in the record comes
+//! and goes as quickly: as the first speeds that are counted over a time in which the machine stood. Nothing is known
+//! there.
 
 use super::tuning::{
     AGREE, AT_NEIGHBOUR, AT_VALUE, BEYOND, CUBIC, FAR_OFF, FEW, LONGEST, MOST_ROWS,

@@ -1,8 +1,8 @@
 //! Channels that hold a reading until the next one comes, as a bus or a slow sensor does in a log that is faster.
 //!
 //! What repeats tells nothing new: the noise is that of the fresh readings, and only they are compared with a model. A
-//! counter repeats as well, at rest or while it creeps on; but where a channel holds, nearly every reading stays for the
-//! same number of samples while the signal goes on by now more and now fewer counts.
+//! counter repeats as well, at rest or while it creeps on; but where a channel holds, nearly every reading stays for
+//! the same number of samples while the signal goes on by now more and now fewer counts.
 
 use super::lattice::resolution;
 use super::tuning::{BINARY, COUNTED, IN_STEP, LEAST_READINGS, SIZES_OF_COUNTS, USUAL};
@@ -51,8 +51,8 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     Some(fresh)
 }
 
-/// For how many samples each reading is held, where nearly all stay for a multiple of that: the longest such time, up to
-/// `most`.
+/// For how many samples each reading is held, where nearly all stay for a multiple of that: the longest such time, up
+/// to `most`.
 fn in_step(stays: &[usize], most: usize) -> Option<usize> {
     let share = |every: usize| {
         let whole = stays.iter().filter(|stay| **stay % every == 0);

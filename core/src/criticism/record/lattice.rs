@@ -1,9 +1,10 @@
 //! The lattice of a channel: the step of which its values are whole multiples, beside an offset.
 //!
-//! A converter or a counter has a step; what it says is scaled and printed, so that it is rounded once more, or jitters about
-//! the lattice by some units of the last digit where it was computed from two numbers. Values that jitter about one point
-//! of the lattice are far nearer to each other than two points are: the gaps between sorted values are of two sizes. The step
-//! itself is the length of which the gaps between points are multiples (a quantum: Kendall 1974, Hunting quanta).
+//! A converter or a counter has a step; what it says is scaled and printed, so that it is rounded once more, or jitters
+//! about the lattice by some units of the last digit where it was computed from two numbers. Values that jitter about
+//! one point of the lattice are far nearer to each other than two points are: the gaps between sorted values are of two
+//! sizes. The step itself is the length of which the gaps between points are multiples (a quantum: Kendall 1974,
+//! Hunting quanta).
 
 use super::tuning::{
     BEHIND_PRINT, FAR_APART, FEW_STEPS, JITTERS, MANY_STEPS, MOST_COUNTS, MOST_DIGITS, MOST_UNITS,
@@ -97,8 +98,8 @@ fn step_of(ascending: &[f64], rounding: f64) -> f64 {
     step.unwrap_or(0.0)
 }
 
-/// The step of which these ascending ones are whole multiples, from a rough value: the longer ones, whose number of steps
-/// follows from the shorter ones, tell it to more digits than print rounding leaves of one.
+/// The step of which these ascending ones are whole multiples, from a rough value: the longer ones, whose number of
+/// steps follows from the shorter ones, tell it to more digits than print rounding leaves of one.
 fn refined(ascending: &[f64], rough: f64, rounded: f64) -> f64 {
     let (mut product, mut square, mut step) = (0.0, 0.0, rough);
     for length in ascending {

@@ -16,15 +16,15 @@ pub(super) const MOST_DIGITS: usize = 12;
 pub(super) const MOST_UNITS: f64 = 1e9;
 pub(super) const PRINTED: f64 = 1e-6;
 
-/// A count is that of a sensor behind the print where it is this many units of the last digit, seen in so many steps; where
-/// it is fewer units, but as many as this, rounding leaves more to chance, and more steps must show it.
+/// A count is that of a sensor behind the print where it is this many units of the last digit, seen in so many steps;
+/// where it is fewer units, but as many as this, rounding leaves more to chance, and more steps must show it.
 pub(super) const BEHIND_PRINT: f64 = 8.0;
 pub(super) const FEW_STEPS: usize = 5;
 pub(super) const NEAR_PRINT: f64 = 3.0;
 pub(super) const MANY_STEPS: usize = 20;
 
-/// Ratio of two gaps between sorted values from which on the smaller is jitter about one point of a lattice, and share of
-/// the larger, one over this, that all jitter about a point stays below; least share of the gaps that are jitter.
+/// Ratio of two gaps between sorted values from which on the smaller is jitter about one point of a lattice, and share
+/// of the larger, one over this, that all jitter about a point stays below; least share of the gaps that are jitter.
 pub(super) const FAR_APART: f64 = 6.0;
 pub(super) const NEAR_SHARE: f64 = 0.02;
 pub(super) const JITTERS: f64 = 4.0;
@@ -36,8 +36,8 @@ pub(super) const LEAST_READINGS: usize = 20;
 /// sensor have clocks of their own.
 pub(super) const USUAL: f64 = 0.8;
 
-/// Share of the readings that must stay for a multiple of the same number of samples, of a channel that holds each for so
-/// many: a slow counter's stay for odd numbers as often as for even ones.
+/// Share of the readings that must stay for a multiple of the same number of samples, of a channel that holds each for
+/// so many: a slow counter's stay for odd numbers as often as for even ones.
 pub(super) const IN_STEP: f64 = 0.97;
 
 /// A counter that creeps goes on by one count or two, each printed in two ways at most: share of the moves that so many

@@ -1,7 +1,9 @@
-//! The loop as a second judge: where a relay made the input from the output, a model must make the same cycle in its place.
+//! The loop as a second judge: where a relay made the input from the output, a model must make the same cycle in its
+//! place.
 //!
-//! A window of a record is restarted from measured states, so that what changes the motion little within it hardly shows. In the
-//! loop each half cycle begins where the one before ended, and such an error adds up to another period and amplitude.
+//! A window of a record is restarted from measured states, so that what changes the motion little within it hardly
+//! shows. In the loop each half cycle begins where the one before ended, and such an error adds up to another period
+//! and amplitude.
 
 mod rule;
 mod run;

@@ -2,8 +2,8 @@
 
 use super::tuning::{BEYOND_A_CLOCK, CLOCK_SAMPLES, EXPLAINED, FEWEST_HALVES, LONGEST_DELAY};
 
-/// A sampled relay with hysteresis: it leaves its upper level when its signal is beyond one threshold, the lower one when it is
-/// beyond the other.
+/// A sampled relay with hysteresis: it leaves its upper level when its signal is beyond one threshold, the lower one
+/// when it is beyond the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rule {
     /// Upper and lower level of the input.
@@ -38,8 +38,8 @@ struct Reading {
 }
 
 impl Rule {
-    /// The rule that leads from one of the signals to the input, with the place of that signal; `None` where the input has not
-    /// two levels, or may have come from a clock.
+    /// The rule that leads from one of the signals to the input, with the place of that signal; `None` where the input
+    /// has not two levels, or may have come from a clock.
     pub fn read(input: &[f64], signals: &[&[f64]]) -> Option<(Self, usize)> {
         let levels = two_levels(input)?;
         let halves = halves(input, levels);
@@ -131,8 +131,8 @@ fn by_a_clock(halves: &[Half]) -> usize {
     timed(true) + timed(false)
 }
 
-/// The thresholds that explain most half cycles. In each the signal was not yet beyond the threshold before the switch, and was
-/// then: that bounds it from both sides.
+/// The thresholds that explain most half cycles. In each the signal was not yet beyond the threshold before the switch,
+/// and was then: that bounds it from both sides.
 fn reading(levels: [f64; 2], halves: &[Half], signal: &[f64], sign: f64, late: usize) -> Reading {
     let bounds = |is_upper: bool| {
         let way = if is_upper { sign } else { -sign };

@@ -198,7 +198,8 @@ impl Gram {
     }
 }
 
-/// Sums of two halves of a record, even and odd blocks, over columns that stay and to which a few others come for a trial.
+/// Sums of two halves of a record, even and odd blocks, over columns that stay and to which a few others come for a
+/// trial.
 pub(super) struct Halves<'a> {
     columns: Vec<&'a [f64]>,
     weights: &'a [f64],
@@ -294,8 +295,8 @@ impl Reduced {
         self.values[i * (self.order + 1) + j]
     }
 
-    /// Least squares by Cholesky: coefficients and, if wanted, the inverse of the normal matrix. Columns that the others
-    /// explain are left out with a coefficient of 0 where that is allowed, else there is no solution.
+    /// Least squares by Cholesky: coefficients and, if wanted, the inverse of the normal matrix. Columns that the
+    /// others explain are left out with a coefficient of 0 where that is allowed, else there is no solution.
     pub fn solve(&self, leave_out: bool) -> Option<Solution> {
         let n = self.order;
         let scale: Vec<f64> = (0..n).map(|i| self.at(i, i).max(0.0).sqrt()).collect();

@@ -73,8 +73,9 @@ pub(super) fn checked(
             return say(
                 InputVerdict::Sign,
                 format!(
-                    "The sign of the input is turned: the inertia comes out negative, and with the other sign the input \
-                     explains the motion but for {share:.1} % of it. Give the column with a minus, as in --map \"u=-NAME\"."
+                    "The sign of the input is turned: the inertia comes out negative, and with the other sign the \
+                     input explains the motion but for {share:.1} % of it. Give the column with a minus, as in --map \
+                     \"u=-NAME\"."
                 ),
             );
         }
@@ -96,8 +97,8 @@ pub(super) fn checked(
     }
     let reason = late(signals, widths, left).map_or_else(
         || {
-            "Is it the right column, and was this the input that acted and not one that was measured elsewhere? A motion \
-             that something else imposes does not follow from it."
+            "Is it the right column, and was this the input that acted and not one that was measured elsewhere? A \
+             motion that something else imposes does not follow from it."
                 .to_owned()
         },
         |late| format!("It would explain more of it if it acted {late:.3} s later than it is written down."),
@@ -111,18 +112,20 @@ const AT_TIMES: &str = "The input explains the motion most of the time. At other
     stronger, such as a stop.";
 
 /// Where the input moves a drive, and what it takes to accelerate the body is not seen.
-const NOT_BY_INERTIA: &str = "The input moves the body, but this record hardly tells its inertia: the body sticks, a spring holds \
-    it, or the position is read too coarsely to show an acceleration. Let the input jump further, and sample the run-up finely.";
+const NOT_BY_INERTIA: &str = "The input moves the body, but this record hardly tells its inertia: the body sticks, a \
+    spring holds it, or the position is read too coarsely to show an acceleration. Let the input jump further, and \
+    sample the run-up finely.";
 
 /// Where the output of a process follows the input, but not as a first-order lag and the library would have it.
 const NOT_AS_A_LAG: &str = "The output follows the input, but not in the way of a first-order lag.";
 
 /// Where a process did too little to tell what its input does.
-const TOO_LITTLE: &str = "This record does not tell what the input does to the output: it may make all of the motion, or \
-    none. Let the input change by more or more often, and record until the output has settled.";
+const TOO_LITTLE: &str = "This record does not tell what the input does to the output: it may make all of the motion, \
+    or none. Let the input change by more or more often, and record until the output has settled.";
 
-/// Inertia and viscous friction, each with its error, in the calmer half of the windows of the width that tells the inertia best:
-/// what acts at times only, such as a stop, does not hide there what the input does. None where no width tells it.
+/// Inertia and viscous friction, each with its error, in the calmer half of the windows of the width that tells the
+/// inertia best: what acts at times only, such as a stop, does not hide there what the input does. None where no width
+/// tells it.
 pub(super) fn body_while_calm(signals: &Signals, widths: &[Width]) -> Option<[(f64, f64); 2]> {
     let jerk = |k: usize| {
         let v = &signals.speed;
@@ -162,8 +165,8 @@ fn changes_seldom(signals: &Signals, bench: &Bench) -> bool {
     blocks.len() < numbers
 }
 
-/// Whether the input of a process, with an effect as far from the one found as chance may put it, would make as much of the
-/// rate of the output as there is.
+/// Whether the input of a process, with an effect as far from the one found as chance may put it, would make as much of
+/// the rate of the output as there is.
 fn may_explain(bench: &Bench) -> bool {
     let Some(fit) = Fit::new(bench.gram, &bench.elements(&[])) else {
         return true;
@@ -227,8 +230,8 @@ fn not_told(signals: &Signals, bench: &Bench) -> Option<String> {
     let changes = at(ACCELERATION, ACCELERATION) > 0.0;
     (steady && changes).then(|| {
         format!(
-            "This record does not tell the inertia ({inertia:.2e} with an error of {error:.1e}): the speed hardly changes \
-             but for its noise. It tells friction. Let the input jump, and sample the run-up."
+            "This record does not tell the inertia ({inertia:.2e} with an error of {error:.1e}): the speed hardly \
+             changes but for its noise. It tells friction. Let the input jump, and sample the run-up."
         )
     })
 }

@@ -1,8 +1,8 @@
 //! What could explain a record? Regression on its weak form, without a simulation.
 //!
-//! Both sides of the equation of motion, integrated over windows with a smooth bump, are linear in the body and in the atoms
-//! of all effects ([`crate::effect::Atom`]). Sums of products in blocks make all subsets of a few atoms cheap; those that
-//! are as good as the best on held-back blocks, and have the fewest parameters, are a class.
+//! Both sides of the equation of motion, integrated over windows with a smooth bump, are linear in the body and in the
+//! atoms of all effects ([`crate::effect::Atom`]). Sums of products in blocks make all subsets of a few atoms cheap;
+//! those that are as good as the best on held-back blocks, and have the fewest parameters, are a class.
 
 mod gram;
 mod input_check;
@@ -100,8 +100,8 @@ impl Screened {
         })
     }
 
-    /// What the atoms of just these effects add to the equation of motion, with the shapes that suit the record best; none where
-    /// an effect has no atom.
+    /// What the atoms of just these effects add to the equation of motion, with the shapes that suit the record best;
+    /// none where an effect has no atom.
     pub fn columns(&self, held: &[EffectId], rows: &Rows) -> Option<Vec<AtomColumns>> {
         let bench = self.prepared.bench();
         let id = |(c, _): &(usize, usize)| bench.choices[*c].effect.id();

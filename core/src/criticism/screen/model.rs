@@ -40,7 +40,8 @@ impl Choice {
     }
 }
 
-/// Inertia, viscous friction, operating point (0 for a drive) and coefficients of atoms, for an input with the coefficient 1.
+/// Inertia, viscous friction, operating point (0 for a drive) and coefficients of atoms, for an input with the
+/// coefficient 1.
 pub(super) struct Found {
     pub body: [f64; 2],
     pub offset: f64,
@@ -95,8 +96,8 @@ pub(super) fn found(kind: Kind, w: &[f64]) -> Found {
     }
 }
 
-/// By what a squared residual is divided to be one of the acceleration of all bodies: one of a model whose atoms make up the
-/// input themselves, and need no body, is large.
+/// By what a squared residual is divided to be one of the acceleration of all bodies: one of a model whose atoms make
+/// up the input themselves, and need no body, is large.
 pub(super) fn unit(kind: Kind, w: &[f64], atoms: &[&Shaped]) -> f64 {
     match kind {
         Kind::Drive => {

@@ -264,9 +264,9 @@ impl Builder<'_> {
         }
     }
 
-    /// Leaves out the widths whose windows are too short to tell more than noise. Noise in the acceleration of a drive makes
-    /// its inertia too small, and what is left of the input larger (errors in variables); the rate of a process is the target,
-    /// where noise only adds to what is left.
+    /// Leaves out the widths whose windows are too short to tell more than noise. Noise in the acceleration of a drive
+    /// makes its inertia too small, and what is left of the input larger (errors in variables); the rate of a process
+    /// is the target, where noise only adds to what is left.
     fn drop_dull_widths(&mut self, everything: &[Vec<usize>]) {
         self.dull.fill(false);
         if self.kind == Kind::Drive {
@@ -349,7 +349,8 @@ impl Builder<'_> {
         if let Some(fit) = super::model::Fit::new(&gram, &elements) {
             self.weigh(&elements, &fit.w);
         }
-        // A part of the best may do as well, once its own shapes are as fine: lags make up for a dead time off the grid.
+        // A part of the best may do as well, once its own shapes are as fine: lags make up for a dead time off the
+        // grid.
         let parts = (0..best.len()).map(|out| {
             let mut part = best.clone();
             part.remove(out);

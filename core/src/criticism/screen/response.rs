@@ -1,7 +1,8 @@
 //! Does the motion follow from the input, whatever the machine is? Asked before an input is doubted.
 //!
-//! The equation of motion is tested on the acceleration, which a coarse sensor hides, and which is not what a force balances
-//! where a body sticks or a spring holds it. So an input is not doubted by that alone: here it is asked with fewer assumptions.
+//! The equation of motion is tested on the acceleration, which a coarse sensor hides, and which is not what a force
+//! balances where a body sticks or a spring holds it. So an input is not doubted by that alone: here it is asked with
+//! fewer assumptions.
 
 use super::gram::Reduced;
 use super::signals::Signals;
@@ -9,9 +10,9 @@ use super::tuning::{BLOCKS, LAGS, PAST, PATIENCE};
 use super::window::Width;
 use crate::measurement::Kind;
 
-/// Work that the input did on a drive: the most in one go, and the most that came back in one go. A machine gives back no more than
-/// it has stored, so that the first is larger the longer it runs, whatever it is made of; the other way round where the sign of
-/// the input is turned. Of an input that did not act, both are as chance has it.
+/// Work that the input did on a drive: the most in one go, and the most that came back in one go. A machine gives back
+/// no more than it has stored, so that the first is larger the longer it runs, whatever it is made of; the other way
+/// round where the sign of the input is turned. Of an input that did not act, both are as chance has it.
 pub(super) fn work(signals: &Signals) -> [f64; 2] {
     let (mut sum, mut least, mut most) = (0.0, 0.0_f64, 0.0_f64);
     let mut largest = [0.0_f64; 2];
@@ -31,8 +32,9 @@ pub(super) fn work(signals: &Signals) -> [f64; 2] {
     largest
 }
 
-/// Share of the velocity of a drive, or of the output of a process about its mean, that one lag or two of the input leave, on blocks
-/// that were held back: the least of all widths of windows, since noise hides in short ones what wide ones show.
+/// Share of the velocity of a drive, or of the output of a process about its mean, that one lag or two of the input
+/// leave, on blocks that were held back: the least of all widths of windows, since noise hides in short ones what wide
+/// ones show.
 pub(super) fn left_by_lags(signals: &Signals, widths: &[Width]) -> f64 {
     let longest = signals.len() as f64 * signals.step / PATIENCE;
     let constants = (0..LAGS).map(|k| {
@@ -63,8 +65,9 @@ pub(super) fn left_by_lags(signals: &Signals, widths: &[Width]) -> f64 {
         .sqrt()
 }
 
-/// By what share the error of a forecast of the next output from those before falls where the inputs are known too, on blocks that
-/// were held back (Granger 1969): an input that acts through resonances is seen so, which lags do not imitate.
+/// By what share the error of a forecast of the next output from those before falls where the inputs are known too, on
+/// blocks that were held back (Granger 1969): an input that acts through resonances is seen so, which lags do not
+/// imitate.
 pub(super) fn left_of_forecast(signals: &Signals) -> f64 {
     let Some(output) = signals.velocity.as_ref().map(|o| o.values.as_slice()) else {
         return 1.0;
@@ -115,8 +118,8 @@ fn halves(columns: &[Vec<f64>], blocks: impl Iterator<Item = usize>) -> [Vec<f64
     halves
 }
 
-/// What a regression of the last of so many columns leaves of the half that it did not see: of each family of choices of columns the
-/// one that leaves least of the half that it did, and of the families the best.
+/// What a regression of the last of so many columns leaves of the half that it did not see: of each family of choices
+/// of columns the one that leaves least of the half that it did, and of the families the best.
 fn held_out(halves: &[Vec<f64>; 2], size: usize, families: &[Vec<Vec<usize>>]) -> f64 {
     let of = |sums: &[f64], chosen: &[usize]| {
         let target = [size - 1];

@@ -94,7 +94,8 @@ struct Resampled {
     outputs: Vec<Vec<f64>>,
 }
 
-/// Equal steps, and values there: outputs on straight lines, the input as it was held. Nothing is said of a gap in time.
+/// Equal steps, and values there: outputs on straight lines, the input as it was held. Nothing is said of a gap in
+/// time.
 fn resampled(measurement: &Measurement) -> Resampled {
     let time = &measurement.time;
     let outputs: Vec<&[f64]> = measurement

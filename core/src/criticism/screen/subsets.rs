@@ -136,8 +136,8 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Whether a process settles by itself, told by its own standard errors: in a closed loop what is left may as well be the
-    /// controller turned round.
+    /// Whether a process settles by itself, told by its own standard errors: in a closed loop what is left may as well
+    /// be the controller turned round.
     pub fn settles(&self, members: &[(usize, usize)]) -> bool {
         let fit = Fit::new(self.gram, &self.elements(members));
         self.kind == Kind::Drive || fit.is_some_and(|fit| -fit.w[1] > TOLD * fit.error(1))
@@ -206,8 +206,8 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The smallest subsets that are the same as the best: by the paired difference of their losses on held-back blocks, or by
-/// what it is of the `motion`. The best first.
+/// The smallest subsets that are the same as the best: by the paired difference of their losses on held-back blocks, or
+/// by what it is of the `motion`. The best first.
 pub(super) fn smallest(tried: &[Tried], motion: f64) -> Vec<&Tried> {
     let Some(best) = tried.iter().min_by(|a, b| a.loss().total_cmp(&b.loss())) else {
         return Vec::new();
@@ -220,8 +220,8 @@ pub(super) fn smallest(tried: &[Tried], motion: f64) -> Vec<&Tried> {
 }
 
 /// Whether two subsets are the same: within the error of the mean paired difference over blocks, of losses and of their
-/// logarithms (a likelihood that does not know the noise of a block), and not worse by more than a share; or within what is
-/// a trifle of the motion.
+/// logarithms (a likelihood that does not know the noise of a block), and not worse by more than a share; or within
+/// what is a trifle of the motion.
 fn is_same(tried: &Tried, best: &Tried, motion: f64) -> bool {
     let excess = tried.loss() - best.loss();
     if excess <= PRACTICAL * PRACTICAL * motion {

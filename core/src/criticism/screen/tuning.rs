@@ -4,8 +4,8 @@
 /// round. Two dozen tell a standard error to 15 %, and a block still holds many windows.
 pub(super) const BLOCKS: usize = 24;
 
-/// Exponent of the bump `(1 - s^2)^p`: its first three derivatives vanish at the ends of a window, as third derivatives of a
-/// motion need (Messenger and Bortz 2021).
+/// Exponent of the bump `(1 - s^2)^p`: its first three derivatives vanish at the ends of a window, as third derivatives
+/// of a motion need (Messenger and Bortz 2021).
 pub(super) const BUMP_POWER: i32 = 4;
 
 /// Windows start at this share of their length from each other: closer ones say the same again.
@@ -24,7 +24,8 @@ pub(super) const WIDEST: f64 = 0.5 / BLOCKS as f64;
 /// The same for a process, whose records hold few of its time constants.
 pub(super) const WIDEST_OF_PROCESS: f64 = 1.0 / 12.0;
 
-/// Share of the acceleration in the shortest window that may be noise, root mean square: it bends the inertia by its square.
+/// Share of the acceleration in the shortest window that may be noise, root mean square: it bends the inertia by its
+/// square.
 pub(super) const NOISY: f64 = 0.05;
 
 /// Most windows of one width: more cost time and tell nothing new.
@@ -64,8 +65,8 @@ pub(super) const COLLINEAR: f64 = 1e-7;
 /// Standard errors by which inertia must be told.
 pub(super) const TOLD: f64 = 5.0;
 
-/// Standard errors within which two subsets are the same: 5 % at both ends over a few thousand subsets, by Bonferroni, are
-/// 4.3; neighbouring blocks that agree are worth a third less.
+/// Standard errors within which two subsets are the same: 5 % at both ends over a few thousand subsets, by Bonferroni,
+/// are 4.3; neighbouring blocks that agree are worth a third less.
 pub(super) const SAME: f64 = 3.0;
 
 /// Share of the motion, root mean square, below which a difference is none: equations and clocks are not right to more.
@@ -83,16 +84,16 @@ pub(super) const CHANCE: f64 = 2.0;
 /// Step of a numerical derivative, in standard errors.
 pub(super) const DIFFERENCE: f64 = 1e-3;
 
-/// Lags that the input is put through to see whether the motion follows, from one sample to the record over this: a machine is seen
-/// to settle some times.
+/// Lags that the input is put through to see whether the motion follows, from one sample to the record over this: a
+/// machine is seen to settle some times.
 pub(super) const LAGS: usize = 10;
 pub(super) const PATIENCE: f64 = 8.0;
 
 /// Samples of the past from which the next output is foretold: three resonances.
 pub(super) const PAST: usize = 6;
 
-/// Work that went in, in times of what came back, from which the input acted: of a random walk, which the work of an input of another
-/// record is, one in forty has as much.
+/// Work that went in, in times of what came back, from which the input acted: of a random walk, which the work of an
+/// input of another record is, one in forty has as much.
 pub(super) const DRIVEN: f64 = 4.0;
 
 /// Delays that are tried where the input does not explain the motion, and the longest as a share of the record.
@@ -115,11 +116,12 @@ pub(super) const FINE: f64 = 0.004;
 /// Growth of a process over the widest window, as a logarithm, up to which it is no runaway: an integrating one has 0.
 pub(super) const GROWTH: f64 = 0.1;
 
-/// Numbers of a shape that a grid finds well enough: in more, it is coarse in each, and a simplex goes on from the best.
+/// Numbers of a shape that a grid finds well enough: in more, it is coarse in each, and a simplex goes on from the
+/// best.
 pub(super) const GRID_NUMBERS: usize = 2;
 
-/// How many simplexes at most, beside the body alone and beside all that is linear; evaluations of each, and samples through which
-/// as many may go: some seconds of computing, whatever the record.
+/// How many simplexes at most, beside the body alone and beside all that is linear; evaluations of each, and samples
+/// through which as many may go: some seconds of computing, whatever the record.
 pub(super) const SIMPLEXES: usize = 3;
 pub(super) const EVALUATIONS: usize = 200;
 pub(super) const SIMPLEX_SAMPLES: usize = 8_000_000;

@@ -1,8 +1,8 @@
 //! Windows of several widths and the integrals over them.
 //!
-//! Both sides of the equation of motion are multiplied by a smooth bump that is 0 at the ends of a window, and integrated
-//! by parts (Shinbrot 1957; Preisig and Rippin 1993; Messenger and Bortz 2021): derivatives go to the bump, and noise is
-//! never differentiated.
+//! Both sides of the equation of motion are multiplied by a smooth bump that is 0 at the ends of a window, and
+//! integrated by parts (Shinbrot 1957; Preisig and Rippin 1993; Messenger and Bortz 2021): derivatives go to the bump,
+//! and noise is never differentiated.
 
 use super::signals::Signals;
 use super::tuning::{
@@ -22,8 +22,8 @@ pub(in crate::criticism) struct Width {
     pub weights: [Vec<f64>; 4],
 }
 
-/// The bump `(1 - s^2)^p` over `length` intervals and its derivatives up to the third, times the step and the sign of the
-/// integration by parts.
+/// The bump `(1 - s^2)^p` over `length` intervals and its derivatives up to the third, times the step and the sign of
+/// the integration by parts.
 fn weights(length: usize, step: f64) -> [Vec<f64>; 4] {
     let p = f64::from(BUMP_POWER);
     let half = length as f64 * step / 2.0;
@@ -124,8 +124,8 @@ impl Width {
         }
     }
 
-    /// Integrals of the acceleration (derivative 2) or of the velocity (derivative 1) of a drive; of a process, of the rate
-    /// of its output and of the output.
+    /// Integrals of the acceleration (derivative 2) or of the velocity (derivative 1) of a drive; of a process, of the
+    /// rate of its output and of the output.
     pub fn motion(&self, signals: &Signals, derivative: usize) -> Vec<f64> {
         let (_, values, order) = self.sensor(signals, derivative);
         self.integrals(values, order).collect()

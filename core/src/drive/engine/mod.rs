@@ -14,10 +14,10 @@ use crate::drive::{Contact, Drive, DriveError, DriveInput};
 
 /// Runs a drive.
 ///
-/// Guards are the relay's thresholds, the stops and break-aways of either mass, and the ends of the gap;
-/// their instants are zeros of the series to round-off. Impacts that die out in ever shorter bounces
-/// end in contact once they rebound with 1e-9 of the fastest speed (1e-6 where they hardly die out). A run that goes on switching without
-/// end is cut, see [`DriveRun::chattering`].
+/// Guards are the relay's thresholds, the stops and break-aways of either mass, and the ends of the gap; their instants
+/// are zeros of the series to round-off. Impacts that die out in ever shorter bounces end in contact once they rebound
+/// with 1e-9 of the fastest speed (1e-6 where they hardly die out). A run that goes on switching without end is cut,
+/// see [`DriveRun::chattering`].
 ///
 /// # Errors
 /// A value out of its range.

@@ -48,8 +48,8 @@ impl Formula {
         Ok(order.into_iter().map(|k| names[k].clone()).collect())
     }
 
-    /// The force at an instant with these values of its parameters, in the order of [`Self::parameters`]; 0 where the formula has
-    /// no finite value.
+    /// The force at an instant with these values of its parameters, in the order of [`Self::parameters`]; 0 where the
+    /// formula has no finite value.
     ///
     /// # Errors
     /// The column and what would be right there.

@@ -1,7 +1,7 @@
 //! A load that the body meets again and again behind a gap, from the momentum that the body gives to it.
 //!
-//! While it is free, inertia and friction of the body explain its acceleration. What they do not explain elsewhere is the
-//! push of the load, and moves that: its velocity follows from its own inertia and friction, its place by one more
+//! While it is free, inertia and friction of the body explain its acceleration. What they do not explain elsewhere is
+//! the push of the load, and moves that: its velocity follows from its own inertia and friction, its place by one more
 //! integration. Where the load is right, the twist at all pushes is half the gap to their side and the depth of the
 //! contact.
 
@@ -243,9 +243,9 @@ struct Seen<'a> {
     pushes: &'a [usize],
 }
 
-/// What explains the place of the body at the pushes: what its push does to the load, and what the drag, the dry friction
-/// and a constant force on the body would, if they are not yet right; dry friction of the load, half gap, compliance of the
-/// contact, and place and velocity at which the load began.
+/// What explains the place of the body at the pushes: what its push does to the load, and what the drag, the dry
+/// friction and a constant force on the body would, if they are not yet right; dry friction of the load, half gap,
+/// compliance of the contact, and place and velocity at which the load began.
 const COLUMNS: usize = 9;
 
 /// The place of the body at the pushes as far as they explain it.
@@ -296,8 +296,8 @@ impl Seen<'_> {
         answer
     }
 
-    /// The line if the load moved in these directions, and the velocity of the load; what the forces on the body do to it
-    /// is `known`.
+    /// The line if the load moved in these directions, and the velocity of the load; what the forces on the body do to
+    /// it is `known`.
     fn solved(
         &self,
         rate: f64,

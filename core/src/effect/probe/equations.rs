@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Solution of normal equations, of which the lower triangle is given, and what it explains; `None` where an unknown leaves
-/// no trace.
+/// Solution of normal equations, of which the lower triangle is given, and what it explains; `None` where an unknown
+/// leaves no trace.
 pub(super) fn solved(
     mut normal: DMatrix<f64>,
     mut right: DVector<f64>,

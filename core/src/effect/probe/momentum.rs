@@ -1,8 +1,8 @@
 //! Body and missing force together, from the balance of momentum.
 //!
-//! Over a stretch of the record the input gives to the body what it gains in momentum, what viscous friction takes, and what
-//! the missing force takes. That is linear in inertia, friction and force, asks for no model before, and for no state of a
-//! window: where a missing force has bent the body of the present model far off, it is told here.
+//! Over a stretch of the record the input gives to the body what it gains in momentum, what viscous friction takes, and
+//! what the missing force takes. That is linear in inertia, friction and force, asks for no model before, and for no
+//! state of a window: where a missing force has bent the body of the present model far off, it is told here.
 
 use std::f64::consts::SQRT_2;
 
@@ -29,9 +29,9 @@ const FEW: usize = 6;
 /// Standard deviations of its noise above which a velocity is one.
 const MOVES: f64 = 3.0;
 
-/// Standard errors by which an inertia must differ from none to contradict another one, the share of the impulse of the input
-/// that its balance may leave, since a load that is met or swings has impulses of its own, and the one by which the other
-/// inertia must miss it.
+/// Standard errors by which an inertia must differ from none to contradict another one, the share of the impulse of the
+/// input that its balance may leave, since a load that is met or swings has impulses of its own, and the one by which
+/// the other inertia must miss it.
 const CERTAIN: f64 = 20.0;
 const BALANCED: f64 = 0.2;
 const IMPOSSIBLE: f64 = 50.0;
@@ -39,8 +39,8 @@ const IMPOSSIBLE: f64 = 50.0;
 /// A force speaks for another body if it leaves less than this share of what none does.
 const CLEARLY: f64 = 0.7;
 
-/// Displacements over which friction may build up that are tried, from a part of the travel on, and the share of what it
-/// leaves when it builds up at once that the best must leave.
+/// Displacements over which friction may build up that are tried, from a part of the travel on, and the share of what
+/// it leaves when it builds up at once that the best must leave.
 const DISPLACEMENTS: u32 = 16;
 const DISPLACEMENTS_PER_DECADE: u32 = 5;
 const GRADUAL: f64 = 0.9;
@@ -101,8 +101,8 @@ impl Stretches {
         self.begins.iter().map(over).collect()
     }
 
-    /// Those in which the body moves one way throughout, if there are enough: dry friction holds a body at rest with any
-    /// force up to its level.
+    /// Those in which the body moves one way throughout, if there are enough: dry friction holds a body at rest with
+    /// any force up to its level.
     fn in_motion(&self, least: usize) -> Option<Self> {
         let still = MOVES * self.noise;
         let moves = |from: &usize| {
@@ -188,8 +188,8 @@ impl Probe {
         Some(stretches)
     }
 
-    /// The velocity of the first samples as it was measured or as the measured position says, whichever has less noise, and
-    /// its noise.
+    /// The velocity of the first samples as it was measured or as the measured position says, whichever has less noise,
+    /// and its noise.
     fn sharpest_velocity(&self, n: usize) -> (Vec<f64>, f64) {
         // White noise, as far as three samples in a row may be off a line.
         let noise = |v: &[f64]| {
@@ -219,8 +219,8 @@ impl Probe {
         Some(self.in_stretches(LOOKED_AT)?.balance(&[])?.body[0])
     }
 
-    /// The body as it moves, whatever dry friction there is beside, where that contradicts an inertia of `present`: all that
-    /// the input gave could not have moved it so.
+    /// The body as it moves, whatever dry friction there is beside, where that contradicts an inertia of `present`: all
+    /// that the input gave could not have moved it so.
     pub fn other_body(&self, present: f64) -> Option<Rubbing> {
         let moving = self.in_stretches(LOOKED_AT)?.in_motion(FEW)?;
         let dry = moving.sums(self.scales.step, |k| moving.velocity[k].signum());
@@ -249,8 +249,8 @@ impl Probe {
         (found.left < CLEARLY * alone.left).then_some(found)
     }
 
-    /// Body and dry friction that builds up over a displacement, with that, where it leaves clearly less than no friction and
-    /// less than one that builds up at once; a contact that gives way tells of itself at rest, too.
+    /// Body and dry friction that builds up over a displacement, with that, where it leaves clearly less than no
+    /// friction and less than one that builds up at once; a contact that gives way tells of itself at rest, too.
     pub fn balanced_bristle(&self) -> Option<(f64, Balance)> {
         let stretches = self.in_stretches(LOOKED_AT)?;
         let bent = |displacement: f64| -> Option<(f64, Balance)> {
@@ -270,8 +270,8 @@ impl Probe {
         (clearly && best.1.forces[0] > 0.0).then_some(best)
     }
 
-    /// Body and the force that repeats along the way, with its spatial frequency (rad per unit of position); its parts are
-    /// those with the sine and the cosine.
+    /// Body and the force that repeats along the way, with its spatial frequency (rad per unit of position); its parts
+    /// are those with the sine and the cosine.
     pub fn balanced_wave(&self) -> Option<(f64, Balance)> {
         let stretches = self.in_stretches(LOOKED_AT_FOR_WAVES)?;
         let travel = self.scales.travel;
@@ -319,8 +319,8 @@ mod tests {
     const SAMPLES: usize = 6_000;
     const BODY: [f64; 2] = [1.3, 3.3];
 
-    /// What a present model with quite another body is shown of a body under this force, pushed to and fro, whose velocity is
-    /// measured with noise of a tenth of it.
+    /// What a present model with quite another body is shown of a body under this force, pushed to and fro, whose
+    /// velocity is measured with noise of a tenth of it.
     fn shown(force: impl Fn(f64, f64) -> f64) -> Probe {
         let [inertia, viscous] = BODY;
         let mut state = [0.0; 2];

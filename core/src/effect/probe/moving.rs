@@ -2,8 +2,8 @@
 
 use super::Probe;
 
-/// Share of the typical speed above which a body moves; samples of a stretch in which it does, at least; and one part in
-/// how many that these must be of all.
+/// Share of the typical speed above which a body moves; samples of a stretch in which it does, at least; and one part
+/// in how many that these must be of all.
 const MOVING: f64 = 0.1;
 const LEAST_MOVING: usize = 20;
 const MOSTLY_STILL: usize = 5;

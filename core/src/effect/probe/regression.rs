@@ -56,8 +56,8 @@ impl Probe {
         self.regress_forces(&own, stride)
     }
 
-    /// Of waves of force of these frequencies (radians per unit of what they go along), the sine and the cosine of each as a
-    /// function of the moment, those that leave least: frequency and coefficients of both.
+    /// Of waves of force of these frequencies (radians per unit of what they go along), the sine and the cosine of each
+    /// as a function of the moment, those that leave least: frequency and coefficients of both.
     pub(in crate::effect) fn best_waves(
         &self,
         frequencies: &[Shape],

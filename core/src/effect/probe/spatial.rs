@@ -13,17 +13,18 @@ use crate::fourier::transform;
 use crate::order::median;
 use crate::sums::dot;
 
-/// Samples at most that enter the regressions of a scan, and the number of peaks of it that are looked at by a regression
-/// on all windows: where the body is held in many of them, a few may say anything.
+/// Samples at most that enter the regressions of a scan, and the number of peaks of it that are looked at by a
+/// regression on all windows: where the body is held in many of them, a few may say anything.
 const REPEATING: usize = 3_000;
 const PEAKS: usize = 12;
 
-/// Spatial frequencies that are scanned at most, as close as the measured travel tells them apart, each by a regression.
+/// Spatial frequencies that are scanned at most, as close as the measured travel tells them apart, each by a
+/// regression.
 const FINE_SPATIAL: usize = 700;
 
 /// The highest one, in times that distance, where the pull on the body is transformed, as of a motor that makes many
-/// turns; cells at least for one wave of it; and, of those that stand out of a row of neighbours, how many are looked at
-/// likewise.
+/// turns; cells at least for one wave of it; and, of those that stand out of a row of neighbours, how many are looked
+/// at likewise.
 const FAR_SPATIAL: usize = 65_536;
 const CELLS: usize = 4;
 const NEIGHBOURS: usize = 64;
@@ -88,9 +89,9 @@ impl Probe {
             .collect()
     }
 
-    /// The same beyond the frequencies that are scanned one by one. The product of what is unexplained with its answer to
-    /// a wave of force is, over all waves, a Fourier transform along the way of the pull on each interval: where that stands
-    /// out of its neighbours is worth a regression.
+    /// The same beyond the frequencies that are scanned one by one. The product of what is unexplained with its answer
+    /// to a wave of force is, over all waves, a Fourier transform along the way of the pull on each interval: where
+    /// that stands out of its neighbours is worth a regression.
     fn far_peaks(&self, spacing: f64, fastest: f64) -> Vec<f64> {
         let highest = ((fastest / spacing) as usize).min(FAR_SPATIAL);
         if highest <= FINE_SPATIAL {
@@ -127,8 +128,9 @@ impl Probe {
         way.iter().take(count).map(Complex64::norm_sqr).collect()
     }
 
-    /// For each interval the position in its middle, and how much an acceleration there would do for what the base forces
-    /// leave of its window, in units of that: a window in which the body is held says no more than one in which it runs.
+    /// For each interval the position in its middle, and how much an acceleration there would do for what the base
+    /// forces leave of its window, in units of that: a window in which the body is held says no more than one in which
+    /// it runs.
     fn pulls(&self) -> Vec<(f64, f64)> {
         let windows = self.spans.iter().zip(&self.target).enumerate();
         windows
@@ -232,8 +234,8 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// What `found` makes of each frequency and of its sine and cosine at the places `along` the way; these are turned on
-    /// from each frequency to the next.
+    /// What `found` makes of each frequency and of its sine and cosine at the places `along` the way; these are turned
+    /// on from each frequency to the next.
     pub fn waves<T>(
         &self,
         along: &[f64],

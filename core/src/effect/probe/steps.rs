@@ -120,8 +120,8 @@ impl Probe {
         [0, 1].map(|odd| self.of_windows(|window| window % 2 == odd))
     }
 
-    /// Share of the squared error in `others` that a force along `axis`, as the windows here show it, explains there, 0 to 1;
-    /// `None` where the record is too short to tell.
+    /// Share of the squared error in `others` that a force along `axis`, as the windows here show it, explains there, 0
+    /// to 1; `None` where the record is too short to tell.
     pub fn foretells(&self, others: &Self, axis: &[f64]) -> Option<f64> {
         let parts = self.steps(axis, Place::Force)?.parts;
         let at = |a: &f64| parts.partition_point(|part| part.to <= *a);

@@ -1,4 +1,5 @@
-//! The elements of which a file and each of its arrays are made: a tag of type and size, then numbers or other elements.
+//! The elements of which a file and each of its arrays are made: a tag of type and size, then numbers or other
+//! elements.
 
 use crate::measurement::error::Problem;
 

@@ -1,4 +1,5 @@
-//! Timeseries of MATLAB: values with the times that belong to them, which may stand apart or be told by begin and distance.
+//! Timeseries of MATLAB: values with the times that belong to them, which may stand apart or be told by begin and
+//! distance.
 
 use crate::measurement::series::Series;
 

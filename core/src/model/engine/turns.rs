@@ -1,7 +1,7 @@
 //! A user's own force that jumps where the body turns, such as `-c*sign(v)`.
 //!
-//! A step over the turn would push the wrong way for a part of it, and the motion would depend on the values by leaps. So
-//! the body is moved to the turn, and goes on from there; where the force holds it from both sides, it stays (A. F.
+//! A step over the turn would push the wrong way for a part of it, and the motion would depend on the values by leaps.
+//! So the body is moved to the turn, and goes on from there; where the force holds it from both sides, it stays (A. F.
 //! Filippov, Differential Equations with Discontinuous Righthand Sides, 1988).
 
 use super::Engine;

@@ -63,8 +63,8 @@ fn levels_off(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
         )
     } else {
         format!(
-            "The input stays {word} for the last {seconds} s while the output has reached {reached} and by the model goes \
-             on to {where_to}: the relay waits for a threshold that this input cannot reach. A lower target, or a \
+            "The input stays {word} for the last {seconds} s while the output has reached {reached} and by the model \
+             goes on to {where_to}: the relay waits for a threshold that this input cannot reach. A lower target, or a \
              stronger input, lets it switch."
         )
     };
@@ -89,15 +89,15 @@ fn still_moves(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
         let by = of_unit(slope.abs(), &record.output_unit);
         let text = if slope > 0.0 {
             format!(
-                "The input stays {word} for the last {seconds} s and the output still rises at the end, by {by} in a second: \
-                 the record is too short to say whether the relay would switch. Let the test run on until the output has \
-                 gone round several times, or no longer rises."
+                "The input stays {word} for the last {seconds} s and the output still rises at the end, by {by} in a \
+                 second: the record is too short to say whether the relay would switch. Let the test run on until the \
+                 output has gone round several times, or no longer rises."
             )
         } else {
             format!(
-                "The input stays {word} for the last {seconds} s and the output still falls at the end, by {by} in a second: \
-                 the record is too short to say whether the relay would switch. Let the test run on until the output has \
-                 gone round several times, or no longer falls."
+                "The input stays {word} for the last {seconds} s and the output still falls at the end, by {by} in a \
+                 second: the record is too short to say whether the relay would switch. Let the test run on until the \
+                 output has gone round several times, or no longer falls."
             )
         };
         trouble(TroubleKind::WindowTooShort, !e.told, slope, text)
@@ -169,9 +169,10 @@ pub(super) fn stopped(record: &Record, stop: &Stop) -> Trouble {
         false,
         ends,
         format!(
-            "After {} switches the input stays {word} for the last {seconds} s, more than two of the longest periods before, \
-             while the output, from {} to {}, does not come back to {} where the relay switched: from {} s on the input no \
-             longer acts on the plant as it did, or something else does. What is told here is of the record before.",
+            "After {} switches the input stays {word} for the last {seconds} s, more than two of the longest periods \
+             before, while the output, from {} to {}, does not come back to {} where the relay switched: from {} s on \
+             the input no longer acts on the plant as it did, or something else does. What is told here is of the \
+             record before.",
             stop.switches,
             n(low),
             n(high),

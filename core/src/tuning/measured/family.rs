@@ -1,9 +1,9 @@
 //! Points of all lags with dead time whose cycle shows the same numbers.
 //!
 //! Period, time up, amplitude and hysteresis leave the shape of the plant open. The output of one to three lags under a
-//! rectangular input is known in closed form; the dead time follows from the hysteresis, the gain from the amplitude, and
-//! the set point lies where the relay switches. A short lag gives a square, a long one a triangle, several nearly a sine:
-//! what lies between these is all that the numbers leave open.
+//! rectangular input is known in closed form; the dead time follows from the hysteresis, the gain from the amplitude,
+//! and the set point lies where the relay switches. A short lag gives a square, a long one a triangle, several nearly a
+//! sine: what lies between these is all that the numbers leave open.
 
 use std::f64::consts::PI;
 

@@ -1,10 +1,10 @@
 //! Models of a record by least squares, its held input simulated exactly.
 //!
 //! Gain, operating point, initial state and what acted before the record enter linearly and are solved for; only time
-//! constants and dead time are searched (separable least squares, Golub and Pereyra 1973): on a grid, by a simplex, then
-//! by Gauss and Newton with the damping of Levenberg and Marquardt. Standard errors come from the Jacobian of all
-//! parameters; residuals that hang together count as fewer samples, and by how much the parameters move when the slow part
-//! of the residuals is weighed less is added.
+//! constants and dead time are searched (separable least squares, Golub and Pereyra 1973): on a grid, by a simplex,
+//! then by Gauss and Newton with the damping of Levenberg and Marquardt. Standard errors come from the Jacobian of all
+//! parameters; residuals that hang together count as fewer samples, and by how much the parameters move when the slow
+//! part of the residuals is weighed less is added.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
@@ -320,8 +320,8 @@ impl Compared {
         jacobian
     }
 
-    /// Forced coefficients and searched parameters where the residuals' wandering is taken off first. A model that is right
-    /// gives the same; what it does not is an error of the model (Hausman 1978).
+    /// Forced coefficients and searched parameters where the residuals' wandering is taken off first. A model that is
+    /// right gives the same; what it does not is an error of the model (Hausman 1978).
     fn weighed_otherwise(
         &self,
         structure: Structure,
@@ -340,15 +340,15 @@ impl Compared {
         )
     }
 
-    /// Fits all structures, the one that the data prefer first: by Schwarz's criterion, where residuals that hang together
-    /// count as fewer samples. A drift is allowed where the data ask for it.
+    /// Fits all structures, the one that the data prefer first: by Schwarz's criterion, where residuals that hang
+    /// together count as fewer samples. A drift is allowed where the data ask for it.
     pub fn fit_all(&mut self) -> Vec<Fit> {
         self.fit_moving()
     }
 
-    /// The same for a record without a cycle. A single step tells only where it begins and ends, as long as any motion may
-    /// have been under way before it: rest is taken where the data do not speak against it. What remains is known no better
-    /// than the models agree that follow the record alike.
+    /// The same for a record without a cycle. A single step tells only where it begins and ends, as long as any motion
+    /// may have been under way before it: rest is taken where the data do not speak against it. What remains is known
+    /// no better than the models agree that follow the record alike.
     pub fn fit_all_without_cycle(&mut self) -> Vec<Fit> {
         let moving = self.fit_moving();
         let drifted = std::mem::replace(&mut self.drifts, false);
@@ -423,8 +423,8 @@ impl Compared {
     }
 }
 
-/// Adds to the errors of gain and final level how far the models disagree that follow the record alike, beyond what their
-/// own errors explain.
+/// Adds to the errors of gain and final level how far the models disagree that follow the record alike, beyond what
+/// their own errors explain.
 fn with_disagreement(mut fits: Vec<Fit>) -> Vec<Fit> {
     let beyond = |own: Value, other: Value| {
         ((other.value - own.value).powi(2) - other.std_error.powi(2)).max(0.0)

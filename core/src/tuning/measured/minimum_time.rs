@@ -1,7 +1,8 @@
 //! Whether a least time on or off holds the relay.
 //!
-//! A relay switches at the first sample beyond its threshold: whatever the noise, no output before a switch is beyond the
-//! output of any switch of the same kind. Where some are, and the times are all alike, it is the time that switches.
+//! A relay switches at the first sample beyond its threshold: whatever the noise, no output before a switch is beyond
+//! the output of any switch of the same kind. Where some are, and the times are all alike, it is the time that
+//! switches.
 
 use super::cycle::Cycle;
 use super::evidence::{Evidence, Trouble, TroubleKind, trouble};
@@ -10,8 +11,8 @@ use super::record::Record;
 use crate::order::{median, range};
 
 /// So many half periods or more are held by a minimum time, where they agree within the first share of a sample and the
-/// outputs before their ends pass those at their ends; or within the second, those of the other side differ by more than the
-/// third, and the outputs at their ends by more than the fourth of what chance makes.
+/// outputs before their ends pass those at their ends; or within the second, those of the other side differ by more
+/// than the third, and the outputs at their ends by more than the fourth of what chance makes.
 const FEWEST_HELD: usize = 4;
 const EQUAL_LENGTH: f64 = 0.01;
 const SAME_LENGTH: f64 = 1.01;
@@ -106,13 +107,13 @@ fn held_text(up: bool, least: f64, low: f64, high: f64) -> String {
     let (least, low, high) = (n(least), n(low), n(high));
     if up {
         format!(
-            "Every time on lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time on holds \
-             the relay, so the cycle is not that of its thresholds."
+            "Every time on lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time on \
+             holds the relay, so the cycle is not that of its thresholds."
         )
     } else {
         format!(
-            "Every time off lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time off holds \
-             the relay, so the cycle is not that of its thresholds."
+            "Every time off lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time off \
+             holds the relay, so the cycle is not that of its thresholds."
         )
     }
 }

@@ -1,9 +1,9 @@
 //! What does a measured relay test tell, and which gains follow from it?
 //!
 //! A record of input and output, or only what was read off it, or the log of a firmware's auto-tuner. The cycle shows
-//! the plant at **one** frequency, and with hysteresis not where its phase is -180 degrees: amplitude `a` and hysteresis
-//! `h` of a symmetric relay put it near `-180 + asin(h/a)`. The ultimate gain is therefore told only where it follows,
-//! with its error, and else what would have to be done.
+//! the plant at **one** frequency, and with hysteresis not where its phase is -180 degrees: amplitude `a` and
+//! hysteresis `h` of a symmetric relay put it near `-180 + asin(h/a)`. The ultimate gain is therefore told only where
+//! it follows, with its error, and else what would have to be done.
 //!
 //! | file | what |
 //! |---|---|

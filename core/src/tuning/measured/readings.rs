@@ -2,8 +2,8 @@
 //!
 //! Amplitude, period, levels and hysteresis do not tell the waveform. By the describing function the output is a sine;
 //! the cycles of lags with dead time, which can be computed exactly, go from a triangle (an integrator) to a square (a
-//! dead time) of the same amplitude. How far these disagree is the error that is told: little in a symmetric cycle, much
-//! in another.
+//! dead time) of the same amplitude. How far these disagree is the error that is told: little in a symmetric cycle,
+//! much in another.
 
 use std::f64::consts::PI;
 
@@ -134,8 +134,8 @@ impl Readings {
         }
     }
 
-    /// The point, with the error of not knowing the waveform: of a symmetric cycle by the describing function, of another
-    /// in the middle of all that its numbers leave open.
+    /// The point, with the error of not knowing the waveform: of a symmetric cycle by the describing function, of
+    /// another in the middle of all that its numbers leave open.
     fn point(&self) -> Option<Point> {
         if self.unequal && self.half_periods.is_none() {
             return None;
@@ -178,17 +178,18 @@ impl Readings {
             Some([up, down]) if !self.symmetric() => (
                 up.min(down) / up.max(down),
                 format!(
-                    "The half periods of {} s and {} s differ: 4d/(πa) does not hold for such a cycle. Lags with dead time \
-                     that have this very cycle lie all over the error of the point; the record of the test narrows it.",
+                    "The half periods of {} s and {} s differ: 4d/(πa) does not hold for such a cycle. Lags with dead \
+                     time that have this very cycle lie all over the error of the point; the record of the test \
+                     narrows it.",
                     number(up),
                     number(down)
                 ),
             ),
             None if self.unequal => (
                 UNEQUAL,
-                "The half periods are known to differ, but not by how much: without them amplitude and period do not tell \
-                 the phase of the cycle, so no point and no gains follow. Give the times up and down, or the record of the \
-                 test."
+                "The half periods are known to differ, but not by how much: without them amplitude and period do not \
+                 tell the phase of the cycle, so no point and no gains follow. Give the times up and down, or the \
+                 record of the test."
                     .to_owned(),
             ),
             _ => return None,

@@ -69,8 +69,8 @@ pub struct Summary {
     pub periods: usize,
 }
 
-/// What the usual formula says, `4d/(pi a)` with the cycle's period: right only for a symmetric relay without hysteresis
-/// and a sine.
+/// What the usual formula says, `4d/(pi a)` with the cycle's period: right only for a symmetric relay without
+/// hysteresis and a sine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conventional {
     /// "Ultimate gain".
@@ -305,8 +305,8 @@ impl MeasuredTuning {
         let (cycle, point) = (self.cycle.as_ref()?, self.point.as_ref()?);
         if !point.is_known() {
             return Some(format!(
-                "The cycle (period {} s, amplitude {}, half of peak to peak) does not show the plant: |P| at {} rad/s is \
-                 not determined by this record.",
+                "The cycle (period {} s, amplitude {}, half of peak to peak) does not show the plant: |P| at {} rad/s \
+                 is not determined by this record.",
                 number(cycle.period),
                 number(cycle.amplitude),
                 number(point.omega),
@@ -386,8 +386,8 @@ impl MeasuredTuning {
                 .to_owned()
         };
         Some(format!(
-            "The ultimate gain does not follow: the phase of the cycle is {} degrees from -180, and how the curve goes on \
-             from there is not known well enough; {remedy}.",
+            "The ultimate gain does not follow: the phase of the cycle is {} degrees from -180, and how the curve goes \
+             on from there is not known well enough; {remedy}.",
             number(off.abs()),
         ))
     }
@@ -425,8 +425,8 @@ impl MeasuredTuning {
         let (name, left) = (model.structure.name(), number(100.0 * model.left));
         if told.is_empty() {
             return format!(
-                "The record prefers {name}, but determines none of its numbers. It misses {left} % of the motion of the \
-                 output."
+                "The record prefers {name}, but determines none of its numbers. It misses {left} % of the motion of \
+                 the output."
             );
         }
         if untold.is_empty() {

@@ -145,7 +145,8 @@ pub(super) fn is_chatter(record: &Record, cycle: &Cycle) -> bool {
         && jumps(&record.output) > NOISY * cycle.hysteresis.max(0.0)
 }
 
-/// Standard deviation of white noise that would change the second differences as much: no course that is sampled well does.
+/// Standard deviation of white noise that would change the second differences as much: no course that is sampled well
+/// does.
 fn jumps(output: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = output
         .windows(3)
@@ -201,8 +202,8 @@ fn means(record: &Record, column: &[f64], cycle: &Cycle) -> Vec<f64> {
         .collect()
 }
 
-/// A relay keeps the output where it is: what drifts is the input that this takes, and seldom the output too. As the half
-/// periods change, so does the shape of the output, and with it its mean: that tells nothing more.
+/// A relay keeps the output where it is: what drifts is the input that this takes, and seldom the output too. As the
+/// half periods change, so does the shape of the output, and with it its mean: that tells nothing more.
 fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     let ends = |column: &[f64]| {
         let means = means(e.record, column, cycle);
@@ -224,8 +225,8 @@ fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             false,
             share,
             format!(
-                "From the first to the last period the {word} drifts from {} to {}, {} % of its swing: the plant was not \
-                 settled when the test began, or something else acts on it.",
+                "From the first to the last period the {word} drifts from {} to {}, {} % of its swing: the plant was \
+                 not settled when the test began, or something else acts on it.",
                 n(ends.0),
                 of_unit(ends.1, unit),
                 n(100.0 * share.abs()),
@@ -271,8 +272,8 @@ fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
     ]
 }
 
-/// Whether a controller made the input: where it is a straight line in the output, the record shows the controller at least as much
-/// as the plant.
+/// Whether a controller made the input: where it is a straight line in the output, the record shows the controller at
+/// least as much as the plant.
 pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
     let count = record.input.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / count;
@@ -294,8 +295,8 @@ pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
     if explained > FOLLOWS {
         let slope = uy / yy;
         let text = format!(
-            "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the models below \
-             are as much of it as of the plant. Record a step or a relay test with the controller off.",
+            "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the \
+             models below are as much of it as of the plant. Record a step or a relay test with the controller off.",
             n(slope),
             n(u0 - slope * y0),
             n(100.0 * explained)
@@ -311,8 +312,8 @@ pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
         place: &[],
     })?;
     let text = format!(
-        "A {} controller made the input, {}: this is no relay test. Where its set point or its limits moved the input, the models \
-         are those of the plant.",
+        "A {} controller made the input, {}: this is no relay test. Where its set point or its limits moved the input, \
+         the models are those of the plant.",
         made.kind, made.law
     );
     Some(trouble(
@@ -340,14 +341,14 @@ fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
         );
         let text = if e.told {
             format!(
-                "In {seconds} s the input switches {switched} and the output goes round {went}: there is no cycle to read, \
-                 for which at least {WHOLE_PERIODS} whole periods after the first are needed; what is told here is by the \
-                 models, fitted to the record as it is."
+                "In {seconds} s the input switches {switched} and the output goes round {went}: there is no cycle to \
+                 read, for which at least {WHOLE_PERIODS} whole periods after the first are needed; what is told here \
+                 is by the models, fitted to the record as it is."
             )
         } else {
             format!(
-                "In {seconds} s the input switches {switched} and the output goes round {went}: the window is too short, at \
-                 least {WHOLE_PERIODS} whole periods after the first are needed."
+                "In {seconds} s the input switches {switched} and the output goes round {went}: the window is too \
+                 short, at least {WHOLE_PERIODS} whole periods after the first are needed."
             )
         };
         trouble(TroubleKind::WindowTooShort, !e.told, rounds as f64, text)

@@ -1,4 +1,5 @@
-//! A relay as it is built: a dead zone, minimum times, sampling, one direction; around a plant in continuous or discrete time.
+//! A relay as it is built: a dead zone, minimum times, sampling, one direction; around a plant in continuous or
+//! discrete time.
 
 mod controls;
 mod plots;

@@ -134,7 +134,8 @@ impl Controls {
         );
     }
 
-    /// The usual value in a place, and the end of its slider: as `far` as usual, or farther where what was put there needs room.
+    /// The usual value in a place, and the end of its slider: as `far` as usual, or farther where what was put there
+    /// needs room.
     fn usual_and_most(&self, place: Place, factor: f64, far: f64) -> (f64, f64) {
         let [usual, put] = [Settings::default(), self.put.clone()].map(|mut set| *place(&mut set));
         (usual, far.max(2.0 * (factor * put).abs()))

@@ -97,8 +97,8 @@ fn cause(servo: &Servo, data: &HuntingData) -> Option<String> {
             let stuck = cycle(data).map_or(0.0, |c| c.stuck);
             if stuck > STICKS && integral {
                 return Some(format!(
-                    "The motor sticks for {:.0} % of the time. Meanwhile the integral grows until the motor breaks away, and \
-                     since friction is lower in motion, it overshoots.",
+                    "The motor sticks for {:.0} % of the time. Meanwhile the integral grows until the motor breaks \
+                     away, and since friction is lower in motion, it overshoots.",
                     100.0 * stuck
                 ));
             }

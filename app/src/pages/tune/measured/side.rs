@@ -66,8 +66,8 @@ impl Measured {
             if ui
                 .button(tr("Open a file ..."))
                 .on_hover_text(tr(
-                    "Or drop it on this window: a table with time, input and output, or a log of Klipper, Marlin, ESPHome, \
-                     Mycodo or Home Assistant",
+                    "Or drop it on this window: a table with time, input and output, or a log of Klipper, Marlin, \
+                     ESPHome, Mycodo or Home Assistant",
                 ))
                 .clicked()
             {
@@ -134,8 +134,9 @@ impl Measured {
         {
             readings.half_periods = differ.then_some([0.5 * readings.period; 2]);
         }
-        ui.small(tr("The hysteresis is half the distance between the outputs at which the relay switches. Tuners differ in what they \
-                     call amplitude: two much-used ones come to an ultimate gain that is twice too large."));
+        ui.small(tr("The hysteresis is half the distance between the outputs at which the relay switches. Tuners \
+                     differ in what they call amplitude: two much-used ones come to an ultimate gain that is twice too \
+                     large."));
     }
 
     fn wishes_ui(&mut self, ui: &mut egui::Ui) {

@@ -106,8 +106,8 @@ fn oscillation(lines: &[&str]) -> Option<Readings> {
     })
 }
 
-/// Times with the output up and down, s, by the milliseconds between crossings of the set point. A crossing and the turn
-/// of the relay may come in the same update, so that the stretch belongs to the output in the middle of it.
+/// Times with the output up and down, s, by the milliseconds between crossings of the set point. A crossing and the
+/// turn of the relay may come in the same update, so that the stretch belongs to the output in the middle of it.
 fn half_periods(lines: &[&str], period: f64) -> Option<[f64; 2]> {
     let [low, high] = levels(lines);
     let mut times: Vec<f64> = Vec::new();

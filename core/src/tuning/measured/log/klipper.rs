@@ -63,9 +63,9 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), L
         .or_else(|| Some((of_gains(text)?, Levels::AssumedByGain)))
         .ok_or(LogError::Garbled(Source::Klipper))?;
     let note = "Klipper switches 5 degrees below the target and at it: with this hysteresis its cycle is not at the \
-                ultimate point. Its formula leaves that out and takes the full power for half of the relay's swing, so that \
-                its ultimate gain is twice 4d/(πa). PID_CALIBRATE with WRITE_FILE=1 leaves /tmp/heattest.txt, which tells \
-                more.";
+                ultimate point. Its formula leaves that out and takes the full power for half of the relay's swing, so \
+                that its ultimate gain is twice 4d/(πa). PID_CALIBRATE with WRITE_FILE=1 leaves /tmp/heattest.txt, \
+                which tells more.";
     Ok((
         Held::Readings(readings),
         levels,
@@ -193,8 +193,8 @@ fn raw(text: &str) -> Option<Readings> {
     })
 }
 
-/// From `pid_Kp=... pid_Ki=... pid_Kd=...`, which are 0.6 Ku 255, Kp/(Tu/2) and Kp Tu/8, with a Ku of `4 power/(pi a)`, at
-/// full power.
+/// From `pid_Kp=... pid_Ki=... pid_Kd=...`, which are 0.6 Ku 255, Kp/(Tu/2) and Kp Tu/8, with a Ku of `4 power/(pi a)`,
+/// at full power.
 fn of_gains(text: &str) -> Option<Readings> {
     let find = |key: &str| text.lines().rev().find_map(|l| after(l, key));
     let (kp, ki, _) = (find("pid_Kp=")?, find("pid_Ki=")?, find("pid_Kd=")?);

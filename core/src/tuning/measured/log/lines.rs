@@ -17,8 +17,8 @@ pub(super) fn leading(text: &str) -> Option<f64> {
     text[..end].parse().ok().filter(|v: &f64| v.is_finite())
 }
 
-/// Time of a line in s, by the first `hh:mm:ss` in it, with a fraction after `.` or `,` and a date before it where there
-/// is one. Only differences mean something.
+/// Time of a line in s, by the first `hh:mm:ss` in it, with a fraction after `.` or `,` and a date before it where
+/// there is one. Only differences mean something.
 pub(super) fn time(line: &str) -> Option<f64> {
     let at = line.as_bytes().windows(8).position(|w| {
         let digit = |i: usize| w[i].is_ascii_digit();

@@ -24,13 +24,13 @@ const HEATERS: [[&str; 2]; 2] = [["T:", "@:"], ["B:", "B@:"]];
 const FAILURES: [(&str, &str); 3] = [
     (
         "Temperature too high",
-        "the temperature passed the target by more than 20 to 30 degrees: the heater is far stronger than needed or the \
-         sensor comes late; tune at a lower power, or at a target nearer to the one in use",
+        "the temperature passed the target by more than 20 to 30 degrees: the heater is far stronger than needed or \
+         the sensor comes late; tune at a lower power, or at a target nearer to the one in use",
     ),
     (
         "timeout",
-        "no cycle came to its end within 20 minutes: the target is beyond what the heater reaches, or the plant cools too \
-         slowly; choose a lower target or a stronger heater",
+        "no cycle came to its end within 20 minutes: the target is beyond what the heater reaches, or the plant cools \
+         too slowly; choose a lower target or a stronger heater",
     ),
     (
         "Bad heater id",
@@ -53,8 +53,9 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), L
         return Ok((Held::Record(record), Levels::Told, settings(Vec::new())));
     }
     if let Some(readings) = cycle(&lines) {
-        let note = "Marlin moves the bias from cycle to cycle until both half periods are alike, and keeps each of them at \
-                    5 s or more; with the temperature reports of the log (T: and @:) the whole record could be used.";
+        let note = "Marlin moves the bias from cycle to cycle until both half periods are alike, and keeps each of \
+                    them at 5 s or more; with the temperature reports of the log (T: and @:) the whole record could be \
+                    used.";
         return Ok((
             Held::Readings(readings),
             Levels::Told,

@@ -43,8 +43,9 @@ pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
         found
     } else {
         notes.push(format!(
-            "The amplitude was computed from the gains in the log, and the noise band taken as {NOISEBAND}, the tuner's \
-             default; give --hysteresis where another was set. At log level DEBUG the log has the peaks and the times."
+            "The amplitude was computed from the gains in the log, and the noise band taken as {NOISEBAND}, the \
+             tuner's default; give --hysteresis where another was set. At log level DEBUG the log has the peaks and \
+             the times."
         ));
         of_gains(text).ok_or(LogError::Garbled(Source::Mycodo))?
     };
@@ -142,7 +143,8 @@ fn outputs(text: &str) -> Option<([f64; 2], Vec<Switch>)> {
     (high > low).then_some(([low, high], switches))
 }
 
-/// From its gains, where nothing else is in the log: its ultimate gain is `4 step/(pi amplitude)`, the step the upper level.
+/// From its gains, where nothing else is in the log: its ultimate gain is `4 step/(pi amplitude)`, the step the upper
+/// level.
 fn of_gains(text: &str) -> Option<(Readings, Levels)> {
     let [Some(kp), Some(ki)] = own_gains(text) else {
         return None;

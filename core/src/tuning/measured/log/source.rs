@@ -34,8 +34,8 @@ impl Source {
     pub(super) const fn needs(self) -> &'static str {
         match self {
             Self::Klipper => {
-                "the lines 'pwm: ...' with temperatures, 'Stats ...' with the heater, 'Autotune: raw=...', or 'pid_Kp=... \
-                 pid_Ki=... pid_Kd=...'"
+                "the lines 'pwm: ...' with temperatures, 'Stats ...' with the heater, 'Autotune: raw=...', or \
+                 'pid_Kp=... pid_Ki=... pid_Kd=...'"
             }
             Self::Marlin => {
                 "a line with 'bias: ... d: ... min: ... max: ...' followed by 'Ku: ... Tu: ...'"
