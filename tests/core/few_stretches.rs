@@ -1,10 +1,9 @@
 //! A slow process that was looked at for a few of its time constants: what is left hangs together, so that a record of
 //! a thousand samples holds a handful of independent stretches.
 
-use crate::support::diagnosis::{classes, finish, step};
+use crate::support::diagnosis::{classes, diagnose_shared, finish, step};
 use crate::support::parameter::parameter;
 use crate::support::pulses::reversed_twice;
-use crate::support::shared::shared;
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::{Measurement, import_csv};
@@ -86,12 +85,9 @@ fn what_may_be_chance_is_said_as_that() {
 /// that hold a step, and a room wanders in all others.
 #[test]
 fn a_lag_in_a_few_steps_is_said_as_a_class_that_may_be_chance() {
-    let file = "failing/heater-steps-second-lag.csv";
-    let Some(bytes) = shared(file) else {
+    let Some(d) = diagnose_shared("failing/heater-steps-second-lag.csv") else {
         return;
     };
-    let record = import_csv(file, &bytes, None).unwrap();
-    let d = finish(DiagnosisJob::new(&record).unwrap());
     let text = &d.verdict.text;
     assert!(d.verdict.missing.is_empty(), "{text}");
     let perhaps = text.split("Perhaps ").nth(1).expect(text);

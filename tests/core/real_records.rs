@@ -1,12 +1,11 @@
 //! Records of real machines and processes whose owners know what acts in them, and a sister of one that is made here.
 //!
-//! The records are not part of the project, see [`shared`].
+//! The records are not part of the project, see [`crate::support::shared`].
 
 use std::fmt::Write as _;
 
-use crate::support::diagnosis::{classes, finish};
+use crate::support::diagnosis::{classes, diagnose_shared, finish};
 use crate::support::parameter::parameter;
-use crate::support::shared::shared;
 use hysteron_core::criticism::DiagnosisJob;
 use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::import_csv;
@@ -14,15 +13,6 @@ use hysteron_core::measurement::import_csv;
 fn diagnose(name: &str, csv: &[u8]) -> Diagnosis {
     let record = import_csv(name, csv, None).unwrap();
     finish(DiagnosisJob::new(&record).unwrap())
-}
-
-fn diagnose_shared(file: &str) -> Option<Diagnosis> {
-    diagnose_in("failing", file)
-}
-
-fn diagnose_in(folder: &str, file: &str) -> Option<Diagnosis> {
-    let csv = shared(&format!("{folder}/{file}"))?;
-    Some(diagnose(file, &csv))
 }
 
 /// That these classes are missing, and no other.
@@ -51,7 +41,7 @@ const SPRING: &[&str] = &["gravity", "return_spring"];
 /// the other.
 #[test]
 fn an_arm_has_weight_and_its_gears_rub_the_more_the_more_they_carry() {
-    let Some(d) = diagnose_shared("servo-xl330-volts.csv") else {
+    let Some(d) = diagnose_shared("failing/servo-xl330-volts.csv") else {
         return;
     };
     check(&d, &[SPRING, &["load_dependent_friction"]]);
@@ -61,7 +51,7 @@ fn an_arm_has_weight_and_its_gears_rub_the_more_the_more_they_carry() {
 /// moves in metres: the weight of an arm goes with the sine of an angle, and is not in the class of the spring.
 #[test]
 fn an_oscillator_has_its_hardening_spring() {
-    let Some(d) = diagnose_shared("silverbox-as-drive.csv") else {
+    let Some(d) = diagnose_shared("failing/silverbox-as-drive.csv") else {
         return;
     };
     check(&d, &[&["hardening_spring"], &["return_spring"]]);
@@ -72,7 +62,7 @@ fn an_oscillator_has_its_hardening_spring() {
 /// A motor that turns one way, with measured torque.
 #[test]
 fn a_motor_that_turns_one_way_does_not_tell_its_friction() {
-    let Some(d) = diagnose_shared("one-way-drive.csv") else {
+    let Some(d) = diagnose_shared("failing/one-way-drive.csv") else {
         return;
     };
     check(&d, &[&["constant_load", "coulomb_friction", "dead_zone"]]);
@@ -81,7 +71,7 @@ fn a_motor_that_turns_one_way_does_not_tell_its_friction() {
 /// An industrial servo in one move: friction of 5.5 % at 27 rad/s, 7.2 at 61, 8.9 at 102 and 9.4 at 174.
 #[test]
 fn friction_that_flattens_with_speed_is_found_in_one_move() {
-    let Some(d) = diagnose_shared("servo-single-move.csv") else {
+    let Some(d) = diagnose_shared("failing/servo-single-move.csv") else {
         return;
     };
     let found = classes(&d).concat();
@@ -156,7 +146,7 @@ fn so_do_those_of_an_arm_that_is_made_here() {
 /// another simulator, with bodies of 2e-3 kg m^2, a half gap of 60 mrad and a contact of 300 N m/rad.
 #[test]
 fn a_gap_is_measured_under_a_random_binary_torque() {
-    let Some(d) = diagnose_in("measurements-2", "prbs-backlash.csv") else {
+    let Some(d) = diagnose_shared("measurements-2/prbs-backlash.csv") else {
         return;
     };
     check(&d, &[&["backlash"]]);

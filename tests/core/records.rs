@@ -8,7 +8,7 @@
 
 use std::fmt::Write as _;
 
-use crate::support::diagnosis::{classes, finish};
+use crate::support::diagnosis::{classes, diagnose_shared, finish};
 use crate::support::shared::shared;
 use hysteron_core::criticism::{DiagnosisJob, noise_level};
 use hysteron_core::diagnosis::Diagnosis;
@@ -19,12 +19,6 @@ use proptest::prelude::*;
 
 fn diagnose(record: &Measurement) -> Diagnosis {
     finish(DiagnosisJob::new(record).unwrap())
-}
-
-/// A record beside the project, diagnosed.
-fn diagnose_shared(file: &str) -> Option<Diagnosis> {
-    let record = import_csv(file, &shared(file)?, None).unwrap();
-    Some(diagnose(&record))
 }
 
 fn parameter(d: &Diagnosis, name: &str) -> (f64, f64) {

@@ -2,7 +2,10 @@
 
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::{Diagnosis, StepReport};
+use hysteron_core::measurement::import_csv;
 use hysteron_core::progress::Progress;
+
+use crate::support::shared::shared;
 
 /// Runs a diagnosis to its end.
 pub fn finish(mut job: DiagnosisJob) -> Diagnosis {
@@ -11,6 +14,12 @@ pub fn finish(mut job: DiagnosisJob) -> Diagnosis {
             return diagnosis;
         }
     }
+}
+
+/// Diagnoses a record beside the project, see [`shared`].
+pub fn diagnose_shared(path: &str) -> Option<Diagnosis> {
+    let record = import_csv(path, &shared(path)?, None).unwrap();
+    Some(finish(DiagnosisJob::new(&record).unwrap()))
 }
 
 /// Runs one step to its end.

@@ -214,15 +214,11 @@ fn candidates(out: &mut String, list: &[Candidate]) {
             say(&brief(candidate.error)),
             say(&format!("{:.1}", candidate.delta_bic))
         );
-        let note = if !candidate.equivalent_to.is_empty() {
+        let note = if candidate.equivalent_to.is_empty() {
+            say(candidate.standing())
+        } else {
             let ids: Vec<&str> = candidate.equivalent_to.iter().map(|e| e.as_str()).collect();
             format!("{} {}", say("same as"), ids.join(", "))
-        } else if candidate.significant {
-            say("helps")
-        } else if candidate.promising {
-            say("perhaps: chance is not ruled out")
-        } else {
-            say("too little to add it")
         };
         let indent = head.chars().count();
         let notes = wrap(&note, WIDTH.saturating_sub(indent).max(20));

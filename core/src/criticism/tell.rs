@@ -2,7 +2,7 @@
 
 use super::contradicted::overruled;
 use super::dry_or_viscous::InsteadOfViscous;
-use super::explain::{Explain, Trial, difference as between, may_replace};
+use super::explain::{Difference, Explain, Trial, difference as between, may_replace};
 use super::fingerprint::fingerprints;
 use super::left_out::add_left_out;
 use super::missing::missing_parts;
@@ -246,10 +246,9 @@ fn needless(session: &Session, explain: &Explain, place: usize) -> Vec<EffectId>
 }
 
 /// Whether a step explains more than it leaves of either half, and yet not beyond chance.
-fn is_promising(session: &Session, from: &Trial, to: &Trial) -> bool {
+fn is_promising(difference: &Difference, from: &Trial, to: &Trial) -> bool {
     let mut halves = from.halves().zip(to.halves());
-    halves.all(|(a, b)| outweighs(a.score.error, b.score.error))
-        && !between(session, from, to).is_better()
+    halves.all(|(a, b)| outweighs(a.score.error, b.score.error)) && !difference.is_better()
 }
 
 /// The effects that would lower the error most, and to what, where that is much and yet not beyond chance.
@@ -258,8 +257,10 @@ fn hint(
     model: &Trial,
     tried: &[(&'static dyn Effect, &Trial)],
 ) -> Option<(Vec<EffectId>, f64)> {
-    let promising = tried.iter().filter(|t| is_promising(session, model, t.1));
-    let promising: Vec<&(&'static dyn Effect, &Trial)> = promising.collect();
+    let promising = |t: &&(&'static dyn Effect, &Trial)| {
+        is_promising(&between(session, model, t.1), model, t.1)
+    };
+    let promising: Vec<&(&'static dyn Effect, &Trial)> = tried.iter().filter(promising).collect();
     let (best, trial) = promising.first()?;
     let class = same_as(session, best.id(), trial, &promising);
     Some((class, session.completed(&trial.scored).score.error))
@@ -273,10 +274,14 @@ fn same_as(
     tried: &[&(&'static dyn Effect, &Trial)],
 ) -> Vec<EffectId> {
     let same = |t: &&&(&'static dyn Effect, &Trial)| {
-        let alike = t.1.values() <= trial.values() && between(session, trial, t.1).is_same();
-        t.0.id() == best || alike
+        t.0.id() == best || does_the_same(session, trial, t.1)
     };
     tried.iter().filter(same).map(|t| t.0.id()).collect()
+}
+
+/// Whether another model needs no more values and leaves the same.
+fn does_the_same(session: &Session, trial: &Trial, other: &Trial) -> bool {
+    other.values() <= trial.values() && between(session, trial, other).is_same()
 }
 
 /// The effects that lower the error most for certain and were not taken, why not, and the error with them.
@@ -363,7 +368,7 @@ fn candidates(
                     delta_bic(before, length, after, values)
                 },
                 significant: difference.is_better() && most,
-                promising: is_promising(session, model, trial),
+                promising: is_promising(&difference, model, trial),
                 parameters: session
                     .parameters(&trial.scored, &trial.spreads())
                     .into_iter()
@@ -375,8 +380,7 @@ fn candidates(
                         difference.is_better()
                             && other.id() != effect.id()
                             && may_replace(*other, *effect)
-                            && t.values() <= trial.values()
-                            && between(session, trial, t).is_same()
+                            && does_the_same(session, trial, t)
                     })
                     .map(|(other, _)| other.id())
                     .collect(),

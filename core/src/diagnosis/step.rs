@@ -48,6 +48,19 @@ pub struct Candidate {
     pub equivalent_to: Vec<EffectId>,
 }
 
+impl Candidate {
+    /// Whether it helps, in words.
+    pub fn standing(&self) -> &'static str {
+        if self.significant {
+            "helps"
+        } else if self.promising {
+            "perhaps: chance is not ruled out"
+        } else {
+            "too little to add it"
+        }
+    }
+}
+
 /// One model in the sequence from the baseline to the last one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {

@@ -347,14 +347,6 @@ fn pushed_back(track: &Track, numbers: &Shape) -> Vec<f64> {
     pushes.iter().map(|force| -force).collect()
 }
 
-/// Values with a contact of this stiffness and damping ratio.
-fn with_contact(values: &[f64], stiffness: f64, damping_ratio: f64) -> Vec<f64> {
-    let mut values = values.to_vec();
-    values[4] = stiffness;
-    values[5] = 2.0 * damping_ratio * (stiffness * values[1]).sqrt();
-    values
-}
-
 impl Effect for Backlash {
     fn id(&self) -> EffectId {
         EffectId::new("backlash")
@@ -450,16 +442,20 @@ impl Effect for Backlash {
         met.into_iter().chain(found).collect()
     }
 
-    fn other_contacts(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        HARDER
-            .map(|times| with_contact(values, times * values[4], BOUNCING))
-            .to_vec()
-    }
-
-    fn other_valleys(&self, values: &[f64], goes_on: bool) -> Vec<Vec<f64>> {
-        let stiffer = STIFFER.into_iter().filter(|_| goes_on);
-        let with = |times: f64| with_contact(values, times * values[4], DAMPING_RATIO);
-        stiffer.map(with).collect()
+    fn other_contacts(&self, values: &[f64], bouncing: bool) -> Vec<Vec<f64>> {
+        let (times, damping_ratio): (&[f64], f64) = if bouncing {
+            (&HARDER, BOUNCING)
+        } else {
+            (&STIFFER, DAMPING_RATIO)
+        };
+        let other = |times: &f64| {
+            let (inertia, stiffness) = (values[1], times * values[4]);
+            let mut values = values.to_vec();
+            values[4] = stiffness;
+            values[5] = 2.0 * damping_ratio * (stiffness * inertia).sqrt();
+            values
+        };
+        times.iter().map(other).collect()
     }
 
     fn least_errors(&self, values: &[f64], gap: &SeenGap) -> Vec<f64> {

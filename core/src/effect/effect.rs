@@ -32,14 +32,9 @@ pub trait Effect: Sync {
         Vec::new()
     }
 
-    /// The same values with contacts that a regression cannot tell from theirs.
-    fn other_contacts(&self, _values: &[f64]) -> Vec<Vec<f64>> {
-        Vec::new()
-    }
-
-    /// Values from which a fit may come to a lower valley, where it has stalled at these; a hidden load goes on from
-    /// window to window, or is where it must be if the body moved as measured.
-    fn other_valleys(&self, _values: &[f64], _goes_on: bool) -> Vec<Vec<f64>> {
+    /// The same values with other contacts, with which a fit may come to a lower valley: such as bounce, which no
+    /// regression tells, or harder ones, where a fit has stalled at these.
+    fn other_contacts(&self, _values: &[f64], _bouncing: bool) -> Vec<Vec<f64>> {
         Vec::new()
     }
 

@@ -141,15 +141,11 @@ pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
             .iter()
             .map(|c| {
                 let ids: Vec<&str> = c.effects.iter().map(|e| name_of(*e)).collect();
-                let note = if !c.equivalent_to.is_empty() {
+                let note = if c.equivalent_to.is_empty() {
+                    c.standing().to_owned()
+                } else {
                     let others: Vec<&str> = c.equivalent_to.iter().map(|e| name_of(*e)).collect();
                     format!("cannot be told apart from {}", others.join(", "))
-                } else if c.significant {
-                    "helps".to_owned()
-                } else if c.promising {
-                    "perhaps: chance is not ruled out".to_owned()
-                } else {
-                    "too little to add it".to_owned()
                 };
                 // What does not help has values that mean nothing.
                 let shown = c.parameters.iter().filter(|_| c.significant);

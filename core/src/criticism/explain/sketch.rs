@@ -174,7 +174,7 @@ impl Sketch {
         let mut all = Vec::new();
         for (k, effect) in self.structure.effects.iter().enumerate() {
             let range = self.structure.range(k);
-            for other in effect.other_contacts(&self.values[range.clone()]) {
+            for other in effect.other_contacts(&self.values[range.clone()], true) {
                 let mut sketch = self.clone();
                 sketch.values[range.clone()].copy_from_slice(&other);
                 all.extend(sketch.with_displacements(session));

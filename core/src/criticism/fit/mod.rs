@@ -246,9 +246,10 @@ impl Fit {
         self.valleys_seen += 1;
         let present = self.cost;
         let goes_on = self.structure.load_begin == LoadBegin::Carried;
-        for (index, effect) in self.structure.effects.clone().into_iter().enumerate() {
+        let effects = self.structure.effects.clone().into_iter().enumerate();
+        for (index, effect) in effects.filter(|_| goes_on) {
             let range = self.structure.range(index);
-            for other in effect.other_valleys(&self.values[range.clone()], goes_on) {
+            for other in effect.other_contacts(&self.values[range.clone()], false) {
                 let mut trial = self.clone();
                 trial.values[range.clone()].copy_from_slice(&other);
                 trial.structure.clamp(&mut trial.values, scales);
