@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use crate::support::mat::{element, file, timeseries};
+use crate::support::mat::{element, file, iddata, timeseries};
 use hysteron_core::measurement::{
     ImportOptions, Kind, Mapping, Measurement, Motion, Quantity, Role, TorqueConstant, columns,
     guess, import,
@@ -415,6 +415,33 @@ fn timeseries_are_read_by_the_words_of_the_message() {
     let m = read(&bytes, map, None);
     assert_eq!((m.time, m.input.values), (time, volt));
     assert_eq!(m.outputs[0].values, speed);
+}
+
+/// What the System Identification Toolbox keeps says which is input and which is output, and the sampling period.
+#[test]
+fn records_of_the_toolbox_are_read_by_the_words_of_the_message() {
+    let input: Vec<f64> = (0..60).map(|k| f64::from(k / 7 % 2)).collect();
+    let output: Vec<f64> = (0..60).map(f64::from).collect();
+    let other: Vec<f64> = output.iter().map(|y| 2.0 * y).collect();
+    let bytes = iddata(&[
+        ("id", input.clone(), output.clone(), 0.25),
+        ("val", input.clone(), other, 0.5),
+    ]);
+    let map = "t=id.Time, u=id.InputData, y=id.OutputData";
+    refused(&bytes, "", None, &[&format!("--map \"{map}\"")]);
+    let record = read(&bytes, map, None);
+    assert_eq!(record.kind, Kind::Process);
+    assert_eq!(record.time[59], 59.0 * 0.25);
+    assert_eq!(record.input.values, input);
+    assert_eq!(record.outputs[0].values, output);
+    let names: Vec<String> = columns("rig.mat", &bytes)
+        .unwrap()
+        .into_iter()
+        .map(|c| c.name)
+        .collect();
+    let expected =
+        ["id", "val"].map(|of| ["Time", "OutputData", "InputData"].map(|c| format!("{of}.{c}")));
+    assert_eq!(names, expected.concat());
 }
 
 #[test]

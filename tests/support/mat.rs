@@ -158,3 +158,46 @@ pub fn timeseries(logged: &[(&str, Vec<f64>, Vec<f64>)]) -> Vec<u8> {
     bytes.extend(*b"\x00\x01IM");
     [bytes, variables, subsystem].concat()
 }
+
+/// A file with a record of each name as the System Identification Toolbox keeps them: input, output and sampling period
+/// in cells of an object, beside a variable of one number.
+pub fn iddata(records: &[(&str, Vec<f64>, Vec<f64>, f64)]) -> Vec<u8> {
+    let head = |class: u32, sizes: [u32; 2], name: &str| {
+        let flags = element(false, 6, &words(&[class, 0]));
+        let sizes = element(false, 5, &words(&sizes));
+        [flags, sizes, element(false, 1, name.as_bytes())].concat()
+    };
+    let in_a_cell = |values: &[f64]| {
+        let inside = array(6, [values.len() as u32, 1], "", 9, &doubles(values));
+        let cell = [head(1, [1, 1], ""), element(false, 14, &inside)].concat();
+        element(false, 14, &cell)
+    };
+    let mut bytes = vec![b' '; 124];
+    bytes.extend(*b"\x00\x01IM");
+    let count = array(6, [1, 1], "n", 9, &doubles(&[2.0]));
+    bytes.extend(element(false, 14, &count));
+    for (name, input, output, step) in records {
+        const LENGTH: usize = 16;
+        let mut names = Vec::new();
+        for field in ["OutputData", "InputData", "Ts", "Notes"] {
+            let mut padded = field.as_bytes().to_vec();
+            padded.resize(LENGTH, 0);
+            names.extend(padded);
+        }
+        let fields = [
+            in_a_cell(output),
+            in_a_cell(input),
+            in_a_cell(&[*step]),
+            element(false, 14, &head(1, [0, 0], "")),
+        ];
+        let object = [
+            head(3, [1, 1], name),
+            element(false, 1, b"iddata"),
+            element(false, 5, &words(&[LENGTH as u32])),
+            element(false, 1, &names),
+            fields.concat(),
+        ];
+        bytes.extend(element(false, 14, &object.concat()));
+    }
+    bytes
+}

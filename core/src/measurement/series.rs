@@ -230,7 +230,7 @@ fn period_of(
 }
 
 /// The last of the names on the way to a series, as in `log.Ts`.
-fn last_name(name: &str) -> &str {
+pub(super) fn last_name(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
 }
 

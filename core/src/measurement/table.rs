@@ -6,7 +6,8 @@ use super::error::{ImportError, Problem};
 use super::found::FoundColumn;
 use super::mapping::ImportOptions;
 use super::mat::{self, Format};
-use super::series::Table;
+use super::resembling::is_period;
+use super::series::{Series, Table, last_name};
 use super::{Kind, MIN_SAMPLES, Measurement};
 use super::{found, json, log, text};
 
@@ -74,9 +75,15 @@ fn read(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Measurement
 /// The series of a file; `None` of a text with columns, which is read row by row.
 fn table(bytes: &[u8]) -> Result<Option<Table>, text::Located> {
     let whole = |problem| (None, problem);
-    let of_matlab = |series| Table {
-        series,
-        named: false,
+    let of_matlab = |mut series: Vec<Series>| {
+        // A workspace has counters and constants beside its records.
+        if series.iter().any(|s| s.values.len() >= MIN_SAMPLES) {
+            series.retain(|s| s.values.len() >= MIN_SAMPLES || is_period(last_name(&s.name)));
+        }
+        Table {
+            series,
+            named: false,
+        }
     };
     match mat::format_of(bytes) {
         #[cfg(not(target_arch = "wasm32"))]

@@ -12,7 +12,10 @@ const MOST_PROPERTIES: usize = 20_000;
 pub const DEEPEST: usize = 16;
 
 // Classes of arrays.
+const CELL: u32 = 1;
 const STRUCT: u32 = 2;
+/// An object as MATLAB kept them at first: a structure with the name of its class.
+const OBJECT: u32 = 3;
 const WORDS: u32 = 13;
 const OPAQUE: u32 = 17;
 const NUMERIC: std::ops::RangeInclusive<u32> = 6..=15;
@@ -47,7 +50,7 @@ impl<'a> Found<'a> {
         if class == OPAQUE {
             return self.object(array, path, depth);
         }
-        if class != STRUCT && !NUMERIC.contains(&class) {
+        if ![CELL, STRUCT, OBJECT].contains(&class) && !NUMERIC.contains(&class) {
             return Ok(());
         }
         let sizes = array
@@ -61,7 +64,13 @@ impl<'a> Found<'a> {
         } else {
             path.to_owned()
         };
-        if class == STRUCT {
+        if class == CELL {
+            return self.cells(array, &name, &sizes, depth);
+        }
+        if class == OBJECT {
+            array.skip(1)?;
+        }
+        if !NUMERIC.contains(&class) {
             return self.fields(array, &name, &sizes, depth);
         }
         if flags & COMPLEX == 0 {
@@ -70,6 +79,32 @@ impl<'a> Found<'a> {
                 .numbers()
                 .ok_or_else(|| damaged(array.at, "the numbers of an array"))?;
             columns(&name, &sizes, values, &mut self.series);
+        }
+        Ok(())
+    }
+
+    /// What is in each cell.
+    fn cells(
+        &mut self,
+        mut array: Reader<'_>,
+        name: &str,
+        sizes: &[usize],
+        depth: usize,
+    ) -> Result<(), Problem> {
+        let count = sizes
+            .iter()
+            .fold(1_usize, |n, size| n.saturating_mul(*size));
+        // Each turn takes bytes of the file, as with structures.
+        for i in 1..=count {
+            let element = array.element()?;
+            let path = if count == 1 {
+                name.to_owned()
+            } else {
+                format!("{name}({i})")
+            };
+            if element.kind == MATRIX {
+                self.read(element.inside(), &path, depth + 1)?;
+            }
         }
         Ok(())
     }

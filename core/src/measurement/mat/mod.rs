@@ -1,11 +1,12 @@
 //! MATLAB's level 5 MAT-files (`save -v6` and `-v7`), after the "MAT-File Format" of `MathWorks` (2024).
 //!
-//! Real numeric arrays are read, also within structures (`log.signals(2).values`) and objects (`speed.Data` of a
-//! timeseries, see [`objects`]); everything else is passed over. A matrix becomes one column for each of its
+//! Real numeric arrays are read, also within structures (`log.signals(2).values`), cells and objects (`speed.Data` of a
+//! timeseries, see [`objects`]; `data.InputData` of an `iddata`); everything else is passed over. A matrix becomes one column for each of its
 //! shorter side: `data(:,2)`.
 
 mod array;
 mod element;
+mod iddata;
 mod objects;
 mod timeseries;
 
@@ -121,6 +122,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Series>, Problem> {
         }
     }
     timeseries::complete(&mut found.series);
+    iddata::complete(&mut found.series);
     Ok(found.series)
 }
 
