@@ -80,6 +80,9 @@ impl NextExperiment {
             return Some(Opening::Drive(Box::new(run)));
         }
         let (gain, mut denominator) = baseline.fraction(&values);
+        if let Some(stiffness) = model.spring {
+            denominator.insert(0, model.inertia / stiffness);
+        }
         for lag in [model.lag, model.sensor_lag].into_iter().flatten() {
             denominator = slower(&denominator, lag);
         }

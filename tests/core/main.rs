@@ -53,6 +53,7 @@ mod sensors;
 mod simulation;
 mod slow_and_short;
 mod surroundings;
+mod swinging;
 mod tuning;
 mod tuning_coverage;
 mod tuning_logs;

@@ -12,7 +12,7 @@ use crate::support::diagnosis::{classes, diagnose_shared, finish};
 use crate::support::shared::shared;
 use hysteron_core::criticism::{DiagnosisJob, noise_level};
 use hysteron_core::diagnosis::Diagnosis;
-use hysteron_core::measurement::{Kind, Measurement, Quantity, import_csv};
+use hysteron_core::measurement::{Channel, Kind, Measurement, Quantity, import_csv};
 use hysteron_core::rig::Random;
 use hysteron_core::rig::process::{self, ProcessRig};
 use proptest::prelude::*;
@@ -81,6 +81,41 @@ fn a_heater_in_a_room_has_an_ambient_and_nothing_missing() {
     for proposal in &d.verdict.experiments {
         assert_eq!(proposal.limits.side, 1);
     }
+}
+
+/// An input that changes at nearly every sample leaves no smooth stretch that would show the noise: what the model leaves
+/// does.
+#[test]
+fn noise_is_no_more_than_what_a_model_leaves() {
+    let (mut random, level) = (Random::new(9), 0.05);
+    let (mut y, mut input, mut output) = (0.0, Vec::new(), Vec::new());
+    for _ in 0..200 {
+        let u = random.sign();
+        input.push(u);
+        output.push(y + level * random.normal());
+        y += (7.0 * u - y) * (1.0 - (-0.15_f64).exp());
+    }
+    let channel = |quantity, values| Channel {
+        quantity,
+        name: String::new(),
+        unit: "1".to_owned(),
+        values,
+    };
+    let record = Measurement {
+        name: "quick".to_owned(),
+        kind: Kind::Process,
+        time: (0..200).map(|k| 0.1 * f64::from(k)).collect(),
+        input: channel(Quantity::Input, input),
+        outputs: vec![channel(Quantity::Output, output)],
+        reference: vec![],
+        warnings: vec![],
+    };
+    let seen = noise_level(&record.outputs[0].values, &record.input.values);
+    assert!(seen > 2.0 * level, "{seen}");
+    let d = diagnose(&record);
+    check(&d, &[]);
+    let found = d.noise[0].value;
+    assert!((found / level - 1.0).abs() < 0.2, "{found}");
 }
 
 #[test]

@@ -66,6 +66,7 @@ pub fn process_cases(seed: u64) -> Vec<Case> {
     cases.extend(valve(&mut random));
     cases.push(emptying(&mut random));
     cases.extend(valves(&mut random));
+    cases.extend(swinging(&mut random));
     cases
 }
 
@@ -103,6 +104,33 @@ fn valves(r: &mut Random) -> Vec<Case> {
         )
     };
     cases.into_iter().map(hidden).collect()
+}
+
+/// What swings before it settles, damped by 0.15 to 0.6 of what would stop that.
+fn swinging(r: &mut Random) -> Vec<Case> {
+    let mut make = |name, late: bool, slow: bool, excitation| {
+        let period = r.between(15.0, 30.0);
+        let damping = r.between(0.15, 0.6);
+        let dead_time = if late { r.between(2.0, 4.0) } else { 0.0 };
+        let sensor_lag = if slow { r.between(2.0, 4.0) } else { 0.0 };
+        let rig = ProcessRig {
+            swing_period: period,
+            sensor_lag,
+            time_constant: damping * period / std::f64::consts::PI,
+            dead_time,
+            ..bare(r, excitation)
+        };
+        let mut truth = vec![Truth::new("oscillation", &["P"], period)];
+        truth.extend(late.then(|| delay(dead_time)));
+        truth.extend(slow.then(|| Truth::new("sensor_lag", &["T_s"], sensor_lag).same(LAG)));
+        Case::process(name, truth, rig)
+    };
+    vec![
+        make("swinging, staircase", false, false, STAIRS),
+        make("swinging, binary", false, false, BINARY),
+        make("swinging and dead time", true, false, BINARY),
+        make("swinging and sensor lag", false, true, BINARY),
+    ]
 }
 
 /// A tank that empties through a hole.

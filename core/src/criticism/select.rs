@@ -12,7 +12,7 @@ const NOISE_CORRELATION: f64 = 2.0;
 const FITTED_NOISE_ERROR: f64 = 1.3;
 
 /// Standard deviations by which the size of a residual of few values may differ from that of the noise.
-const CHANCE: f64 = 3.0;
+pub(super) const CHANCE: f64 = 3.0;
 
 /// Error up to which what is left is noise even if it is correlated.
 const SURE_NOISE_ERROR: f64 = 1.05;

@@ -317,7 +317,7 @@ impl Session {
             acting: &data.excitation.effective_input(&model),
             outputs: &outputs,
             spans: &data.spans(),
-            body: (model.inertia, model.viscous),
+            body: fit.structure.baseline.body(&fit.values),
             gap: self.gap,
             crew: &data.crew,
         })
@@ -336,6 +336,18 @@ impl Session {
             data.wander = WANDER;
         }
         self.motion_square = motion_square(&self.data, WANDER, |_| true);
+        self.probes = Probes::default();
+        self.baseline = None;
+    }
+
+    /// Takes the noise of a process for this share of what its smooth stretches showed.
+    pub fn quieten(&mut self, share: f64) {
+        for data in self.all_data() {
+            for output in &mut data.outputs {
+                output.noise *= share;
+            }
+        }
+        self.motion_square = motion_square(&self.data, 0.0, |_| true);
         self.probes = Probes::default();
         self.baseline = None;
     }

@@ -2,7 +2,9 @@
 
 use super::contradicted::overruled;
 use super::dry_or_viscous::InsteadOfViscous;
-use super::explain::{Difference, Explain, Trial, difference as between, may_replace};
+use super::explain::{
+    Difference, Explain, Trial, difference as between, may_replace, outweighs_in_either_half,
+};
 use super::fingerprint::fingerprints;
 use super::left_out::add_left_out;
 use super::missing::missing_parts;
@@ -247,8 +249,7 @@ fn needless(session: &Session, explain: &Explain, place: usize) -> Vec<EffectId>
 
 /// Whether a step explains more than it leaves of either half, and yet not beyond chance.
 fn is_promising(difference: &Difference, from: &Trial, to: &Trial) -> bool {
-    let mut halves = from.halves().zip(to.halves());
-    halves.all(|(a, b)| outweighs(a.score.error, b.score.error)) && !difference.is_better()
+    outweighs_in_either_half(from, to) && !difference.is_better()
 }
 
 /// The effects that would lower the error most, and to what, where that is much and yet not beyond chance.
@@ -266,7 +267,8 @@ fn hint(
     Some((class, session.completed(&trial.scored).score.error))
 }
 
-/// Of the effects that were tried, this one and those that need no more values and leave the same.
+/// Of the effects that were tried, this one and those that need no more values and leave the same; none that comes near
+/// to another of them, or has it as a part.
 fn same_as(
     session: &Session,
     best: EffectId,
@@ -276,7 +278,10 @@ fn same_as(
     let same = |t: &&&(&'static dyn Effect, &Trial)| {
         t.0.id() == best || does_the_same(session, trial, t.1)
     };
-    tried.iter().filter(same).map(|t| t.0.id()).collect()
+    let same: Vec<&'static dyn Effect> = tried.iter().filter(same).map(|t| t.0).collect();
+    let says_more = |e: &&'static dyn Effect| same.iter().all(|other| may_replace(*e, *other));
+    let class = same.iter().copied().filter(says_more);
+    class.map(Effect::id).collect()
 }
 
 /// Whether another model needs no more values and leaves the same.

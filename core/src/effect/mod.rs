@@ -30,6 +30,7 @@ mod load_dependent_friction;
 mod load_ramp;
 mod names;
 mod nonlinear_loss;
+mod oscillation;
 mod outflow;
 mod periodic_disturbance;
 mod position_friction;
@@ -86,6 +87,7 @@ pub fn registry() -> &'static [&'static dyn Effect] {
         &hardening_spring::HardeningSpring,
         &load_dependent_friction::LoadDependentFriction,
         &flattening_friction::FlatteningFriction,
+        &oscillation::Oscillation,
         &outflow::Outflow,
         &end_stop::EndStop,
         &position_friction::PositionFriction,

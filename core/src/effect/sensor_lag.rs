@@ -8,11 +8,13 @@ use super::{Dimension, Effect, EffectId, ParameterSpec, Probe, Range};
 use crate::measurement::Kind;
 use crate::model::Model;
 
+pub(super) const ID: EffectId = EffectId::new("sensor_lag");
+
 pub(super) struct SensorLag;
 
 impl Effect for SensorLag {
     fn id(&self) -> EffectId {
-        EffectId::new("sensor_lag")
+        ID
     }
 
     fn name(&self) -> &'static str {

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use super::Measurement;
 use super::cell::Mark;
 use super::clock::{Clock, unit_from_1970};
 use super::controlled::as_in_the_loop;
@@ -17,6 +16,7 @@ use super::period::Period;
 use super::resembling::is_period;
 use super::size::wrong_size;
 use super::times;
+use super::{Kind, Measurement};
 
 /// One series of numbers with the name by which it is addressed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -149,6 +149,21 @@ impl Table {
         (fields, note)
     }
 
+    /// Names of the records that say themselves what is input and what output, as those of MATLAB's System
+    /// Identification Toolbox do.
+    fn records(&self) -> impl Iterator<Item = &str> {
+        let has = |name: String| self.series.iter().any(|s| s.name == name);
+        let inputs = self
+            .series
+            .iter()
+            .filter_map(|s| s.name.strip_suffix(".InputData"));
+        inputs.filter(move |of| {
+            ["Time", "OutputData"]
+                .iter()
+                .all(|c| has(format!("{of}.{c}")))
+        })
+    }
+
     /// The columns, before it is known what they are.
     pub fn columns(&self) -> Vec<FoundColumn> {
         let numbers = |series: &Series| {
@@ -177,13 +192,24 @@ impl Table {
             return Err(whole(Problem::NoNumbers));
         }
         let (mut fields, note) = self.fields();
-        if options.mapping.is_empty() && !self.named {
-            let found = listed(self.series.iter().map(|s| s.name.as_str()));
-            return Err(whole(Problem::NotMapped { found }));
-        }
-        let mut notes = map(&mut fields, &options.mapping).map_err(whole)?;
-        notes.extend(note.filter(|_| options.mapping.is_empty()));
         let mut options = options.clone();
+        let mut notes = Vec::new();
+        if options.mapping.is_empty() && !self.named {
+            let record = self.records().next();
+            let Some(record) = record.filter(|_| options.kind != Some(Kind::Drive)) else {
+                let found = listed(self.series.iter().map(|s| s.name.as_str()));
+                return Err(whole(Problem::NotMapped { found }));
+            };
+            options.mapping = record_mapping(record).parse().unwrap_or_default();
+            if self.records().nth(1).is_some() {
+                notes.push(format!(
+                    "The file holds {}: '{record}' was read. A mapping reads another one.",
+                    listed(self.records())
+                ));
+            }
+        }
+        notes.extend(map(&mut fields, &options.mapping).map_err(whole)?);
+        notes.extend(note.filter(|_| options.mapping.is_empty()));
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
             notes.push(format!(
                 "The column '{name}' is taken for the sampling period, {period}."
@@ -204,6 +230,11 @@ impl Table {
         header.doubt_seconds(&values)?;
         assemble(name, &header, values).map_err(whole)
     }
+}
+
+/// What is what in a record of the toolbox.
+fn record_mapping(of: &str) -> String {
+    format!("t={of}.Time, u={of}.InputData, y={of}.OutputData")
 }
 
 /// A problem and the column that it concerns.

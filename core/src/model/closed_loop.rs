@@ -47,6 +47,7 @@ pub fn run_controlled_from(
     for h in [step, rest, step - rest].into_iter().filter(|h| *h > 0.0) {
         engine.prepare(h);
     }
+    let [position, velocity] = model.seen([position, velocity]);
     let mut state = State::at_rest(before).restarted(position, velocity);
     let mut slow = Slow::new(model.sensor_lag, step);
     let mut mapped: Vec<f64> = Vec::with_capacity(samples);
@@ -54,7 +55,8 @@ pub fn run_controlled_from(
     let mut run = Run::default();
     for i in 0..samples {
         let time = i as f64 * step;
-        let (mut x, mut v) = (state.position(), model.map_output(state.velocity()));
+        let [mut x, v] = model.seen([state.position(), state.velocity()]);
+        let mut v = model.map_output(v);
         if let Some(encoder) = model.encoder {
             (x, v) = encoder.seen(x, v);
         }

@@ -5,7 +5,7 @@ mod turns;
 use std::cell::Cell;
 
 use super::contact::Contact;
-use super::flow::{Flow, Motion};
+use super::flow::{Flow, Motion, Spring};
 use super::friction::{Mode, Rubbing, slide};
 use super::impacts::Impacts;
 use super::joint::{Forces, Joint};
@@ -50,6 +50,8 @@ struct Held {
 pub struct Engine<'m> {
     model: &'m Model,
     body: Flow,
+    /// The body of a process that swings.
+    swinging: Option<Spring>,
     load: Option<Flow>,
     contact: Option<Contact>,
     /// Body and load as one, where no force depends on where and how fast they are.
@@ -71,6 +73,11 @@ impl<'m> Engine<'m> {
             && model.friction.rise == 0.0;
         Self {
             body: Flow::new(model.inertia, model.viscous, model.lag).with_direct(model.direct),
+            swinging: model.spring.map(|stiffness| {
+                let mu = model.lag.map(|tau| 1.0 / tau);
+                Spring::new(1.0 / model.inertia, stiffness, model.viscous, mu)
+                    .with_direct(model.direct)
+            }),
             load: model
                 .load
                 .map(|load| Flow::new(load.inertia, load.viscous, None)),
@@ -80,6 +87,7 @@ impl<'m> Engine<'m> {
                 .load
                 .map_or(f64::INFINITY, |load| load.longest_step(model.inertia)),
             plain: smooth
+                && model.spring.is_none()
                 && model.load.is_none()
                 && model.late_load().1 == 0.0
                 && model.slow_fall == 0.0,
@@ -323,6 +331,7 @@ impl<'m> Engine<'m> {
 
     /// Sum of the smooth forces in a state moved to `x` and `v`.
     fn smooth_force(&self, state: &State, x: f64, v: f64) -> f64 {
+        let [x, v] = self.model.seen([x, v]);
         let force: f64 = self.model.forces.iter().map(|f| f(x, v)).sum();
         if self.model.own_forces.is_empty() {
             return force;
@@ -357,7 +366,7 @@ impl<'m> Engine<'m> {
     /// when it rises, `held` acts like a force more on `J`.
     fn slower(&self, state: &State, held: f64) -> f64 {
         let asymmetry = self.model.slow_fall;
-        if asymmetry == 0.0 {
+        if asymmetry == 0.0 || self.swinging.is_some() {
             return 0.0;
         }
         let Motion { v, z, .. } = state.motion;
@@ -391,6 +400,11 @@ impl<'m> Engine<'m> {
     }
 
     fn advance_body(&self, state: &mut State, held: Held, w: f64, h: f64) {
+        if let Some(spring) = &self.swinging {
+            self.count(1);
+            state.motion = spring.after(state.motion, w, held.body, h);
+            return;
+        }
         match &self.contact {
             // Also where a wild state has made the level no number.
             _ if held.level.is_nan() || held.level <= 0.0 => {

@@ -298,6 +298,8 @@ pub(super) struct Spring {
     kappa: f64,
     b: f64,
     mu: Option<f64>,
+    /// Share of the lag's input that passes it by.
+    direct: f64,
 }
 
 impl Spring {
@@ -308,6 +310,16 @@ impl Spring {
             kappa: stiffness * b,
             b,
             mu,
+            direct: 0.0,
+        }
+    }
+
+    /// The same with a `share` of the input that acts on the body at once.
+    #[must_use]
+    pub fn with_direct(self, share: f64) -> Self {
+        Self {
+            direct: share,
+            ..self
         }
     }
 
@@ -326,7 +338,7 @@ impl Spring {
         let (fading, mu, late, z) = match self.mu {
             None => (0.0, 0.0, 0.0, w),
             Some(mu) => {
-                let gain = self.b / (mu * mu - self.lambda * mu + self.kappa);
+                let gain = self.b * (1.0 - self.direct) / (mu * mu - self.lambda * mu + self.kappa);
                 let (offset, decay) = (m.z - w, short::exp(-mu * h));
                 (offset * gain, mu, offset * gain * decay, w + offset * decay)
             }

@@ -114,6 +114,9 @@ pub struct Model {
     pub inertia: f64,
     /// Viscous friction of the body: d1 of a drive, 1/K of a process.
     pub viscous: f64,
+    /// What holds the body of a process that swings, 1/K: its output is then where the body is, and not how fast it
+    /// moves. `None` of all others.
+    pub spring: Option<f64>,
     /// Static maps of the input, in order.
     pub input_maps: Vec<StaticMap>,
     /// An actuator that remembers what it was told before, after the maps.
@@ -159,6 +162,7 @@ impl Model {
         Self {
             inertia,
             viscous,
+            spring: None,
             input_maps: Vec::new(),
             actuator: None,
             next_input: 0.0,
@@ -185,6 +189,20 @@ impl Model {
             && self.own_forces.is_empty()
             && self.encoder.is_none()
             && self.friction.rise == 0.0
+    }
+
+    /// The force that keeps the output of a process where it is, per unit of it.
+    fn holding(&self) -> f64 {
+        self.spring.unwrap_or(self.viscous)
+    }
+
+    /// Position and velocity (output of a process) in a state, as sensors would see them; and of these two the motion of
+    /// the body.
+    fn seen(&self, [position, velocity]: [f64; 2]) -> [f64; 2] {
+        match self.spring {
+            None => [position, velocity],
+            Some(_) => [velocity, position],
+        }
     }
 
     /// Input after the static maps.
@@ -221,6 +239,7 @@ impl std::fmt::Debug for Model {
         f.debug_struct("Model")
             .field("inertia", &self.inertia)
             .field("viscous", &self.viscous)
+            .field("spring", &self.spring)
             .field("input_maps", &self.input_maps.len())
             .field("actuator", &self.actuator)
             .field("next_input", &self.next_input)

@@ -190,8 +190,8 @@ impl Excitation {
                 if let Some((window, start)) = next.next_if(|(_, s)| s.sample == i) {
                     course.restart(start, loads, window);
                 }
-                position[i] = course.state.position();
-                velocity[i] = course.state.velocity();
+                [position[i], velocity[i]] =
+                    model.seen([course.state.position(), course.state.velocity()]);
                 if i + 1 < self.len() {
                     course.advance(i);
                 }
@@ -219,7 +219,7 @@ impl Excitation {
                 lag,
                 time: &self.time,
                 shown: &self.shown,
-                off: if model.lag.is_none() {
+                off: if model.lag.is_none() && model.spring.is_none() {
                     self.off_at_first(model, starts)
                 } else {
                     0.0
@@ -248,7 +248,7 @@ impl Excitation {
     /// there.
     fn stored(&self, model: &Model, starts: &[Start], before: f64) -> f64 {
         match starts.first().filter(|_| model.load_before_lag) {
-            Some(start) if self.at_rest => model.viscous * start.velocity,
+            Some(start) if self.at_rest => model.holding() * start.velocity,
             _ => before + model.early_load(0.0) + self.off_at_first(model, starts),
         }
     }
@@ -256,13 +256,14 @@ impl Excitation {
     /// Whether a process holds more than its output tells at first: the input before the record is not known, and what
     /// a lag had stored of it, or had not shown yet, is a state of its own. Where nothing moved before, it is.
     pub(crate) fn doubts_store_of(&self, model: &Model) -> bool {
-        let slow = model.lag.is_some() || model.sensor_lag.is_some();
+        let slow = model.lag.is_some() || model.sensor_lag.is_some() || model.spring.is_some();
         self.position.is_empty() && !self.at_rest && slow
     }
 
-    /// By how much that is off.
+    /// By how much that is off; of a process that swings the state tells how fast its output moves at first.
     fn off_at_first(&self, model: &Model, starts: &[Start]) -> f64 {
-        let start = starts.first().filter(|_| self.doubts_store_of(model));
+        let told = self.doubts_store_of(model) && model.spring.is_none();
+        let start = starts.first().filter(|_| told);
         start.map_or(0.0, |s| s.position)
     }
 
@@ -379,7 +380,8 @@ impl<'a> Course<'a> {
     /// At the begin of a window.
     fn restart(&mut self, start: &Start, loads: &FollowedLoad, window: usize) {
         let (excitation, i) = (self.excitation, start.sample);
-        self.state = self.state.restarted(start.position, start.velocity);
+        let [position, velocity] = self.model.seen([start.position, start.velocity]);
+        self.state = self.state.restarted(position, velocity);
         if let Some(Some(load)) = loads.at.get(window) {
             let [a, b] = start.load;
             let shift = match (&self.tracker, loads.roots.get(window)) {

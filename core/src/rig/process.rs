@@ -109,6 +109,9 @@ pub struct ProcessRig {
     pub time_constant: f64,
     /// Time constant of a lag behind it, s; 0 for none.
     pub second_lag: f64,
+    /// Period of the free swing of a process that swings before it settles, s, in the place of the lags behind; 0 for
+    /// none.
+    pub swing_period: f64,
     /// Time constant of one behind both, s; 0 for none.
     pub third_lag: f64,
     /// Of the input, s; met to a step of integration.
@@ -143,6 +146,7 @@ impl Default for ProcessRig {
             gain: 2.0,
             time_constant: 30.0,
             second_lag: 0.0,
+            swing_period: 0.0,
             third_lag: 0.0,
             dead_time: 0.0,
             gain_asymmetry: 0.0,
@@ -157,7 +161,7 @@ impl Default for ProcessRig {
     }
 }
 
-/// Process, second lag, third lag, sensor.
+/// Process, second lag or rate of the process, third lag, sensor.
 type State = [f64; 4];
 
 impl ProcessRig {
@@ -277,6 +281,12 @@ impl ProcessRig {
         let lag = |from: f64, to: f64, time: f64| if time > 0.0 { (from - to) / time } else { 0.0 };
         let second = lag(shown, s[1], self.second_lag);
         let third = lag(s[1], s[2], self.third_lag);
+        if self.swing_period > 0.0 {
+            let time = self.swing_period / std::f64::consts::TAU;
+            let pull = gain * push - s[0] - self.time_constant * s[1];
+            let sensor = lag(self.output(s, s[0]), s[3], self.sensor_lag);
+            return [s[1], pull / (time * time), 0.0, sensor];
+        }
         [
             rate,
             second,

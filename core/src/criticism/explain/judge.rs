@@ -9,6 +9,7 @@ use super::tuning::{
     ALIKE_IN_BLOCKS, DISCREPANCY, FEW_BLOCKS, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, STEADY_FALL,
     UNCHANGED,
 };
+use crate::criticism::select::outweighs;
 use crate::criticism::session::Session;
 
 /// How a model differs from another one.
@@ -24,6 +25,12 @@ pub(in crate::criticism) struct Difference {
     pub least_fall: f64,
     /// The same without the block of each half that tells most of it, where blocks do not hang together.
     steady_fall: f64,
+}
+
+/// Whether a step explains more than it leaves of either half: of one half alone it may by chance.
+pub(in crate::criticism) fn outweighs_in_either_half(from: &Trial, to: &Trial) -> bool {
+    let mut halves = from.halves().zip(to.halves());
+    halves.all(|(a, b)| outweighs(a.score.error, b.score.error))
 }
 
 /// The difference from one trial to another.

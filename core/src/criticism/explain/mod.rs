@@ -25,7 +25,7 @@ use super::session::Session;
 use crate::effect::{Effect, EffectId};
 use heat::Heat;
 use hidden_body::is_hidden_body;
-pub(super) use judge::{Difference, difference};
+pub(super) use judge::{Difference, difference, outweighs_in_either_half};
 use rival::Rival;
 use sketch::{Sketch, first_guess};
 pub(super) use swap::may_replace;

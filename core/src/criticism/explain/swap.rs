@@ -5,12 +5,12 @@ use super::hidden_body::is_hidden_body;
 use super::rival::Rival;
 use super::sketch::Sketch;
 use super::task::Task;
-use super::tuning::{ALIKE, MOST_SWAPS};
+use super::tuning::{ALIKE, MOST_SWAPS, QUIET};
 use super::{Explain, Stage, Trial, difference};
 use crate::criticism::fit::Fit;
 use crate::criticism::noise::{WANDER, news_left};
 use crate::criticism::screen::Screened;
-use crate::criticism::select::outweighs;
+use crate::criticism::select::{CHANCE, outweighs};
 use crate::criticism::session::Session;
 use crate::effect::{Effect, EffectId, ParameterSpec};
 use crate::measurement::Kind;
@@ -241,7 +241,10 @@ impl Explain {
             .into_iter()
             .filter(|r| alike.contains(&r.trial) && agree(best, r.trial))
             .collect();
-        if self.wanders(session) {
+        if let Some(share) = self.quiet_share(session) {
+            session.quieten(share);
+            *self = Self::new(std::mem::take(&mut self.held));
+        } else if self.wanders(session) {
             session.let_surroundings_wander();
             *self = Self::new(std::mem::take(&mut self.held));
         } else if self.integrates(session) {
@@ -250,6 +253,18 @@ impl Explain {
         } else {
             self.open_path(session);
         }
+    }
+
+    /// What the best model leaves of a process, in shares of the noise, where it foretells the output better than the
+    /// noise that was seen would let it: an input that changes again and again leaves no smooth stretch that shows the
+    /// noise alone.
+    fn quiet_share(&self, session: &Session) -> Option<f64> {
+        let data = &session.data;
+        let random = data.wander == 0.0 && data.outputs.iter().all(|o| !o.counted);
+        let count = data.measured(0, data.len()) as f64;
+        let error = self.trials[self.best].error();
+        let quiet = error < QUIET.min(1.0 - CHANCE / count.sqrt());
+        (session.kind() == Kind::Process && random && quiet).then_some(error)
     }
 
     /// Whether the surroundings of a process wander: of what the best of all models leaves, a level that moves towards

@@ -114,5 +114,8 @@ pub(super) const STEADY_FALL: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Relative difference of inertia (of a process: gain and time constant) up to which two models speak of the same body.
 pub(super) const SAME_BODY: f64 = 0.2;
 
+/// Share of the noise below which what a model leaves shows that the noise is less.
+pub(super) const QUIET: f64 = 0.8;
+
 /// Times that another effect takes the place of one in the best model.
 pub(super) const MOST_SWAPS: usize = 3;

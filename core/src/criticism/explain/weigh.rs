@@ -1,6 +1,6 @@
 //! Which of the models that were fitted leads, and whether it needs each of its effects.
 
-use super::judge::{Difference, difference};
+use super::judge::{Difference, difference, outweighs_in_either_half};
 use super::{Explain, Trial};
 use crate::criticism::select::{
     SMALL_SHARE, STRETCH_SHARE, is_all_that_counters_show, is_noise, is_trifle, outweighs,
@@ -52,7 +52,8 @@ impl Explain {
         let (before, after) = (self.trials[simpler].error(), self.trials[other].error());
         let scored = &self.trials[simpler].scored;
         let trifle = is_trifle(before, session.first(scored), small_share(&scored.fit));
-        let worth = difference.is_better()
+        let better = difference.is_better() || self.explains(session, simpler, other);
+        let worth = better
             && !trifle
             && !self.is_noise(session, simpler)
             && (self.is_noise(session, other) || outweighs(before, after));
@@ -103,7 +104,7 @@ impl Explain {
         };
         let noise = self.is_noise(session, trial);
         let (before, after) = (self.trials[without].error(), self.trials[trial].error());
-        let outweighs = outweighs(before, after);
+        let outweighs = outweighs_in_either_half(&self.trials[without], &self.trials[trial]);
         // Below that an effect only mends what a clock, a rig or an equation is off by.
         let first = session.baseline.as_ref().map_or(0.0, |first| first.error);
         let matters = (before.powi(2) - after.powi(2)).max(0.0).sqrt() > SMALL_SHARE * first;
