@@ -196,8 +196,8 @@ impl Model {
         self.spring.unwrap_or(self.viscous)
     }
 
-    /// Position and velocity (output of a process) in a state, as sensors would see them; and of these two the motion of
-    /// the body.
+    /// From position and velocity of the body to what sensors see in their place, and back: the output of a process
+    /// stands where a velocity does.
     fn seen(&self, [position, velocity]: [f64; 2]) -> [f64; 2] {
         match self.spring {
             None => [position, velocity],

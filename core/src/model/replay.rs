@@ -15,7 +15,8 @@ pub struct Start {
     /// Index of the first sample.
     pub sample: usize,
     /// Position there, rad or m; 0 where it cannot be known. A process has none: at its first sample this is by how
-    /// much what its lag had stored, or what its slow sensor showed, is off what the input and the output there say.
+    /// much what its lag had stored, or what its slow sensor showed, is off what the input and the output there say;
+    /// where it swings, how fast its output moves there.
     pub position: f64,
     /// Velocity there, rad/s or m/s; the output of a process.
     pub velocity: f64,
