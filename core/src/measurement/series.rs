@@ -153,15 +153,10 @@ impl Table {
     /// Identification Toolbox do.
     fn records(&self) -> impl Iterator<Item = &str> {
         let has = |name: String| self.series.iter().any(|s| s.name == name);
-        let inputs = self
-            .series
-            .iter()
-            .filter_map(|s| s.name.strip_suffix(".InputData"));
-        inputs.filter(move |of| {
-            ["Time", "OutputData"]
-                .iter()
-                .all(|c| has(format!("{of}.{c}")))
-        })
+        let [_, input, _] = OF_A_RECORD;
+        let inputs = self.series.iter();
+        let inputs = inputs.filter_map(move |s| s.name.strip_suffix(input));
+        inputs.filter(move |of| OF_A_RECORD.iter().all(|part| has(format!("{of}{part}"))))
     }
 
     /// The columns, before it is known what they are.
@@ -232,9 +227,16 @@ impl Table {
     }
 }
 
+/// Times, input and output of a record of the toolbox, behind its name.
+const OF_A_RECORD: [&str; 3] = [".Time", ".InputData", ".OutputData"];
+
 /// What is what in a record of the toolbox.
 fn record_mapping(of: &str) -> String {
-    format!("t={of}.Time, u={of}.InputData, y={of}.OutputData")
+    let roles = ["t", "u", "y"].iter().zip(OF_A_RECORD);
+    let parts: Vec<String> = roles
+        .map(|(role, part)| format!("{role}={of}{part}"))
+        .collect();
+    parts.join(",")
 }
 
 /// A problem and the column that it concerns.

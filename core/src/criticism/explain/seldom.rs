@@ -2,12 +2,45 @@
 
 use super::hidden_body::is_hidden_body;
 use super::sketch::{Sketch, first_guess};
+use super::task::usual;
 use super::tuning::ALIKE;
 use super::{Explain, Stage};
+use crate::criticism::fit::Fit;
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
 use crate::diagnosis::InputVerdict;
-use crate::effect::is_seldom;
+use crate::effect::{Dimension, ParameterSpec, is_seldom};
+
+/// A fit with what few machines have in the place of a part of that, from these places on: what both have keeps its
+/// value, a phase that only the whole has begins at each quarter of a turn, and the rest at its usual size.
+fn grown(session: &Session, fit: &Fit, from: usize) -> Vec<Sketch> {
+    let mut sketches = Vec::new();
+    for place in from..fit.structure.effects.len() {
+        let part = fit.structure.effects[place];
+        let own = &fit.values[fit.structure.range(place)];
+        let known = |spec: &ParameterSpec| {
+            let mut specs = part.parameters().iter();
+            let same = specs.position(|p| (p.symbol, p.dimension) == (spec.symbol, spec.dimension));
+            same.map(|j| own[j])
+        };
+        for whole in session.seldom().filter(|e| e.has_part(part.id())) {
+            let specs = whole.parameters();
+            let usual = usual(session, whole);
+            let turns = |spec: &ParameterSpec| spec.dimension == Dimension::Phase;
+            let open = specs.iter().any(|p| turns(p) && known(p).is_none());
+            for quarter in 0..if open { 4 } else { 1 } {
+                let phase = f64::from(quarter) * std::f64::consts::FRAC_PI_2;
+                let value = |(spec, usual): (&ParameterSpec, &f64)| {
+                    let begun = if turns(spec) { phase } else { *usual };
+                    known(spec).unwrap_or(begun)
+                };
+                let values: Vec<f64> = specs.iter().zip(&usual).map(value).collect();
+                sketches.push(Sketch::replacing(fit, place, whole, &values));
+            }
+        }
+    }
+    sketches
+}
 
 impl Explain {
     /// Has what few machines have raced, alone and beside the best, unless there is nothing to be explained.
@@ -39,6 +72,7 @@ impl Explain {
             let sketches = open.flat_map(|e| Sketch::beside(session, screened, fit, e));
             let mut sketches: Vec<Sketch> = sketches.collect();
             Sketch::with_other_bodies(&mut sketches, fit, bodies.iter().cloned());
+            sketches.extend(grown(session, fit, self.held.len()));
             self.take(session, sketches);
         }
     }

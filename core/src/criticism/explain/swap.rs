@@ -194,12 +194,26 @@ impl Explain {
             .unwrap_or(self.best)
     }
 
+    /// The best model without one of its effects, where that does as well: beside what took another one's place it may
+    /// not be needed any more.
+    fn as_good_a_part(&self, session: &Session) -> Option<usize> {
+        let places = self.open_places(session).into_iter();
+        let mut parts = places.filter_map(|place| self.without(self.best, place));
+        parts.find(|part| self.does_as_well(session, *part, self.best))
+    }
+
     /// Takes what is better, or does as well with fewer values; else what is the same could stand in its place.
     pub(super) fn judge_swaps(&mut self, session: &mut Session) {
         self.best = self.best_of_its_kind(session);
         let rivals = self.swapped(session);
         // What the user added stays.
         let may_change = self.size(self.best) > 0 && self.swaps < MOST_SWAPS;
+        if let Some(smaller) = self.as_good_a_part(session).filter(|_| may_change) {
+            self.swaps += 1;
+            self.best = smaller;
+            self.open_swaps(session);
+            return;
+        }
         let is_simpler = |r: &Rival| {
             self.is_simpler(r.trial, self.best) && self.does_as_well(session, r.trial, self.best)
         };

@@ -50,7 +50,7 @@ impl Task {
 }
 
 /// Values of an effect of which the record tells none to begin with: a share of what is typical.
-fn usual(session: &Session, effect: &dyn Effect) -> Vec<f64> {
+pub(super) fn usual(session: &Session, effect: &dyn Effect) -> Vec<f64> {
     let scales = &session.scales;
     let value = |p: &ParameterSpec| p.clamp(USUAL * scales.of(p.dimension), scales);
     effect.parameters().iter().map(value).collect()
