@@ -25,7 +25,7 @@ fn rig(excitation: Excitation) -> ProcessRig {
 #[track_caller]
 fn swings(record: &Measurement) -> Diagnosis {
     let d = finish(DiagnosisJob::new(record).unwrap());
-    assert_eq!(classes(&d), [["oscillation"]], "{}", d.verdict.text);
+    assert_eq!(classes(&d), [["underdamped"]], "{}", d.verdict.text);
     assert!(d.verdict.complete, "{}", d.verdict.text);
     let parameters = &d.steps.last().unwrap().parameters;
     for (name, truth) in [("P", PERIOD), ("T", DAMPING), ("K", 2.0)] {

@@ -120,7 +120,7 @@ fn swinging(r: &mut Random) -> Vec<Case> {
             dead_time,
             ..bare(r, excitation)
         };
-        let mut truth = vec![Truth::new("oscillation", &["P"], period)];
+        let mut truth = vec![Truth::new("underdamped", &["P"], period)];
         truth.extend(late.then(|| delay(dead_time)));
         truth.extend(slow.then(|| Truth::new("sensor_lag", &["T_s"], sensor_lag).same(LAG)));
         Case::process(name, truth, rig)

@@ -30,7 +30,6 @@ mod load_dependent_friction;
 mod load_ramp;
 mod names;
 mod nonlinear_loss;
-mod oscillation;
 mod outflow;
 mod periodic_disturbance;
 mod position_friction;
@@ -47,6 +46,7 @@ mod spec;
 mod static_curvature;
 mod stribeck_friction;
 mod torque_ripple;
+mod underdamped;
 mod valve_stiction;
 
 pub use atom::{
@@ -87,7 +87,7 @@ pub fn registry() -> &'static [&'static dyn Effect] {
         &hardening_spring::HardeningSpring,
         &load_dependent_friction::LoadDependentFriction,
         &flattening_friction::FlatteningFriction,
-        &oscillation::Oscillation,
+        &underdamped::Underdamped,
         &outflow::Outflow,
         &end_stop::EndStop,
         &position_friction::PositionFriction,

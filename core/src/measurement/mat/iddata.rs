@@ -6,8 +6,14 @@ use crate::measurement::series::Series;
 const OUTPUT: &str = ".OutputData";
 const INPUT: &str = ".InputData";
 
+/// Series of a file up to which records are looked for among them: a hostile one may have millions.
+const MOST_SERIES: usize = 1000;
+
 /// Gives each experiment its times, and leaves out what is only said about it.
 pub fn complete(all: &mut Vec<Series>) {
+    if all.len() > MOST_SERIES {
+        return;
+    }
     let mut experiments: Vec<(String, String, usize)> = Vec::new();
     for series in all.iter() {
         let Some((path, rest)) = series.name.split_once(OUTPUT) else {

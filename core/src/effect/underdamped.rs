@@ -8,14 +8,14 @@ use super::{
 use crate::measurement::Kind;
 use crate::model::Model;
 
-pub(super) const ID: EffectId = EffectId::new("oscillation");
+pub(super) const ID: EffectId = EffectId::new("underdamped");
 
-pub(super) struct Oscillation;
+pub(super) struct Underdamped;
 
 /// Periods of the free swing that a fit begins with, in time constants of the lag that follows it best.
 const PERIODS: [f64; 5] = [1.0, 2.0, 5.0, 12.0, 30.0];
 
-impl Effect for Oscillation {
+impl Effect for Underdamped {
     fn id(&self) -> EffectId {
         ID
     }
