@@ -20,6 +20,15 @@ fn lags([inertia, damping]: [f64; 2], coefficient: f64) -> Option<([f64; 2], f64
     (product > 0.0 && fast > 0.0).then_some(([slow * damping, damping], fast))
 }
 
+/// What a process of second order has beside one of first order.
+pub(super) const SECOND_DERIVATIVE: &[Part] = &[Part::Motion(|track, _| {
+    let values = track.velocity.iter().map(|y| -y).collect();
+    vec![Series {
+        derivative: 2,
+        values,
+    }]
+})];
+
 impl Effect for SecondLag {
     fn id(&self) -> EffectId {
         ID
@@ -67,15 +76,8 @@ impl Effect for SecondLag {
 
     /// `T T2 y'' + (T + T2) y' + y = K u`.
     fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Motion(|track, _| {
-            let values = track.velocity.iter().map(|y| -y).collect();
-            vec![Series {
-                derivative: 2,
-                values,
-            }]
-        })];
         vec![Atom::linear(
-            COLUMNS,
+            SECOND_DERIVATIVE,
             Values::From(|solved| {
                 let (body, fast) = lags(solved.body, solved.coefficients[0])?;
                 Some((body, vec![fast]))

@@ -1,10 +1,8 @@
 //! A process that swings before it settles.
 
 use super::atom::Values;
-use super::{
-    Atom, Dimension, Effect, EffectId, ParameterSpec, Part, Probe, Range, Series, second_lag,
-    sensor_lag,
-};
+use super::second_lag::{self, SECOND_DERIVATIVE};
+use super::{Atom, Dimension, Effect, EffectId, ParameterSpec, Probe, Range, sensor_lag};
 use crate::measurement::Kind;
 use crate::model::Model;
 
@@ -60,15 +58,8 @@ impl Effect for Underdamped {
     }
 
     fn atoms(&self, _: Kind) -> Vec<Atom> {
-        const COLUMNS: &[Part] = &[Part::Motion(|track, _| {
-            let values = track.velocity.iter().map(|y| -y).collect();
-            vec![Series {
-                derivative: 2,
-                values,
-            }]
-        })];
         vec![Atom::linear(
-            COLUMNS,
+            SECOND_DERIVATIVE,
             Values::From(|solved| {
                 let square = solved.coefficients[0] / solved.body[1];
                 let period = std::f64::consts::TAU * square.sqrt();
