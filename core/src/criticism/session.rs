@@ -335,9 +335,7 @@ impl Session {
         for data in self.all_data() {
             data.wander = WANDER;
         }
-        self.motion_square = motion_square(&self.data, WANDER, |_| true);
-        self.probes = Probes::default();
-        self.baseline = None;
+        self.forget_models();
     }
 
     /// Takes the noise of a process for this share of what its smooth stretches showed.
@@ -347,7 +345,12 @@ impl Session {
                 output.noise *= share;
             }
         }
-        self.motion_square = motion_square(&self.data, 0.0, |_| true);
+        self.forget_models();
+    }
+
+    /// Forgets what was found of models by another measure of what they leave.
+    fn forget_models(&mut self) {
+        self.motion_square = motion_square(&self.data, self.data.wander, |_| true);
         self.probes = Probes::default();
         self.baseline = None;
     }

@@ -228,7 +228,7 @@ impl Table {
 }
 
 /// Times, input and output of a record of the toolbox, behind its name.
-const OF_A_RECORD: [&str; 3] = [".Time", ".InputData", ".OutputData"];
+pub(super) const OF_A_RECORD: [&str; 3] = [".Time", ".InputData", ".OutputData"];
 
 /// What is what in a record of the toolbox.
 fn record_mapping(of: &str) -> String {

@@ -220,7 +220,7 @@ impl Excitation {
                 lag,
                 time: &self.time,
                 shown: &self.shown,
-                off: if model.lag.is_none() && model.spring.is_none() {
+                off: if model.lag.is_none() {
                     self.off_at_first(model, starts)
                 } else {
                     0.0

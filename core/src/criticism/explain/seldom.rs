@@ -2,6 +2,7 @@
 
 use super::hidden_body::is_hidden_body;
 use super::sketch::{Sketch, first_guess};
+use super::swap::shared;
 use super::task::usual;
 use super::tuning::ALIKE;
 use super::{Explain, Stage};
@@ -18,11 +19,7 @@ fn grown(session: &Session, fit: &Fit, from: usize) -> Vec<Sketch> {
     for place in from..fit.structure.effects.len() {
         let part = fit.structure.effects[place];
         let own = &fit.values[fit.structure.range(place)];
-        let known = |spec: &ParameterSpec| {
-            let mut specs = part.parameters().iter();
-            let same = specs.position(|p| (p.symbol, p.dimension) == (spec.symbol, spec.dimension));
-            same.map(|j| own[j])
-        };
+        let known = |spec: &ParameterSpec| shared(part, own, spec);
         for whole in session.seldom().filter(|e| e.has_part(part.id())) {
             let specs = whole.parameters();
             let usual = usual(session, whole);

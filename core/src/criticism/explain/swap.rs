@@ -28,11 +28,15 @@ fn same_dimensions(a: &dyn Effect, b: &dyn Effect) -> bool {
 
 /// The values of an effect that another one has too, if it has no others.
 fn carried(own: &dyn Effect, values: &[f64], other: &dyn Effect) -> Option<Vec<f64>> {
-    let same =
-        |a: &ParameterSpec, b: &ParameterSpec| a.symbol == b.symbol && a.dimension == b.dimension;
     let specs = other.parameters().iter();
-    let places = specs.map(|spec| own.parameters().iter().position(|own| same(spec, own)));
-    places.map(|place| Some(values[place?])).collect()
+    specs.map(|spec| shared(own, values, spec)).collect()
+}
+
+/// The value of an effect that a parameter of another one has too.
+pub(super) fn shared(own: &dyn Effect, values: &[f64], spec: &ParameterSpec) -> Option<f64> {
+    let mut specs = own.parameters().iter();
+    let same = |own: &ParameterSpec| own.symbol == spec.symbol && own.dimension == spec.dimension;
+    specs.position(same).map(|place| values[place])
 }
 
 /// Whether one effect may stand in the place of another: what has that as a part, or comes near to it, says the same
@@ -205,15 +209,16 @@ impl Explain {
     /// Takes what is better, or does as well with fewer values; else what is the same could stand in its place.
     pub(super) fn judge_swaps(&mut self, session: &mut Session) {
         self.best = self.best_of_its_kind(session);
-        let rivals = self.swapped(session);
         // What the user added stays.
         let may_change = self.size(self.best) > 0 && self.swaps < MOST_SWAPS;
-        if let Some(smaller) = self.as_good_a_part(session).filter(|_| may_change) {
+        let smaller = may_change.then(|| self.as_good_a_part(session)).flatten();
+        if let Some(smaller) = smaller {
             self.swaps += 1;
             self.best = smaller;
             self.open_swaps(session);
             return;
         }
+        let rivals = self.swapped(session);
         let is_simpler = |r: &Rival| {
             self.is_simpler(r.trial, self.best) && self.does_as_well(session, r.trial, self.best)
         };
@@ -257,16 +262,15 @@ impl Explain {
             .collect();
         if let Some(share) = self.quiet_share(session) {
             session.quieten(share);
-            *self = Self::new(std::mem::take(&mut self.held));
         } else if self.wanders(session) {
             session.let_surroundings_wander();
-            *self = Self::new(std::mem::take(&mut self.held));
         } else if self.integrates(session) {
             session.integrate();
-            *self = Self::new(std::mem::take(&mut self.held));
         } else {
             self.open_path(session);
+            return;
         }
+        *self = Self::new(std::mem::take(&mut self.held));
     }
 
     /// What the best model leaves of a process, in shares of the noise, where it foretells the output better than the

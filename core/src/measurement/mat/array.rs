@@ -91,20 +91,14 @@ impl<'a> Found<'a> {
         sizes: &[usize],
         depth: usize,
     ) -> Result<(), Problem> {
-        let count = sizes
-            .iter()
-            .fold(1_usize, |n, size| n.saturating_mul(*size));
-        // Each turn takes bytes of the file, as with structures.
-        for i in 1..=count {
-            let element = array.element()?;
-            let path = if count == 1 {
-                name.to_owned()
-            } else {
-                format!("{name}({i})")
-            };
-            if element.kind == MATRIX {
-                self.read(element.inside(), &path, depth + 1)?;
-            }
+        elements(name, sizes).try_for_each(|path| self.member(&mut array, &path, depth))
+    }
+
+    /// The next member of an array of arrays.
+    fn member(&mut self, array: &mut Reader<'_>, path: &str, depth: usize) -> Result<(), Problem> {
+        let element = array.element()?;
+        if element.kind == MATRIX {
+            self.read(element.inside(), path, depth + 1)?;
         }
         Ok(())
     }
@@ -126,21 +120,9 @@ impl<'a> Found<'a> {
             return Ok(());
         }
         let fields: Vec<String> = names.chunks(length).map(text).collect();
-        let count = sizes
-            .iter()
-            .fold(1_usize, |n, size| n.saturating_mul(*size));
-        // Each turn takes bytes of the file, so a count that lies ends in an error, not in a hang.
-        for i in 1..=count {
+        for path in elements(name, sizes) {
             for field in &fields {
-                let element = array.element()?;
-                let path = if count == 1 {
-                    format!("{name}.{field}")
-                } else {
-                    format!("{name}({i}).{field}")
-                };
-                if element.kind == MATRIX {
-                    self.read(element.inside(), &path, depth + 1)?;
-                }
+                self.member(&mut array, &format!("{path}.{field}"), depth)?;
             }
         }
         Ok(())
@@ -163,11 +145,7 @@ impl<'a> Found<'a> {
             return Ok(());
         };
         for (i, object) in objects.iter().enumerate() {
-            let path = if objects.len() == 1 {
-                path.to_owned()
-            } else {
-                format!("{path}({})", i + 1)
-            };
+            let path = numbered(path, i + 1, objects.len());
             for (name, value) in self.subsystem.properties(*object) {
                 let Some(left) = self.left.checked_sub(1) else {
                     return Ok(());
@@ -184,6 +162,23 @@ impl<'a> Found<'a> {
             }
         }
         Ok(())
+    }
+}
+
+/// The names of the elements of an array. Each takes bytes of the file, so that a count that lies ends in an error, not in
+/// a hang.
+fn elements(name: &str, sizes: &[usize]) -> impl Iterator<Item = String> {
+    let sizes = sizes.iter();
+    let count = sizes.fold(1_usize, |n, size| n.saturating_mul(*size));
+    (1..=count).map(move |i| numbered(name, i, count))
+}
+
+/// The name of one of so many, as MATLAB writes it.
+fn numbered(name: &str, i: usize, count: usize) -> String {
+    if count == 1 {
+        name.to_owned()
+    } else {
+        format!("{name}({i})")
     }
 }
 

@@ -1,10 +1,7 @@
 //! Records of MATLAB's System Identification Toolbox: input, output, and the sampling period or times of each
 //! experiment.
 
-use crate::measurement::series::Series;
-
-const OUTPUT: &str = ".OutputData";
-const INPUT: &str = ".InputData";
+use crate::measurement::series::{OF_A_RECORD, Series};
 
 /// Series of a file up to which records are looked for among them: a hostile one may have millions.
 const MOST_SERIES: usize = 1000;
@@ -14,9 +11,10 @@ pub fn complete(all: &mut Vec<Series>) {
     if all.len() > MOST_SERIES {
         return;
     }
+    let [times, _, output] = OF_A_RECORD;
     let mut experiments: Vec<(String, String, usize)> = Vec::new();
     for series in all.iter() {
-        let Some((path, rest)) = series.name.split_once(OUTPUT) else {
+        let Some((path, rest)) = series.name.split_once(output) else {
             continue;
         };
         let (path, which) = (path.to_owned(), experiment(rest).to_owned());
@@ -43,13 +41,13 @@ pub fn complete(all: &mut Vec<Series>) {
         };
         let begins = |s: &Series| {
             let rest = s.name.strip_prefix(path.as_str());
-            rest.is_some_and(|r| r.starts_with(OUTPUT))
+            rest.is_some_and(|r| r.starts_with(output))
         };
         let place = all.iter().position(begins).unwrap_or(0);
         all.insert(
             place,
             Series {
-                name: format!("{path}.Time{which}"),
+                name: format!("{path}{times}{which}"),
                 unit: Some("s".to_owned()),
                 values,
                 ..Series::default()
@@ -61,11 +59,7 @@ pub fn complete(all: &mut Vec<Series>) {
             let rest = series.name.strip_prefix(path.as_str())?;
             rest.starts_with('.').then_some(rest)
         });
-        own.is_none_or(|rest| {
-            [OUTPUT, INPUT, ".Time"]
-                .iter()
-                .any(|kept| is_of(rest, kept))
-        })
+        own.is_none_or(|rest| OF_A_RECORD.iter().any(|kept| is_of(rest, kept)))
     });
 }
 
