@@ -29,9 +29,9 @@ use super::{found, json, log, text};
 /// values tell, and it is said. A few lines at the end that are no rows are left out with a warning. Other columns are
 /// ignored with a warning.
 ///
-/// A MATLAB file has names but no units, so it needs a mapping, such as
-/// `t=time [s], u=log.current [A], x1=enc [counts:4096]`, but for an `iddata`, which says what is what. Variables in structures are addressed as in
-/// MATLAB (`log.signals(2).values`, `speed.Data` of a timeseries), columns of matrices as `data(:,2)`.
+/// A MATLAB file has names but no units, so it needs a mapping, such as `t=time [s], u=log.current [A], x1=enc
+/// [counts:4096]`, but for an `iddata`, which says what is what. Variables in structures are addressed as in MATLAB
+/// (`log.signals(2).values`, `speed.Data` of a timeseries), columns of matrices as `data(:,2)`.
 ///
 /// # Errors
 /// One line that names file and place and says what was expected, and with which options the file is read where it is

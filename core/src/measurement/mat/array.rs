@@ -165,8 +165,8 @@ impl<'a> Found<'a> {
     }
 }
 
-/// The names of the elements of an array. Each takes bytes of the file, so that a count that lies ends in an error, not in
-/// a hang.
+/// The names of the elements of an array. Each takes bytes of the file, so that a count that lies ends in an error, not
+/// in a hang.
 fn elements(name: &str, sizes: &[usize]) -> impl Iterator<Item = String> {
     let sizes = sizes.iter();
     let count = sizes.fold(1_usize, |n, size| n.saturating_mul(*size));

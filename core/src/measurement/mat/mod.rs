@@ -1,8 +1,8 @@
 //! MATLAB's level 5 MAT-files (`save -v6` and `-v7`), after the "MAT-File Format" of `MathWorks` (2024).
 //!
 //! Real numeric arrays are read, also within structures (`log.signals(2).values`), cells and objects (`speed.Data` of a
-//! timeseries, see [`objects`]; `data.InputData` of an `iddata`); everything else is passed over. A matrix becomes one column for each of its
-//! shorter side: `data(:,2)`.
+//! timeseries, see [`objects`]; `data.InputData` of an `iddata`); everything else is passed over. A matrix becomes one
+//! column for each of its shorter side: `data(:,2)`.
 
 mod array;
 mod element;
