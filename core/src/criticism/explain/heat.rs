@@ -98,16 +98,9 @@ impl Heat {
         let in_turn = self.sets_in_turn(sets * places);
         let last = self.round + 1 == ROUNDS.len();
         let key = |entry: &(f64, Fit)| if last { entry.1.cost } else { hoped(entry) };
-        self.over.sort_by(|a, b| {
-            key(a)
-                .total_cmp(&key(b))
-                .then(a.1.cost.total_cmp(&b.1.cost))
-        });
-        let least = self
-            .over
-            .iter()
-            .map(|(_, fit)| fit.cost)
-            .fold(f64::INFINITY, f64::min);
+        let (set, cost) = (|e: &(f64, Fit)| sorted_ids(&e.1), |e: &(f64, Fit)| e.1.cost);
+        self.over = leaders_first(std::mem::take(&mut self.over), set, cost, key);
+        let least = self.over.first().map_or(f64::INFINITY, cost);
         let mut kept: Vec<(Vec<EffectId>, Vec<f64>)> = Vec::new();
         let far = FAR[self.round];
         self.over.retain(|entry| {
@@ -164,6 +157,30 @@ impl Heat {
     }
 }
 
+/// What costs least of each set, by its cost, and then the others by what they may come to: one that has arrived falls
+/// no further, and is not to give way to others of its set for that.
+fn leaders_first<E, S: PartialEq>(
+    mut entries: Vec<E>,
+    set: impl Fn(&E) -> S,
+    cost: impl Fn(&E) -> f64,
+    key: impl Fn(&E) -> f64,
+) -> Vec<E> {
+    entries.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let mut sets: Vec<S> = Vec::new();
+    let is_new = |entry: &E| {
+        let own = set(entry);
+        let is_new = !sets.contains(&own);
+        if is_new {
+            sets.push(own);
+        }
+        is_new
+    };
+    let (mut leaders, mut others): (Vec<E>, Vec<E>) = entries.into_iter().partition(is_new);
+    others.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    leaders.append(&mut others);
+    leaders
+}
+
 /// The effects of a model in an order that does not hang on how it came about.
 fn sorted_ids(fit: &Fit) -> Vec<EffectId> {
     as_set(fit.structure.ids())
@@ -173,4 +190,23 @@ fn sorted_ids(fit: &Fit) -> Vec<EffectId> {
 pub(super) fn as_set(mut ids: Vec<EffectId>) -> Vec<EffectId> {
     ids.sort_unstable();
     ids
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_arrived_does_not_give_way_to_what_still_falls() {
+        // A set, what it costs, and what it may come to.
+        let entries = vec![
+            ("a", 9.0, 0.0),
+            ("a", 3.0, 3.0),
+            ("b", 5.0, 4.0),
+            ("a", 8.0, 1.0),
+        ];
+        let order = leaders_first(entries, |e| e.0, |e| e.1, |e| e.2);
+        let costs: Vec<f64> = order.iter().map(|e| e.1).collect();
+        assert_eq!(costs, [3.0, 5.0, 9.0, 8.0]);
+    }
 }
