@@ -1,4 +1,5 @@
-//! What few machines have is tried last, where everything else leaves more than noise.
+//! What few machines have is tried last: where everything else leaves more than noise, or takes two effects to explain
+//! what one of these may.
 
 use super::hidden_body::is_hidden_body;
 use super::sketch::{Sketch, first_guess};
@@ -46,7 +47,8 @@ impl Explain {
             session.input_check.verdict,
             InputVerdict::Sign | InputVerdict::ClosedLoop
         );
-        if other || self.is_noise(session, self.best) || self.knows_wrongly(session) {
+        let explained = self.is_noise(session, self.best);
+        if other || explained && self.size(self.best) < 2 || self.knows_wrongly(session) {
             self.open_swaps(session);
             return;
         }
@@ -58,7 +60,11 @@ impl Explain {
             let mut effects = self.trials[trial].effects().iter();
             effects.any(|e| is_hidden_body(*e))
         };
-        let mut places = vec![0, self.best];
+        let mut places = if explained {
+            vec![0]
+        } else {
+            vec![0, self.best]
+        };
         places.dedup();
         places.retain(|trial| *trial == 0 || !hides(*trial));
         let told = session.screened_body.map(Vec::from);
@@ -82,7 +88,8 @@ impl Explain {
                 && self.holds(*t)
                 && self.leaves_little(session, *t)
                 && (self.difference(session, self.best, *t).is_better()
-                    || self.explains(session, self.best, *t))
+                    || self.explains(session, self.best, *t)
+                    || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best))
         };
         let better: Vec<usize> = (1..self.trials.len()).filter(better).collect();
         let Some(lead) = self.lead(session, &better) else {
