@@ -2,12 +2,12 @@
 //!
 //! Two-fold blocked cross-validation: every block is judged by the fit to the other half. Two models are compared by
 //! the paired difference of the logarithm of what they leave of a block, beside its noise and what no model is right
-//! to, over the standard error of its mean (Student's t).
+//! to: by the ranks of the differences, and of a few blocks by their mean over its standard error (Student's t).
 
 use super::Trial;
 use super::tuning::{
-    ALIKE_IN_BLOCKS, DISCREPANCY, FEW_BLOCKS, GREAT_FALL, LEAST_FALL, QUANTILE, SAME, STEADY_FALL,
-    UNCHANGED,
+    ALIKE_IN_BLOCKS, DISCREPANCY, FEW_BLOCKS, GREAT_FALL, LEAST_FALL, QUANTILE, RANKED, SAME,
+    STEADY_FALL, UNCHANGED,
 };
 use crate::criticism::select::outweighs;
 use crate::criticism::session::Session;
@@ -15,7 +15,7 @@ use crate::criticism::session::Session;
 /// How a model differs from another one.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::criticism) struct Difference {
-    /// Mean paired difference over its standard error; positive where the second is better.
+    /// Student's t of the paired differences, or of their ranks; positive where the second is better.
     pub t: f64,
     /// Blocks in which they differ.
     pub blocks: usize,
@@ -43,19 +43,10 @@ pub(in crate::criticism) fn difference(session: &Session, from: &Trial, to: &Tri
         .filter(|(a, b)| (*a - *b).abs() > UNCHANGED * a.max(**b))
         .map(|(a, b)| libm::log((a + floor) / (b + floor)))
         .collect();
-    let count = changes.len() as f64;
-    let mean = changes.iter().sum::<f64>() / count;
-    let squares: f64 = changes.iter().map(|c| (c - mean).powi(2)).sum();
-    // Of a slow process neighbouring blocks hang together, and tell less than as many others (Newey and West 1987, one
-    // lag).
-    let neighbours = changes.windows(2).map(|c| (c[0] - mean) * (c[1] - mean));
-    let together = 2.0 * neighbours.sum::<f64>().max(0.0);
-    let t = if changes.len() < 2 {
-        0.0
+    let t = if changes.len() < RANKED {
+        students_t(&changes)
     } else {
-        mean / ((squares + together) / (count - 1.0) / count)
-            .sqrt()
-            .max(f64::MIN_POSITIVE)
+        students_t(&signed_ranks(&changes))
     };
     let fall = |a: f64, b: f64| {
         if b.is_finite() {
@@ -81,6 +72,34 @@ pub(in crate::criticism) fn difference(session: &Session, from: &Trial, to: &Tri
             f64::NEG_INFINITY
         },
     }
+}
+
+/// Mean of some numbers over its standard error; 0 of fewer than two.
+fn students_t(changes: &[f64]) -> f64 {
+    if changes.len() < 2 {
+        return 0.0;
+    }
+    let count = changes.len() as f64;
+    let mean = changes.iter().sum::<f64>() / count;
+    let squares: f64 = changes.iter().map(|c| (c - mean).powi(2)).sum();
+    // Of a slow process neighbouring blocks hang together, and tell less than as many others (Newey and West 1987, one
+    // lag).
+    let neighbours = changes.windows(2).map(|c| (c[0] - mean) * (c[1] - mean));
+    let together = 2.0 * neighbours.sum::<f64>().max(0.0);
+    let error = ((squares + together) / (count - 1.0) / count).sqrt();
+    mean / error.max(f64::MIN_POSITIVE)
+}
+
+/// The place of each number in the order of their sizes, with its sign (Wilcoxon 1945; Student's t of them: Conover and
+/// Iman 1981). One block may hold a great change, and many small ones: a mean of them scatters as the great ones do.
+fn signed_ranks(changes: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..changes.len()).collect();
+    order.sort_by(|a, b| changes[*a].abs().total_cmp(&changes[*b].abs()));
+    let mut ranks = vec![0.0; changes.len()];
+    for (rank, place) in order.into_iter().enumerate() {
+        ranks[place] = (rank as f64 + 1.0).copysign(changes[place]);
+    }
+    ranks
 }
 
 /// Sums of two series without the place where the second is less by the most.
@@ -139,6 +158,22 @@ mod tests {
         let after = [8.0, 1.0, 10.0, 8.0];
         assert_eq!(without_most(&before, &after), [27.0, 26.0]);
         assert_eq!(without_most(&[], &[]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn gains_in_nearly_all_blocks_count_however_their_sizes_scatter() {
+        assert_eq!(signed_ranks(&[0.1, -0.5, 0.3]), [1.0, -3.0, 2.0]);
+        let gains = [
+            0.01, 0.47, 1.16, 1.33, 0.71, 0.19, 0.37, 0.2, -0.07, 0.28, 0.23, 0.09, 0.87,
+        ];
+        let certain = student(QUANTILE, gains.len() as f64 - 1.0);
+        assert!(students_t(&gains) < 1.1 * certain);
+        assert!(students_t(&signed_ranks(&gains)) > 1.3 * certain);
+        // Of as many losses as gains nothing is certain.
+        let mixed: Vec<f64> = (1..=12)
+            .map(|k| f64::from(k) * [1.0, -1.0][k as usize % 2])
+            .collect();
+        assert!(students_t(&signed_ranks(&mixed)).abs() < 0.5);
     }
 
     #[test]
