@@ -68,6 +68,44 @@ fn a_motor_that_turns_one_way_does_not_tell_its_friction() {
     check(&d, &[&["constant_load", "coulomb_friction", "dead_zone"]]);
 }
 
+/// A motor on a staircase of volts, with a speed that is noisy at rest: V = 0.0457 w + 0.734. It turns one way only, and
+/// rests where a load would turn it back.
+#[test]
+fn a_staircase_of_volts_shows_dry_friction_or_a_dead_zone() {
+    let Some(d) = diagnose_shared("failing/stair-noisy-speed.csv") else {
+        return;
+    };
+    check(&d, &[&["coulomb_friction", "dead_zone"]]);
+    check_near(&d, "c", 0.734, 0.1);
+    check_near(&d, "d1", 0.0457, 0.05);
+}
+
+/// The lower of two tanks, which runs over at 10 V: no model of one storage fits, and nothing false is named.
+#[test]
+fn a_tank_below_another_is_unknown_and_its_limit_is_said() {
+    let Some(d) = diagnose_shared("failing/tanks-estimation.csv") else {
+        return;
+    };
+    check(&d, &[]);
+    assert!(d.verdict.unknown, "{}", d.verdict.text);
+    assert!(
+        d.verdict.text.contains("for 47 samples"),
+        "{}",
+        d.verdict.text
+    );
+}
+
+/// Its output stays where the input left it: K/T is about -8 per s.
+#[test]
+fn a_process_that_integrates_has_a_rate_and_no_gain() {
+    let Some(d) = diagnose_shared("failing/integrating-process-pulses.csv") else {
+        return;
+    };
+    check(&d, &[&["input_delay"]]);
+    check_near(&d, "K/T", -8.0, 0.1);
+    assert!(d.verdict.text.contains("integrates"), "{}", d.verdict.text);
+}
+
 /// An industrial servo in one move: friction of 5.5 % at 27 rad/s, 7.2 at 61, 8.9 at 102 and 9.4 at 174.
 #[test]
 fn friction_that_flattens_with_speed_is_found_in_one_move() {
