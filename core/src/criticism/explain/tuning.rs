@@ -97,8 +97,8 @@ pub(super) const UNCHANGED: f64 = 0.02;
 /// 100 (Bonferroni).
 pub(super) const QUANTILE: f64 = 2.39;
 
-/// Blocks from which on signs alone can be as rare as that: all alike by chance in 1 of 128.
-pub(super) const RANKED: usize = 7;
+/// Effective number of blocks from which on signs alone can be as rare as that: all alike by chance in 1 of 128.
+pub(super) const RANKED: f64 = 7.0;
 
 /// Relative fall of the error below which a difference is none, whatever its sign is known to be.
 pub(super) const LEAST_FALL: f64 = 0.03;
