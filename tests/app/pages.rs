@@ -249,7 +249,7 @@ fn what_may_help_is_offered_though_chance_is_not_ruled_out() {
     let ctx = harness.ctx.clone();
     harness
         .state_mut()
-        .open(&ctx, "pulses.csv", reversed_twice().as_bytes());
+        .open(&ctx, "pulses.csv", reversed_twice(4).as_bytes());
     stop_looking(&mut harness);
     harness.get_by_label("Perhaps, but it may be chance");
     let state = state(&harness);

@@ -3,7 +3,7 @@
 
 use crate::support::diagnosis::{classes, diagnose_shared, finish, step};
 use crate::support::parameter::parameter;
-use crate::support::pulses::reversed_twice;
+use crate::support::pulses::{OTHER_GAIN, reversed_twice};
 use hysteron_core::criticism::{DiagnosisJob, StepJob};
 use hysteron_core::diagnosis::Diagnosis;
 use hysteron_core::measurement::{Measurement, import_csv};
@@ -60,7 +60,7 @@ fn a_load_that_swings_once_or_twice_is_no_effect() {
 
 #[test]
 fn what_may_be_chance_is_said_as_that() {
-    let record = import_csv("pulses", reversed_twice().as_bytes(), None).unwrap();
+    let record = import_csv("pulses", reversed_twice(4).as_bytes(), None).unwrap();
     let d = finish(DiagnosisJob::new(&record).unwrap());
     assert!(
         d.verdict.missing.is_empty() && d.verdict.unknown,
@@ -79,6 +79,17 @@ fn what_may_be_chance_is_said_as_that() {
     let with = step(StepJob::new(&record, &offered.effects).unwrap());
     let change = (with.step.error / offered.error - 1.0).abs();
     assert!(change < 0.05, "{} for {}", with.step.error, offered.error);
+}
+
+/// Twice as long, the moments bend a model that has one gain in all of the record: every stretch speaks for two.
+#[test]
+fn what_bends_all_of_a_record_is_no_chance() {
+    let record = import_csv("pulses", reversed_twice(8).as_bytes(), None).unwrap();
+    let d = finish(DiagnosisJob::new(&record).unwrap());
+    assert_eq!(classes(&d), [["gain_asymmetry"]], "{}", d.verdict.text);
+    let asymmetry = parameter(&d, "a").value;
+    let gains = (1.0 - asymmetry) / (1.0 + asymmetry);
+    assert!((gains / OTHER_GAIN - 1.0).abs() < 0.05, "{gains}");
 }
 
 /// A student's heater whose input steps eight times: what a dead time or a second lag explains is in the few stretches
