@@ -2,7 +2,8 @@
 //!
 //! Two-fold blocked cross-validation: every block is judged by the fit to the other half. Two models are compared by
 //! the paired difference of the logarithm of what they leave of a block, beside its noise and what no model is right
-//! to: by the ranks of the differences, and of a few blocks by their mean over its standard error (Student's t).
+//! to, over the standard error of its mean (Student's t): by the ranks of the differences, or by themselves where few
+//! blocks tell them.
 
 use super::Trial;
 use super::tuning::{

@@ -88,7 +88,7 @@ impl Explain {
             && added.any(|e| is_hidden_body(*e)) == level.hidden
     }
 
-    fn has_hidden_body(&self, trial: usize) -> bool {
+    pub(super) fn has_hidden_body(&self, trial: usize) -> bool {
         let mut effects = self.trials[trial].effects().iter();
         effects.any(|e| is_hidden_body(*e))
     }
@@ -110,7 +110,7 @@ impl Explain {
             let difference = self.difference(session, self.best, *t);
             difference.is_better()
                 || difference.is_met_once() && self.explains(session, self.best, *t)
-                || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best)
+                || self.does_as_well_with_less(session, *t, self.best)
         };
         let better: Vec<usize> = (0..self.trials.len()).filter(open).filter(better).collect();
         let lead = self

@@ -1,7 +1,6 @@
 //! What few machines have is tried last: where everything else leaves more than noise, or takes two effects to explain
 //! what one of these may.
 
-use super::hidden_body::is_hidden_body;
 use super::sketch::{Sketch, first_guess};
 use super::swap::shared;
 use super::task::usual;
@@ -56,17 +55,10 @@ impl Explain {
         session.look_where_left(&self.trials[self.best].scored.fit);
         self.limit = ALIKE * session.scouted(&self.trials[self.best].scored.fit);
         // A hidden body makes each simulation far slower, and few machines have both.
-        let hides = |trial: usize| {
-            let mut effects = self.trials[trial].effects().iter();
-            effects.any(|e| is_hidden_body(*e))
-        };
-        let mut places = if explained {
-            vec![0]
-        } else {
-            vec![0, self.best]
-        };
-        places.dedup();
-        places.retain(|trial| *trial == 0 || !hides(*trial));
+        let mut places = vec![0];
+        if !explained && self.best != 0 && !self.has_hidden_body(self.best) {
+            places.push(self.best);
+        }
         let told = session.screened_body.map(Vec::from);
         let bodies: Vec<Vec<f64>> = first_guess(session).into_iter().chain(told).collect();
         for from in places {
@@ -89,7 +81,7 @@ impl Explain {
                 && self.leaves_little(session, *t)
                 && (self.difference(session, self.best, *t).is_better()
                     || self.explains(session, self.best, *t)
-                    || self.is_simpler(*t, self.best) && self.does_as_well(session, *t, self.best))
+                    || self.does_as_well_with_less(session, *t, self.best))
         };
         let better: Vec<usize> = (1..self.trials.len()).filter(better).collect();
         let Some(lead) = self.lead(session, &better) else {

@@ -219,19 +219,13 @@ impl Explain {
             return;
         }
         let rivals = self.swapped(session);
-        let is_simpler = |r: &Rival| {
-            self.is_simpler(r.trial, self.best) && self.does_as_well(session, r.trial, self.best)
-        };
+        let is_simpler = |r: &&Rival| self.does_as_well_with_less(session, r.trial, self.best);
         let better: Vec<usize> = rivals
             .iter()
             .filter(|r| self.difference(session, self.best, r.trial).is_better())
             .map(|r| r.trial)
             .collect();
-        let simpler: Vec<usize> = rivals
-            .iter()
-            .filter(|r| is_simpler(r))
-            .map(|r| r.trial)
-            .collect();
+        let simpler: Vec<usize> = rivals.iter().filter(is_simpler).map(|r| r.trial).collect();
         let other = self
             .lead(session, &better)
             .or_else(|| self.lead(session, &simpler));

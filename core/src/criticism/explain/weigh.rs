@@ -60,13 +60,23 @@ impl Explain {
         difference.is_no_better() || self.has_part_of(simpler, other) && !worth
     }
 
+    /// Whether a model does as well as another with fewer values.
+    pub(super) fn does_as_well_with_less(
+        &self,
+        session: &Session,
+        less: usize,
+        other: usize,
+    ) -> bool {
+        self.is_simpler(less, other) && self.does_as_well(session, less, other)
+    }
+
     /// The one that leaves least; of those that do as well, the one with fewest values.
     pub(super) fn lead(&self, session: &Session, trials: &[usize]) -> Option<usize> {
         let error = |t: &usize| self.trials[*t].error();
         let all = || trials.iter().copied();
         let least = all().min_by(|a, b| error(a).total_cmp(&error(b)))?;
         all()
-            .filter(|t| self.is_simpler(*t, least) && self.does_as_well(session, *t, least))
+            .filter(|t| self.does_as_well_with_less(session, *t, least))
             .min_by(|a, b| {
                 let values = |t: &usize| self.trials[*t].values();
                 values(a)
